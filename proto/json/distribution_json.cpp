@@ -20,28 +20,27 @@ constexpr std::tuple kProvenance{
     Field{"robot", &Distribution::robot},
     Field{"T_task_base", &Distribution::T_task_base},
     Field{"profile", &Distribution::profile, {.limit = kMaxProfileBytes}},
-    Field{"selection", &Distribution::selection, {.may_be_missing = true}},
+    Field{"selection", &Distribution::selection},
     Field{"engines", &Distribution::engines, {.limit = kMaxMessageBytes}},
     Field{"sources", &Distribution::sources, {.limit = kMaxSources}},
-    Field{"configurations", &Distribution::configurations, {.may_be_missing = true}}};
+    Field{"configurations", &Distribution::configurations}};
 
 constexpr std::tuple kAdvice{
     Field{"recommended_share", &Advice::recommended_share, {.min = 0, .max = 1}},
-    Field{"guided_share", &Advice::guided_share, {.min = 0, .max = 1, .may_be_missing = true}},
-    Field{"evidence", &Advice::evidence, {.limit = kMaxMessageBytes, .may_be_missing = true}},
+    Field{"guided_share", &Advice::guided_share, {.min = 0, .max = 1}},
+    Field{"evidence", &Advice::evidence, {.limit = kMaxMessageBytes}},
     Field{"guided", &Advice::guided},
     Field{"control", &Advice::control},
-    Field{"recent", &Advice::recent, {.limit = kMaxJudgedAttempts, .may_be_missing = true}}};
+    Field{"recent", &Advice::recent, {.limit = kMaxJudgedAttempts}}};
 
 /// How its fit went.
-constexpr std::tuple kFit{
-    Field{"state", &Distribution::state},
-    Field{"reason", &Distribution::reason, {.limit = kMaxMessageBytes, .may_be_missing = true}},
-    Field{"fitted_ms", &Distribution::fitted_ms, {.may_be_missing = true}},
-    Field{"transfer_time_s", &Distribution::transfer_time_s, {.min = 0, .may_be_missing = true}},
-    Field{"fit_time_s", &Distribution::fit_time_s, {.min = 0, .may_be_missing = true}},
-    Field{"fit", &Distribution::fit},
-    Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes, .may_be_missing = true}}};
+constexpr std::tuple kFit{Field{"state", &Distribution::state},
+                          Field{"reason", &Distribution::reason, {.limit = kMaxMessageBytes}},
+                          Field{"fitted_ms", &Distribution::fitted_ms},
+                          Field{"transfer_time_s", &Distribution::transfer_time_s, {.min = 0}},
+                          Field{"fit_time_s", &Distribution::fit_time_s, {.min = 0}},
+                          Field{"fit", &Distribution::fit},
+                          Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
 
 /// Refuses a count that exceeds another one.
 void require_at_most(const Reader& object, std::string_view member, std::uint64_t limit) {
@@ -56,7 +55,6 @@ void check_evidence(const std::optional<Reader>& reader,
 
 Advice read_advice(const Reader& reader) {
   Advice advice;
-  advice.guided_share = reader.at("recommended_share").number(0, 1);  // of older files
   read_members(reader, kAdvice, advice);
   check_evidence(reader.find("guided"), advice.guided);
   check_evidence(reader.find("control"), advice.control);

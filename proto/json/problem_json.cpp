@@ -85,7 +85,7 @@ constexpr std::tuple kGuidance{
     Field{"distribution_id", &ProblemResult::distribution_id, {.may_be_missing = true}},
     Field{"revision", &ProblemResult::distribution_revision},
     Field{"share", &ProblemResult::share, {.min = 0, .max = 1}},
-    Field{"arm", &ProblemResult::sampling_mode, {.may_be_missing = true}},
+    Field{"arm", &ProblemResult::sampling_mode},
     Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}},
     Field{"track_share", &ProblemResult::track_share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"experience_revision", &ProblemResult::experience_revision, {.may_be_missing = true}},
@@ -108,12 +108,8 @@ ProblemResult read_problem_result(const Reader& reader) {
     result.start = start->vector(kMaxDof);
   if (const auto waypoints = reader.find("waypoints"))
     result.waypoints = waypoints->columns(kMaxDof, kMaxWaypoints);
-  if (const auto guidance = reader.find("guidance")) {
-    const double share = guidance->at("share").number(0, 1);
-    result.sampling_mode =
-        share > 0 ? SamplingMode::Guided : SamplingMode::Control;  // of older files
+  if (const auto guidance = reader.find("guidance"))
     read_members(*guidance, kGuidance, result);
-  }
   read_members(reader, kReasons, result);
   return result;
 }

@@ -5,8 +5,7 @@
 #include "proto/types/recorded_scene.hpp"
 
 /// The scene of an attempt: the lists of a problem's scene, `held` and `allowed_collisions`, and
-/// the `constraint` if there is one: without it, servers and clients from before read the document
-/// too. For this library's sources only.
+/// the `constraint` if there is one. For this library's sources only.
 namespace kinship::json {
 
 OrderedJson recorded_scene_object(const RecordedScene& scene);

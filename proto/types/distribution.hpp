@@ -71,9 +71,8 @@ struct Distribution {
   /// Per joint, where the circle of a continuous one is cut: means and limits lie in
   /// [cut, cut + 2 pi]. Empty if no joint is continuous.
   std::vector<std::optional<double>> cuts;
-  std::optional<FitOrigin> fit;  ///< of its mixture; missing in what older servers stored
-  /// What its configurations were filtered with, what not and why, in words; empty in what older
-  /// servers stored.
+  std::optional<FitOrigin> fit;  ///< of its mixture; missing if it failed
+  /// What its configurations were filtered with, what not and why, in words.
   std::string filters = {};
 };
 

@@ -43,7 +43,7 @@ Field(std::string_view, Member Value::*, FieldRules) -> Field<Value, Member>;
 /// Of a number with limits.
 constexpr FieldRules between(double min, double max) { return {.min = min, .max = max}; }
 
-/// Of a field that came later: files may lack it, and blobs of older formats.
+/// Of a field that comes later: files may lack it, and blobs of older formats.
 constexpr FieldRules since(int format) { return {.may_be_missing = true, .since = format}; }
 
 /// The fields of a value: a tuple in the order in which files and messages have them. New ones come

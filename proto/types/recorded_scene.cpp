@@ -117,7 +117,7 @@ RoundedPose rounded(const Eigen::Isometry3d& T) {
 /// A thing as numbers and text that compare equal where its content does.
 using Thing = std::tuple<std::string, std::size_t, std::array<std::int64_t, 10>>;
 
-/// Beside the kinds of shapes: so that digests of exact things are those from before.
+/// Added to the kind of a shape that was fitted around a mesh.
 constexpr std::size_t kApproximateKind = 1000;
 
 Thing thing_of(const std::string& name, const Shape& shape, const Eigen::Isometry3d& T,
@@ -141,7 +141,7 @@ void add(std::vector<Thing> things, Sha256& hash) {
   }
 }
 
-/// Nothing for no constraint: digests of scenes without one are older than constraints.
+/// Nothing for no constraint.
 void add(const std::optional<TaskSpaceRegion>& constraint, Sha256& hash) {
   if (!constraint)
     return;

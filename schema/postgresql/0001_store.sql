@@ -1,4 +1,4 @@
--- 0001: the whole store, as schema/sqlite is at 6. Applied once, in one transaction, by
+-- 0001: the whole store, as schema/sqlite has it. Applied once, in one transaction, by
 -- server/store/postgres/opening, which then records it in schema_migration. Once released, never
 -- edited: write the next number.
 --

@@ -20,9 +20,8 @@ SharedReply shared_pending();
 /// Ready or Failed, as the distribution says.
 SharedReply with_distribution(Distribution distribution);
 
-/// `done`, called with a distribution whose profile is called what its caller calls it. Texts of
-/// equal values have one distribution between them, and a client from before profiles might be long
-/// could not read the words of a later one.
+/// `done`, called with a distribution whose profile is called what its caller calls it: texts of
+/// equal values have one distribution between them.
 FetchDone with_profile_text_of(const FetchRequest& request, FetchDone done);
 
 }  // namespace kinship::catalog

@@ -24,7 +24,7 @@ struct Context {
 /// By distribution; those that are missing are known to nobody (any more).
 using Contexts = std::map<Digest, Context>;
 
-/// Attempts of a context that nobody knows (older rows, clients that do not say, distributions that
+/// Attempts of a context that nobody knows (clients that do not say, distributions that
 /// were evicted) count as if so many more had followed: three half-lives, an eighth of the weight.
 inline constexpr std::uint32_t kAgeOfUnknown = 1200;
 

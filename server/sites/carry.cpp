@@ -131,7 +131,7 @@ CarriedPage carry_page(const Way& way, std::string_view task, const std::string&
   for (const store::ArrivedReport& report : feed.rows) {
     if (!known.contains(report.report_uuid))
       missing.push_back(report.report_uuid);
-    else if (report.is_retired)  // perhaps before there was a list of retirements
+    else if (report.is_retired)  // perhaps its list of retirements lost that in a repair
       retired_before.push_back(report.report_uuid);
   }
   for (std::span<const Uuid> left = retired_before; !left.empty();) {

@@ -55,7 +55,7 @@ struct Repaired {
 
 /// Puts a store made of all that can be read of a damaged one in its place, under a new epoch, so
 /// that clients offer again what they have. The damaged store is kept as restore_store() does it.
-/// \throws Failure(Storage) if the store is from before schema 4, which has no checksums.
+/// \throws Failure(Storage) if its pages bear no checksums: it is no store.
 Repaired repair_store(const std::filesystem::path& file, const Progress& progress);
 
 struct Migrated {

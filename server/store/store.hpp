@@ -362,8 +362,7 @@ class Store {
   virtual Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
                                             std::size_t limit) const = 0;
   /// Every report whose path somebody retired here, or which another store said was retired; each
-  /// once. Paths that were dropped are not among them. Of a store from before there was this list
-  /// those retired until then are missing: list_arrivals() says of them.
+  /// once. Paths that were dropped are not among them.
   virtual Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const = 0;
   /// Those of the reports that are here.
   virtual std::set<Uuid> known_reports(std::span<const Uuid> reports) const = 0;

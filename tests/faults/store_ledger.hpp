@@ -27,7 +27,7 @@ struct Receipts {
   std::set<std::uint64_t> retired;        ///< of these: retired, or being retired
   std::set<std::uint64_t> distributions;  ///< numbers of make_distribution()
   std::set<std::string> backups;          ///< names of files
-  bool golden = false;                    ///< the store began as one of tests/golden
+  bool golden = false;  ///< the store began as one of tests/golden, and is migrated
 };
 
 /// Shared by the clients of a session.

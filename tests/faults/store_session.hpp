@@ -27,7 +27,8 @@ struct PowerCut {
 class StoreSession {
  public:
   /// \param mean_gap  so many changes lie between two cuts in the mean.
-  /// \param golden    a store of tests/golden to begin with; empty: none.
+  /// \param golden    a store of tests/golden to begin with, which is migrated to that of
+  ///                  tests/support/next_schema.hpp; empty: none.
   StoreSession(std::uint64_t seed, std::uint64_t mean_gap,
                const std::filesystem::path& golden = {});
 

@@ -16,7 +16,7 @@
 namespace kinship::store::blob_pins_test {
 namespace {
 
-constexpr int kFormat = 9;  // of today
+constexpr int kFormat = 1;  // of today
 
 std::string blob_name(int format) { return "blob/distribution-" + std::to_string(format) + ".hex"; }
 

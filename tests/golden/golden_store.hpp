@@ -4,7 +4,8 @@
 
 #include "tests/support/store_values.hpp"
 
-/// What the stores of this folder hold. Never edited: the files are not written again.
+/// What the stores of this folder hold. Once a schema is released never edited: its file is not
+/// written again.
 namespace kinship::test {
 
 inline const std::vector<store::RobotRecord>& golden_robots() {
@@ -31,13 +32,13 @@ inline std::vector<Attempt> golden_attempts() {
   return attempts;
 }
 
-/// Retired in stores of schema 2 and later; the only one of its task.
+/// Retired; the only one of its task.
 inline Attempt golden_retired_attempt() {
   return make_attempt(golden_robots()[0].digest, "drawer", 8);
 }
 
-/// In stores of schema 7 and later: the content of the retired one, and the number of a report that
-/// another store retired before it came.
+/// The content of the retired one, and the number of a report that another store retired before it
+/// came.
 inline Attempt golden_same_content() {
   Attempt attempt = golden_retired_attempt();
   attempt.report_uuid = id_from<Uuid>(40);
@@ -45,7 +46,7 @@ inline Attempt golden_same_content() {
 }
 inline constexpr std::uint64_t kGoldenRetiredBefore = 41;
 
-/// In stores of schema 3 and later; the only ones of their task. Their scene is one.
+/// The only ones of their task. Their scene is one.
 inline std::vector<Attempt> golden_attempts_with_scene() {
   std::vector<Attempt> attempts = {make_attempt(golden_robots()[1].digest, "table", 20),
                                    make_attempt(golden_robots()[1].digest, "table", 21)};
@@ -59,7 +60,7 @@ inline std::vector<Attempt> golden_attempts_with_scene() {
   return attempts;
 }
 
-/// In stores of schema 5 and later; the only ones of their task, which kept two of them.
+/// The only ones of their task, which kept two of them.
 inline std::vector<Attempt> golden_capped_attempts() {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 30; number < 35; ++number)
@@ -68,13 +69,13 @@ inline std::vector<Attempt> golden_capped_attempts() {
 }
 inline constexpr std::uint64_t kGoldenCap = 2;
 
-/// Taken over for robot 0 in stores of schema 5 and later.
+/// Taken over for robot 0.
 inline MeshSolids golden_mesh_solids() {
   return {{{"hand", BoxShape{{0.1, 0.2, 0.05}}, make_pose()}, {"arm", CapsuleShape{0.06, 0.4}}},
           {{"arm", "hand"}}};
 }
 
-/// Kept in stores of schema 6 and later, after the entries of the retirement and the eviction.
+/// Kept after the entries of the retirement and the eviction.
 inline AuditEntry golden_audit_entry() {
   AuditEntry entry;
   entry.name = "anna";
@@ -88,7 +89,7 @@ inline AuditEntry golden_audit_entry() {
   return entry;
 }
 
-/// Evicted after one fit in stores of schema 2 and later.
+/// Evicted after one fit.
 inline Distribution golden_evicted_distribution() {
   return make_distribution(golden_robots()[1].digest, "bin", 101);
 }

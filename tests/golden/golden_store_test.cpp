@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <filesystem>
 
 #include "server/store/sqlite/sqlite_store.hpp"
@@ -12,9 +11,8 @@
 namespace kinship::golden_store_test {
 namespace {
 
-// Of schema 1, 2 ...
-constexpr std::array<std::uint64_t, 7> kAttempts = {8, 9, 11, 11, 16, 16, 17};
-constexpr std::array<std::uint64_t, 7> kPaths = {7, 7, 9, 9, 11, 11, 11};
+constexpr std::uint64_t kAttempts = 17;
+constexpr std::uint64_t kPaths = 11;
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -53,8 +51,8 @@ TEST_P(GoldenStore, StillHasEveryAttemptAndPath) {
     ASSERT_EQ(found->path.has_value(), wanted.path.has_value());
     EXPECT_TRUE(!wanted.path || found->path->waypoints() == wanted.path->waypoints());
   }
-  EXPECT_EQ(store_->status().attempts, kAttempts[static_cast<std::size_t>(GetParam() - 1)]);
-  EXPECT_EQ(store_->status().paths, kPaths[static_cast<std::size_t>(GetParam() - 1)]);
+  EXPECT_EQ(store_->status().attempts, kAttempts);
+  EXPECT_EQ(store_->status().paths, kPaths);
   EXPECT_EQ(store_->generation(test::golden_robots()[0].digest, "bin"), 1U);
 }
 
@@ -65,7 +63,7 @@ TEST_P(GoldenStore, StillHasItsDistribution) {
   EXPECT_EQ(found->revision, 2U);
   EXPECT_EQ(found->selection, wanted.selection);
   EXPECT_EQ(found->sources[0].relation, Relation::Other);
-  EXPECT_EQ(found->sources[0].paths_used, GetParam() < 2 ? 12U : 0U);
+  EXPECT_EQ(found->sources[0].paths_used, 0U);
   EXPECT_EQ(found->mixture->means(), wanted.mixture->means());
   EXPECT_EQ(found->mixture->covariances(), wanted.mixture->covariances());
 }
@@ -92,8 +90,7 @@ TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
 }
 
 TEST_P(GoldenStore, RetiresExportsAndEvictsWhatItHad) {
-  const std::size_t with_scene = GetParam() < 3 ? 0 : 2;
-  const std::size_t capped = GetParam() < 5 ? 0 : test::kGoldenCap;
+  const std::size_t with_scene = 2, capped = test::kGoldenCap;
   EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(),
             8U + with_scene + capped);
   const Attempt bad = test::golden_attempts()[6];
@@ -108,8 +105,6 @@ TEST_P(GoldenStore, RetiresExportsAndEvictsWhatItHad) {
 }
 
 TEST_P(GoldenStore, StillKnowsWhatWasRetiredAndEvicted) {
-  if (GetParam() < 2)
-    GTEST_SKIP() << "nothing could be retired then";
   const Attempt retired = test::golden_retired_attempt();
   const std::vector<PathSummary> listed = store_->list_paths({}, "drawer", "", 10).rows;
   ASSERT_EQ(listed.size(), 1U);
@@ -122,8 +117,6 @@ TEST_P(GoldenStore, StillKnowsWhatWasRetiredAndEvicted) {
 }
 
 TEST_P(GoldenStore, StillHasItsScenesOnce) {
-  if (GetParam() < 3)
-    GTEST_SKIP() << "no attempt carried its scene then";
   const auto paths =
       store_->read_paths(test::golden_robots()[1].digest, "table", {.after_id = 0, .limit = 9});
   ASSERT_EQ(paths.size(), 2U);
@@ -137,8 +130,6 @@ TEST_P(GoldenStore, StillHasItsScenesOnce) {
 }
 
 TEST_P(GoldenStore, StillKnowsWhatWasBeyondItsCap) {
-  if (GetParam() < 5)
-    GTEST_SKIP() << "there was no cap then";
   const std::vector<Attempt> attempts = test::golden_capped_attempts();
   EXPECT_EQ(store_->read_paths(test::golden_robots()[0].digest, "tray", {.after_id = 0, .limit = 9})
                 .size(),
@@ -149,8 +140,6 @@ TEST_P(GoldenStore, StillKnowsWhatWasBeyondItsCap) {
 }
 
 TEST_P(GoldenStore, StillKnowsTheSolidsAroundItsMeshes) {
-  if (GetParam() < 5)
-    GTEST_SKIP() << "nothing was known of meshes then";
   const auto robot = store_->find_robot(test::golden_robots()[0].digest);
   ASSERT_TRUE(robot);
   EXPECT_EQ(robot->geometry_revision, 1U);
@@ -165,31 +154,28 @@ TEST_P(GoldenStore, StillKnowsTheSolidsAroundItsMeshes) {
 TEST_P(GoldenStore, StillHasItsAuditLogAndTakesEntries) {
   const AuditEntry wanted = test::golden_audit_entry();
   const std::vector<AuditEntry> log = store_->list_audit("anna", "", 10).rows;
-  ASSERT_EQ(log.size(), GetParam() < 6 ? 0U : 3U);
-  if (!log.empty()) {
-    EXPECT_EQ(log[0].message, wanted.message);
-    EXPECT_EQ(log[0].outcome, AuditOutcome::Refused);
-    EXPECT_FALSE(log[0].is_local);
-    EXPECT_EQ(log[1].after, "gone");
-    EXPECT_EQ(log[2].before, "task 'drawer': 1 path");
-    EXPECT_GT(log[2].time_ms, 1'790'000'000'000);
-  }
+  ASSERT_EQ(log.size(), 3U);
+  EXPECT_EQ(log[0].message, wanted.message);
+  EXPECT_EQ(log[0].outcome, AuditOutcome::Refused);
+  EXPECT_FALSE(log[0].is_local);
+  EXPECT_EQ(log[1].after, "gone");
+  EXPECT_EQ(log[2].before, "task 'drawer': 1 path");
+  EXPECT_GT(log[2].time_ms, 1'790'000'000'000);
   store_->add_audit(wanted);
   EXPECT_EQ(store_->list_audit("", "", 10).rows.at(0).message, wanted.message);
 }
 
 TEST_P(GoldenStore, StillKnowsWhatIsToBeRetiredWhenItComes) {
   const std::vector<Uuid> listed = store_->list_retirements("", 10).rows;
-  ASSERT_EQ(listed.size(), GetParam() < 7 ? 0U : 3U);
+  ASSERT_EQ(listed.size(), 3U);
   const Attempt later =
       test::make_attempt(test::golden_robots()[0].digest, "drawer", test::kGoldenRetiredBefore);
   const std::vector<store::ArrivedReport> drawer = store_->list_arrivals("drawer", "", 10).rows;
   for (const store::ArrivedReport& report : drawer)
-    EXPECT_TRUE(report.is_retired) << "also of a store from before there was a list";
-  EXPECT_EQ(drawer.size(), GetParam() < 2 ? 0U : GetParam() < 7 ? 1U : 2U);
-  EXPECT_EQ(test::report(*store_, {later})[0].status,
-            GetParam() < 7 ? ReceiptStatus::Stored : ReceiptStatus::Recorded);
-  EXPECT_EQ(store_->notes("golden").size(), GetParam() < 7 ? 0U : 1U);
+    EXPECT_TRUE(report.is_retired);
+  EXPECT_EQ(drawer.size(), 2U);
+  EXPECT_EQ(test::report(*store_, {later})[0].status, ReceiptStatus::Recorded);
+  EXPECT_EQ(store_->notes("golden").size(), 1U);
 }
 
 TEST_P(GoldenStore, TakesASceneWithItsReport) {
@@ -206,7 +192,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5, 6, 7));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

@@ -8,10 +8,10 @@ namespace {
 
 using enum CellType;
 
-/// A mark of damage in SQLite; what was found before there were times is of 1 ms.
+/// A mark of damage in SQLite.
 MovedColumn noticed(const std::string& table, int kind) {
   return {"damaged_ms", Integer,
-          "(SELECT max(1, noticed_ms) FROM set_aside WHERE kind = " + std::to_string(kind) +
+          "(SELECT noticed_ms FROM set_aside WHERE kind = " + std::to_string(kind) +
               " AND set_aside.id = " + table + ".id)",
           true};
 }
@@ -67,7 +67,7 @@ MovedTable scenes() {
                       noticed("scene", 3),
                       {"scene", Blob}},
           .sqlite_light =
-              "SELECT id, coalesce((SELECT max(1, noticed_ms) FROM set_aside WHERE"
+              "SELECT id, coalesce((SELECT noticed_ms FROM set_aside WHERE"
               " kind = 3 AND set_aside.id = scene.id), 0) FROM scene WHERE " +
               in_use + " ORDER BY id",
           .postgres_light = "SELECT id, coalesce(damaged_ms, 0) FROM scene ORDER BY id",
@@ -79,7 +79,7 @@ MovedTable paths() {
   const auto indexed = [](const std::string& index, const std::string& retired,
                           const std::string& condition) {
     return "SELECT path.id, " + retired +
-           ", coalesce(max(1, aside.noticed_ms), 0), coalesce(aside.replaced_by, 0)"
+           ", coalesce(aside.noticed_ms, 0), coalesce(aside.replaced_by, 0)"
            " FROM path INDEXED BY " +
            index +
            " LEFT JOIN set_aside AS aside ON aside.kind = 1 AND aside.id = path.id"

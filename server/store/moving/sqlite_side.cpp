@@ -18,7 +18,6 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/rows/audit_rows.hpp"
 
 namespace kinship::store::moving {

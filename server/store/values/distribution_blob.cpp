@@ -1,6 +1,5 @@
 #include "server/store/values/distribution_blob.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -11,9 +10,8 @@
 namespace kinship::store {
 namespace {
 
-// What a format brought stands at the fields; 6 brought covariances that all components share, 9
-// the filters. The newest is written, all are read.
-constexpr int kDistributionFormat = std::max(9, newest_format<Source>());
+// Written first. What a format brings stands at its fields.
+constexpr int kDistributionFormat = newest_format<Source>();
 
 constexpr std::tuple kBegin{Field{"id", &Distribution::id},
                             Field{"task", &Distribution::task},
@@ -33,13 +31,10 @@ constexpr std::tuple kMade{Field{"fitted_ms", &Distribution::fitted_ms},
                            Field{"fit_time_s", &Distribution::fit_time_s},
                            Field{"sources", &Distribution::sources, {.limit = kMaxSources}}};
 constexpr std::tuple kEnd{
-    Field{"selection", &Distribution::selection, since(2)},
-    Field{"component_scores",
-          &Distribution::component_scores,
-          {.limit = kMaxComponentScores, .since = 4}},
-    Field{"cuts", &Distribution::cuts, {.limit = kMaxDof, .since = 4}},
-    Field{"fit", &Distribution::fit, since(5)},
-    Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes, .since = 9}}};
+    Field{"selection", &Distribution::selection},
+    Field{"component_scores", &Distribution::component_scores, {.limit = kMaxComponentScores}},
+    Field{"cuts", &Distribution::cuts, {.limit = kMaxDof}}, Field{"fit", &Distribution::fit},
+    Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
 
 /// What sizes and enumerators do not say.
 void check_choice(const Distribution& distribution) {
@@ -61,10 +56,10 @@ void add_mixture(ByteWriter& out, const Mixture& mixture) {
     out.add(covariance);
 }
 
-Mixture read_mixture(ByteReader& in, int format) {
+Mixture read_mixture(ByteReader& in) {
   const Eigen::MatrixXd weights = in.matrix(kMaxKernels, 1);
   Eigen::MatrixXd means = in.matrix(kMaxDof, kMaxKernels);
-  const std::uint64_t count = format > 5 ? in.integer() : std::uint64_t(weights.rows());
+  const std::uint64_t count = in.integer();
   if (count > kMaxComponents || (count > 1 && std::uint64_t(weights.rows()) != count))
     throw std::out_of_range("distribution: too many covariances, or other than components");
   std::vector<Eigen::MatrixXd> covariances;
@@ -82,11 +77,8 @@ Distribution read_distribution(ByteReader& in) {
   read_members(in, known, kBegin, distribution);
   read_members(in, known, kAdvice, distribution.advice);
   read_members(in, known, kMade, distribution);
-  if (known < 2)  // fits left no paths out then
-    for (Source& source : distribution.sources)
-      source.paths_used = source.paths;
   if (in.integer() != 0)
-    distribution.mixture = read_mixture(in, known);
+    distribution.mixture = read_mixture(in);
   read_members(in, known, kEnd, distribution);
   if (!in.at_end())
     throw std::out_of_range("distribution: bytes left over");

@@ -15,7 +15,7 @@ namespace kinship::store {
 /// passes through its 7 numbers.
 std::vector<std::uint8_t> encode_distribution(const Distribution& distribution);
 
-/// \return empty if the blob is not what encode_distribution makes, today or in an earlier version.
+/// \return empty if the blob is not what encode_distribution makes.
 std::optional<Distribution> decode_distribution(std::span<const std::uint8_t> blob);
 
 }  // namespace kinship::store

@@ -32,7 +32,7 @@ struct PathColumn {
                        kEncoding = 5, kCrc = 6, kWaypoints = 7, kReceivedMs = 8, kSceneId = 9;
 };
 
-/// All that schema 1 of SQLite has.
+/// What the checksum is over, and the checksum.
 inline constexpr std::string_view kPathContentColumns =
     "path.id, path.report_uuid, path.T_task_base, path.dof, path.waypoint_count, path.encoding, "
     "path.crc32c, path.waypoints ";

@@ -15,8 +15,7 @@ namespace kinship::store {
 std::int64_t mask_of(const TaskAxes& axes);
 TaskAxes axes_of(std::int64_t mask);
 
-/// Whether it has a row in `robot_geometry`. Robots without one have the checksums that they had
-/// before there were such rows.
+/// Whether it has a row in `robot_geometry`, which is then under its checksum.
 bool has_geometry_row(const RobotRecord& robot);
 
 /// The checksum of all of a robot.

@@ -1,6 +1,5 @@
 #include "server/store/values/scene_blob.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,22 +12,21 @@
 namespace kinship::store {
 namespace {
 
-// Written first. A scene without a constraint is written as ever, so that older servers read it.
-constexpr std::uint64_t kPlainFormat = 1;
-constexpr std::uint64_t kConstraintFormat = 2;
-/// Says whether there is a constraint, and of each thing whether it was fitted around a mesh. A
-/// scene of exact things is written as ever.
-constexpr std::uint64_t kApproximateFormat = 3;
+constexpr std::uint64_t kSceneFormat = 1;  // written first
 /// Of the largest scene: a solid takes at most 112 bytes beside its name here, 96 for
 /// kMaxSceneBytes.
 constexpr std::int64_t kMaxPlainBytes = std::int64_t{1} << 20U;
 
-void add(ByteWriter& out, const std::string& name, const Shape& shape, const Eigen::Isometry3d& T) {
+void add(ByteWriter& out, bool flag) { out.add(std::uint64_t{flag ? 1U : 0U}); }
+
+void add(ByteWriter& out, const std::string& name, const Shape& shape, const Eigen::Isometry3d& T,
+         bool approximate) {
   const ShapeNumbers numbers = to_numbers(shape);
   out.add(name).add(std::uint64_t{numbers.kind});
   for (const double size : numbers.sizes)
     out.add(size);
   out.add(std::span<const std::uint8_t>(pose_blob(T)));
+  add(out, approximate);
 }
 
 void add(ByteWriter& out, const TaskSpaceRegion& constraint) {
@@ -54,7 +52,7 @@ Eigen::Isometry3d read_pose(ByteReader& in) {
   return *T;
 }
 
-/// name, shape and pose, as SceneObject and HeldObject begin.
+/// A SceneObject or a HeldObject: name, shape, pose, and whether it was fitted around a mesh.
 template <typename Thing>
 Thing read_thing(ByteReader& in) {
   std::string name = in.text(kMaxLinkNameBytes);
@@ -63,7 +61,8 @@ Thing read_thing(ByteReader& in) {
   for (double& size : numbers.sizes)
     size = in.real();
   const Shape shape = to_shape(numbers);
-  return {std::move(name), shape, read_pose(in)};
+  const Eigen::Isometry3d T = read_pose(in);
+  return {std::move(name), shape, T, read_count(in, 1) == 1};
 }
 
 TaskSpaceRegion read_constraint(ByteReader& in) {
@@ -75,20 +74,8 @@ TaskSpaceRegion read_constraint(ByteReader& in) {
   return constraint;
 }
 
-bool is_approximate(const RecordedScene& scene) {
-  return std::ranges::any_of(scene.objects, &SceneObject::approximate) ||
-         std::ranges::any_of(scene.held, &HeldObject::approximate);
-}
-
-std::uint64_t format_of(const RecordedScene& scene) {
-  if (is_approximate(scene))
-    return kApproximateFormat;
-  return scene.constraint ? kConstraintFormat : kPlainFormat;
-}
-
 RecordedScene read_scene(ByteReader& in) {
-  const std::uint64_t format = in.integer();
-  if (format < kPlainFormat || format > kApproximateFormat)
+  if (in.integer() != kSceneFormat)
     throw std::out_of_range("scene: unknown format");
   RecordedScene scene;
   for (std::size_t count = read_count(in, kMaxSceneObjects); count > 0; --count)
@@ -99,14 +86,8 @@ RecordedScene read_scene(ByteReader& in) {
     std::string first = in.text(kMaxLinkNameBytes);
     scene.allowed_collisions.emplace_back(std::move(first), in.text(kMaxLinkNameBytes));
   }
-  if (format == kConstraintFormat || (format == kApproximateFormat && read_count(in, 1) == 1))
+  if (read_count(in, 1) == 1)
     scene.constraint = read_constraint(in);
-  if (format == kApproximateFormat) {
-    for (SceneObject& object : scene.objects)
-      object.approximate = read_count(in, 1) == 1;
-    for (HeldObject& held : scene.held)
-      held.approximate = read_count(in, 1) == 1;
-  }
   if (!in.at_end())
     throw std::out_of_range("scene: bytes after its end");
   return scene;
@@ -116,27 +97,19 @@ RecordedScene read_scene(ByteReader& in) {
 
 SceneBlob encode_scene(const RecordedScene& scene) {
   ByteWriter out;
-  const std::uint64_t format = format_of(scene);
-  out.add(format);
+  out.add(kSceneFormat);
   out.add(std::uint64_t{scene.objects.size()});
   for (const SceneObject& object : scene.objects)
-    add(out, object.name, object.shape, object.T_task_object);
+    add(out, object.name, object.shape, object.T_task_object, object.approximate);
   out.add(std::uint64_t{scene.held.size()});
   for (const HeldObject& held : scene.held)
-    add(out, held.name, held.shape, held.T_transfer_object);
+    add(out, held.name, held.shape, held.T_transfer_object, held.approximate);
   out.add(std::uint64_t{scene.allowed_collisions.size()});
   for (const auto& [first, second] : scene.allowed_collisions)
     out.add(first).add(second);
-  if (format == kApproximateFormat)
-    out.add(std::uint64_t{scene.constraint ? 1U : 0U});
+  add(out, scene.constraint.has_value());
   if (scene.constraint)
     add(out, *scene.constraint);
-  if (format == kApproximateFormat) {
-    for (const SceneObject& object : scene.objects)
-      out.add(std::uint64_t{object.approximate ? 1U : 0U});
-    for (const HeldObject& held : scene.held)
-      out.add(std::uint64_t{held.approximate ? 1U : 0U});
-  }
   SceneBlob blob;
   blob.size = std::ssize(out.bytes());
   if (std::optional<std::vector<std::uint8_t>> compressed = compress(out.bytes())) {

@@ -21,8 +21,7 @@ struct SceneBlob {
 };
 
 /// \param scene  keeps the rules of check_scene().
-/// \return the smaller of the two encodings; both keep every number, poses as 7 of them. A scene
-///         without a constraint has the bytes that it had before there were any.
+/// \return the smaller of the two encodings; both keep every number, poses as 7 of them.
 SceneBlob encode_scene(const RecordedScene& scene);
 
 /// \return empty if the blob is not what encode_scene makes, or breaks a rule of check_scene().

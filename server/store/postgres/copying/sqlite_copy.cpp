@@ -11,7 +11,7 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/opening/history.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
 
 namespace kinship::store::postgres {
 namespace {

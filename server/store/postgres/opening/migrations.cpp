@@ -9,6 +9,7 @@
 #include "server/store/postgres/rows/audit_rows.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
+#include "server/store/values/schema_texts.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -35,12 +36,10 @@ std::int64_t checked_version(Connection& connection, std::span<const Migration> 
       continue;
     const Digest known = digest_of(migrations[static_cast<std::size_t>(version - 1)]);
     if (!std::ranges::equal(row.column_blob(1), known.bytes))
-      throw Failure(ErrorCode::Storage, "it was made by another text of migration " +
-                                            std::to_string(version) + " than this binary has");
+      throw Failure(ErrorCode::Storage, "it was made by " + another_migration(version));
   }
   if (version > newest)
-    throw Failure(ErrorCode::Storage, "it has schema " + std::to_string(version) +
-                                          "; this binary knows up to " + std::to_string(newest));
+    throw Failure(ErrorCode::Storage, "it has schema " + newer_schema(version, newest));
   return version;
 }
 

@@ -320,8 +320,6 @@ int open_checked(sqlite3_vfs& base, const char* name, sqlite3_file* file, int fl
     opened->kind = name == nullptr ? FileKind::Other : kind_of(flags);
     if (opened->kind != FileKind::Other)
       opened->record = record_of(sqlite3_filename_database(name));
-    if (opened->kind == FileKind::Database && sqlite3_uri_boolean(name, "sealed", 0) != 0)
-      opened->sealed = true;
     const int code = base.xOpen(&base, name, opened->file(), flags, flags_out);
     if (code != SQLITE_OK) {
       if (opened->file()->pMethods != nullptr)

@@ -28,8 +28,7 @@ inline constexpr int kDamagedPage = 11 | (75 << 8);
 /// to what is SQLite's default when the file is opened.
 const char* checked_vfs();
 
-/// Seals a database that is still empty, as all stores are from schema 4 on. Others stay as they
-/// are.
+/// Seals a database that is still empty, as all stores are. Others stay as they are.
 void seal_if_empty(sqlite3& connection);
 /// Says of a database that is being copied to whether what it is a copy of is sealed.
 void set_sealed(sqlite3& connection, bool sealed);

@@ -7,7 +7,6 @@
 #include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/move_marks.hpp"

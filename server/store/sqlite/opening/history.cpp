@@ -67,7 +67,7 @@ History::History(const std::filesystem::path& file) : file_(file), witness_(file
 std::string History::find_rollback(const State& before, const RunLog& log, std::uint64_t position,
                                    const std::string& stored_identity) const {
   const std::string identity = identity_of(file_);
-  if (!stored_identity.empty() && !may_be_same_file(stored_identity, identity))
+  if (!may_be_same_file(stored_identity, identity))
     return "the file is a copy (inode and birth " + identity + ", was " + stored_identity + ")";
   const bool is_first_run = before.log.epoch() == Uuid{};
   std::optional<WitnessFile::Testimony> known;
@@ -99,8 +99,6 @@ void History::begin_run(Database& database) {
   if (!log || log->epoch() != epoch)
     log = RunLog(epoch);
   const std::string stored_identity = setting(database, kIdentity);
-  if (stored_identity.empty())  // of an older server
-    set(database, kIdentity, identity_of(file_));
   const std::uint64_t position = position_of(database);
   const std::string trouble = is_new ? "" : find_rollback(next, *log, position, stored_identity);
   if (!trouble.empty()) {

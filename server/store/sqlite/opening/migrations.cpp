@@ -12,14 +12,14 @@
 #include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/rows/audit_rows.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
+#include "server/store/values/schema_texts.hpp"
 
 namespace kinship::store {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x4B494E53;  // "KINS"; set by migration 1
-constexpr std::int64_t kFirstAudited = 6;            // schema that has the audit log
-constexpr std::int64_t kFirstSealed = 4;             // schema of which all pages bear checksums
 
 Digest text_digest(const Migration& migration) {
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(migration.text.data());
@@ -44,8 +44,7 @@ std::int64_t checked_version(Database& database, const std::filesystem::path& fi
   const std::int64_t version = database.integer("PRAGMA user_version");
   const auto newest = static_cast<std::int64_t>(migrations.size());
   if (version > newest)
-    refuse_store(file, "has schema " + std::to_string(version) + "; this binary knows up to " +
-                           std::to_string(newest));
+    refuse_store(file, "has schema " + newer_schema(version, newest));
   return version;
 }
 
@@ -61,8 +60,7 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
     const Digest known = text_digest(migrations[static_cast<std::size_t>(expected - 1)]);
     const Bytes stored = applied.column_blob(1);
     if (!std::equal(stored.begin(), stored.end(), known.bytes.begin(), known.bytes.end()))
-      refuse_store(file, "was made by another text of migration " + std::to_string(expected) +
-                             " than this binary has");
+      refuse_store(file, "was made by " + another_migration(expected));
   }
   if (expected != version)
     refuse_store(file, "says schema " + std::to_string(version) +
@@ -71,9 +69,9 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
 
 /// Without foreign keys while it lasts, which a table that is written anew would trip over: each
 /// migration leaves them as they were, which `kinshipd check` compares.
-/// \param before  the schema that the audit log tells this one from.
+/// \param is_noted  in the audit log.
 void apply(Database& database, const std::filesystem::path& file, const Migration& migration,
-           std::int64_t before) {
+           bool is_noted) {
   database.execute("PRAGMA foreign_keys = OFF");
   Transaction transaction(database, Transaction::Kind::Write);
   database.execute(std::string(migration.text));
@@ -83,36 +81,14 @@ void apply(Database& database, const std::filesystem::path& file, const Migratio
                 std::string_view(sqlite3_libversion()))
       .run();
   database.execute("PRAGMA user_version = " + std::to_string(migration.version));
-  note_migration(database, file, before, migration.version);
+  if (is_noted)
+    insert_audit(database,
+                 entry_of_migration(file.string(), migration.version - 1, migration.version));
   transaction.commit();
   database.execute("PRAGMA foreign_keys = ON");
 }
 
-}  // namespace
-
-std::int64_t known_schema(Database& database, const std::filesystem::path& file,
-                          std::span<const Migration> migrations) {
-  const std::int64_t version = checked_version(database, file, migrations);
-  if (version > 0)
-    check_history(database, file, version, migrations);
-  if (version >= kFirstSealed && !is_sealed(database.connection()))
-    refuse_store(file,
-                 "says in its header that its pages bear no checksums: the header is damaged");
-  return version;
-}
-
-void apply_missing(Database& database, const std::filesystem::path& file,
-                   std::span<const Migration> migrations) {
-  const std::int64_t version = known_schema(database, file, migrations);
-  for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
-    apply(database, file, migration,
-          version == 0 || migration.version <= kFirstAudited ? version : migration.version - 1);
-}
-
-std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version) {
-  return file.string() + ".backup-" + std::to_string(version);
-}
-
+/// Copies a database to backup_of_version().
 void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version) {
   const std::filesystem::path backup = backup_of_version(file, version);
   const std::filesystem::path partial = backup.string() + ".partial";
@@ -123,6 +99,44 @@ void keep_copy_of(Database& database, const std::filesystem::path& file, std::in
   sync_file(partial);
   std::filesystem::rename(partial, backup);
   sync_directory_of(backup);
+}
+
+}  // namespace
+
+std::int64_t known_schema(Database& database, const std::filesystem::path& file,
+                          std::span<const Migration> migrations) {
+  const std::int64_t version = checked_version(database, file, migrations);
+  if (version > 0)
+    check_history(database, file, version, migrations);
+  if (version > 0 && !is_sealed(database.connection()))
+    refuse_store(file,
+                 "says in its header that its pages bear no checksums: the header is damaged");
+  return version;
+}
+
+std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version) {
+  return file.string() + ".backup-" + std::to_string(version);
+}
+
+std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
+                                        std::span<const Migration> migrations, Keep keep) {
+  auto database = std::make_unique<Database>(file, Access::ReadWrite);
+  const std::int64_t version = known_schema(*database, file, migrations);
+  if (!is_sealed(database->connection()))  // what a killed process began is rolled back by now
+    database = std::make_unique<Database>(file, Access::ReadWrite);
+  if (!is_sealed(database->connection()))
+    refuse_store(file, "is an empty database of another program");
+  if (keep == Keep::Copy && version > 0 && version < std::ssize(migrations))
+    keep_copy_of(*database, file, version);
+  // The size of pages counts for a new file only.
+  database->execute("PRAGMA page_size = 4096; PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
+  // A rollback journal does not keep what free pages held: a cut in the middle would leave them
+  // torn, with checksums that are wrong.
+  if (keep == Keep::Copy)
+    database->execute("PRAGMA journal_mode = WAL");
+  for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
+    apply(*database, file, migration, version > 0);
+  return database;
 }
 
 void check_schema(Database& database, const std::filesystem::path& file,

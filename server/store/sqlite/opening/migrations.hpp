@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -20,23 +21,29 @@ struct Migration {
 std::span<const Migration> embedded_migrations();
 
 /// The schema of a file that this binary can read or migrate; 0 if the file is empty.
-/// \throws Failure(Storage) if the file is no Kinship store, is newer than `migrations`, or was
-///         made by a migration of another text.
+/// \throws Failure(Storage) if the file is no Kinship store, has pages without checksums, is newer
+///         than `migrations`, or was made by a migration of another text.
 std::int64_t known_schema(Database& database, const std::filesystem::path& file,
                           std::span<const Migration> migrations);
 
-/// Applies those of `migrations` that a database lacks, each in one transaction, and records each
-/// with the SHA-256 of its text, and in the audit log of a store that was there before. Keeps no
-/// copy.
+enum class Keep {
+  Copy,    ///< of a store that is migrated: FILE.backup-<version>
+  Nothing  ///< the file is a copy itself
+};
+
+/// Opens a store for the one who writes to it, a new one too, and applies those of `migrations`
+/// that it lacks, each in one transaction. Each is recorded with the SHA-256 of its text, and in
+/// the audit log of a store that was there before.
+///
+/// \param file  may be empty.
 /// \throws Failure(Storage) as known_schema() does; nothing is changed then.
-void apply_missing(Database& database, const std::filesystem::path& file,
-                   std::span<const Migration> migrations);
+std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
+                                        std::span<const Migration> migrations,
+                                        Keep keep = Keep::Copy);
 
-/// Where a database of this version is copied to before it is migrated.
+/// Where a database of this version is copied to before it is migrated. Under that name there is
+/// never half a copy.
 std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version);
-
-/// Copies a database to there. Under that name there is never half a copy.
-void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version);
 
 /// That nothing is to be changed: ours, at the newest version, same texts.
 /// \throws Failure(Storage) if not.

@@ -49,7 +49,7 @@ std::string robot_of(Database& database, const Digest& robot) {
                         query->column_integer(2));
 }
 
-/// Not before schema 6.
+/// What a restore replaces need not be a store.
 bool has_audit(Database& database) {
   return database.integer("SELECT count(*) FROM sqlite_master WHERE name = 'audit'") > 0;
 }
@@ -74,12 +74,6 @@ void note_maintenance(Database& database, const std::string& verb,
                       const std::filesystem::path& target, const std::string& before,
                       const std::string& after) {
   insert_audit(database, entry_of_maintenance(verb, target.string(), before, after));
-}
-
-void note_migration(Database& database, const std::filesystem::path& file, std::int64_t before,
-                    std::int64_t after) {
-  if (before > 0 && has_audit(database))
-    insert_audit(database, entry_of_migration(file.string(), before, after));
 }
 
 void copy_missing_audit(Database& database, Database& other) {

@@ -23,13 +23,8 @@ void note_maintenance(Database& database, const std::string& verb,
                       const std::filesystem::path& target, const std::string& before,
                       const std::string& after);
 
-/// Adds that the store has another schema now, once it is one that has the log.
-/// \param before  0: there was nothing, which is not noted.
-void note_migration(Database& database, const std::filesystem::path& file, std::int64_t before,
-                    std::int64_t after);
-
 /// Adds the entries that the log of `other` has and that of `database` has not, in their order,
-/// with the times that they have. Of a store from before schema 6 none.
+/// with the times that they have. Of what is no store none.
 void copy_missing_audit(Database& database, Database& other);
 
 /// As Store::rename_robot() says.

@@ -30,8 +30,6 @@ void take_row(const Statement& row, PathsRead& read) {
     read.damaged.push_back(row.column_integer(PathColumn::kId));
 }
 
-constexpr std::int64_t kFirstWithAside = 4;  // schema
-
 constexpr std::string_view kNotAside =
     " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
 
@@ -319,15 +317,12 @@ void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id) {
   batch.paths_changed(key.task_id, key.robot_id);
 }
 
-PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t after_id,
-                         std::int64_t limit) {
-  const std::string others =
-      schema < kFirstWithAside ? " AND damaged = 0 " : std::string(kNotAside);
+PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit) {
   PathsChecked checked;
   if (can_read([&] {
-        const auto query =
-            database.cached("SELECT " + std::string(kPathContentColumns) +
-                            "FROM path WHERE id > ?" + others + "ORDER BY id LIMIT ?");
+        const auto query = database.cached("SELECT " + std::string(kPathContentColumns) +
+                                           "FROM path WHERE id > ?" + std::string(kNotAside) +
+                                           "ORDER BY id LIMIT ?");
         query->bind_all(after_id, limit);
         while (query->step()) {
           checked.last_id = query->column_integer(PathColumn::kId);
@@ -338,9 +333,6 @@ PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t a
         return true;
       }))
     return checked;
-  if (schema < kFirstWithAside)
-    throw Failure(ErrorCode::Storage,
-                  "its paths cannot be read one by one in schema " + std::to_string(schema));
   return check_one_by_one(database, after_id, limit);
 }
 

@@ -80,9 +80,8 @@ struct PathsChecked {
 };
 
 /// Decodes the next paths with id > after_id, at most `limit`, retired ones too; those set aside
-/// are left out. Of a database of this schema, also an older one.
-PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t after_id,
-                         std::int64_t limit);
+/// are left out.
+PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit);
 
 /// Those of the newest `count` paths of all that are damaged and not set aside yet.
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);

@@ -62,7 +62,7 @@ std::vector<std::uint8_t> select_geometry(Database& database, std::int64_t robot
 }
 
 /// Empty if the row is not what insert_robot() wrote.
-std::optional<RobotRecord> read_robot(Database& database, const Statement& row, bool has_geometry) {
+std::optional<RobotRecord> read_robot(Database& database, const Statement& row) {
   RobotRecord robot;
   robot.digest = id_of<Digest>(row.column_blob(1));
   robot.dof = static_cast<std::uint32_t>(row.column_integer(3));
@@ -74,20 +74,17 @@ std::optional<RobotRecord> read_robot(Database& database, const Statement& row, 
   description.task_axes = axes_of(row.column_integer(7));
   description.urdf = row.column_text(10);
   select_parts(database, row.column_integer(0), description);
-  const std::vector<std::uint8_t> solids =
-      has_geometry ? select_geometry(database, row.column_integer(0), robot)
-                   : std::vector<std::uint8_t>();
+  const std::vector<std::uint8_t> solids = select_geometry(database, row.column_integer(0), robot);
   return complete_robot(std::move(robot), row.column_blob(6), solids, row.column_integer(9));
 }
 
 /// Nothing, also if the row lies on a damaged page.
-std::optional<RobotRecord> read_robot_of(Database& database, std::int64_t id,
-                                         bool has_geometry = true) {
+std::optional<RobotRecord> read_robot_of(Database& database, std::int64_t id) {
   try {
     const auto query = database.cached(std::string(kRobotColumns) + "WHERE id = ?");
     if (!query->bind(1, id).step())
       return std::nullopt;
-    return read_robot(database, *query, has_geometry);
+    return read_robot(database, *query);
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
@@ -251,13 +248,12 @@ std::optional<RobotRecord> select_robot(Database& database, const Digest& robot)
   return record;
 }
 
-RobotsRead select_robots(Database& database, bool has_geometry) {
+RobotsRead select_robots(Database& database) {
   // Both are in the index of labels.
   const auto query = database.cached("SELECT id, label FROM robot ORDER BY label");
   RobotsRead read;
   while (query->step()) {
-    std::optional<RobotRecord> robot =
-        read_robot_of(database, query->column_integer(0), has_geometry);
+    std::optional<RobotRecord> robot = read_robot_of(database, query->column_integer(0));
     if (!robot)
       read.damaged.emplace_back(query->column_text(1));
     else if (!is_removed_label(robot->description.label))

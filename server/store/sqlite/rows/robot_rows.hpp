@@ -39,7 +39,6 @@ struct RobotsRead {
   std::vector<RobotRecord> robots;
   std::vector<std::string> damaged;
 };
-/// \param has_geometry  false of a store from before schema 5.
-RobotsRead select_robots(Database& database, bool has_geometry = true);
+RobotsRead select_robots(Database& database);
 
 }  // namespace kinship::store

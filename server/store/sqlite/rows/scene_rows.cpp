@@ -33,18 +33,14 @@ std::vector<std::int64_t> ids_of(Database& database, Bytes content) {
 
 /// The next ids, at most `limit`, that are not set aside; from the index where the rows cannot be
 /// read.
-std::vector<std::int64_t> next_ids(Database& database, std::int64_t schema, std::int64_t after_id,
-                                   std::int64_t limit) {
-  constexpr std::int64_t kFirstWithAsideScenes = 4;
-  const std::string others =
-      schema < kFirstWithAsideScenes
-          ? " AND damaged = 0"
-          : " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 3 AND set_aside.id = scene.id)";
+std::vector<std::int64_t> next_ids(Database& database, std::int64_t after_id, std::int64_t limit) {
   std::vector<std::int64_t> ids;
   const auto collect = [&](const std::string& from) {
     ids.clear();
-    const auto query = database.cached("SELECT id FROM scene " + from + " WHERE id > ?" + others +
-                                       " ORDER BY id LIMIT ?");
+    const auto query =
+        database.cached("SELECT id FROM scene " + from +
+                        " WHERE id > ? AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 3"
+                        " AND set_aside.id = scene.id) ORDER BY id LIMIT ?");
     query->bind_all(after_id, limit);
     while (query->step())
       ids.push_back(query->column_integer(0));
@@ -52,7 +48,7 @@ std::vector<std::int64_t> next_ids(Database& database, std::int64_t schema, std:
   try {
     collect("");
   } catch (const SqliteError& error) {
-    if (!error.is_damage() || schema < kFirstWithAsideScenes)
+    if (!error.is_damage())
       throw;
     collect("INDEXED BY scene_by_content");
   }
@@ -112,10 +108,9 @@ bool is_scene_readable(Database& database, std::int64_t id) {
   return row && can_read_scene(database, *row);
 }
 
-ScenesChecked check_scenes(Database& database, std::int64_t schema, std::int64_t after_id,
-                           std::int64_t limit) {
+ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit) {
   ScenesChecked checked;
-  for (const std::int64_t id : next_ids(database, schema, after_id, limit)) {
+  for (const std::int64_t id : next_ids(database, after_id, limit)) {
     checked.last_id = id;
     ++checked.scenes;
     if (!can_read_scene(database, id))

@@ -32,8 +32,6 @@ struct ScenesChecked {
 };
 
 /// Decodes the next scenes with id > after_id, at most `limit`; those set aside are left out.
-/// Of a database of this schema, also an older one.
-ScenesChecked check_scenes(Database& database, std::int64_t schema, std::int64_t after_id,
-                           std::int64_t limit);
+ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit);
 
 }  // namespace kinship::store

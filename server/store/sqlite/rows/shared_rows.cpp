@@ -25,7 +25,7 @@ bool is_dropped(Database& database, std::int64_t path_id) {
   return query->bind(1, path_id).step() && query->column_integer(0) != 0;
 }
 
-/// Also of a path that was retired before there was a list of them.
+/// By its path: the list of retirements may have lost entries in a repair.
 bool is_path_retired(Database& database, const ExperienceKey& key, std::int64_t path_id) {
   const std::int64_t id = row_in_use(database, AsideKind::Path, path_id).value_or(path_id);
   if (const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id))

@@ -15,7 +15,6 @@
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/upkeep/restoration.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 

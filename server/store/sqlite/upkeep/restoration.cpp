@@ -21,7 +21,6 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 #include "server/store/sqlite/upkeep/store_repair.hpp"
@@ -32,7 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 
 void remove_with_companions(const fs::path& file) {
-  unlink((file.string() + ".sealing").c_str());
   for (const char* const companion : kCompanions)
     unlink((file.string() + companion).c_str());
   unlink(file.c_str());

@@ -21,9 +21,6 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::int64_t kFirstWithSetAside = 4;  // schema
-constexpr std::int64_t kFirstWithCap = 5;       // schema
-constexpr std::int64_t kFirstWithGeometry = 5;  // schema
 constexpr std::size_t kMaxMessages = 100;
 constexpr double kScanShare = 0.2;   // of the time
 constexpr double kPagesShare = 0.5;  // with SQLite's own check, which tells no progress
@@ -60,19 +57,15 @@ Rule rule_of_sums(const std::string& mode, int code, const std::string& counted)
               differs("_checks_of_solved")};
 }
 
-/// Of a row of `table`, in schema 4 by `kind`.
-std::string not_aside(std::int64_t schema, const std::string& table, int kind) {
-  if (schema < kFirstWithSetAside)
-    return table == "path" ? "path.damaged = 0" : "TRUE";
+std::string not_aside(const std::string& table, int kind) {
   return "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = " + std::to_string(kind) +
          " AND set_aside.id = " + table + ".id)";
 }
 
-/// What holds since paths may be retired (schema 2), and of scenes since there are any (3).
-void add_rules_since_retirement(std::vector<Rule>& rules, std::int64_t schema,
-                                const std::string& counted) {
-  const std::string path_kept = not_aside(schema, "path", 1);
-  const std::string attempt_kept = not_aside(schema, "attempt", 2);
+/// Of paths beside their attempts, and of the sums over these.
+void add_rules_of_attempts(std::vector<Rule>& rules, const std::string& counted) {
+  const std::string path_kept = not_aside("path", 1);
+  const std::string attempt_kept = not_aside("attempt", 2);
   rules.push_back({"path",
                    "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
                    "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
@@ -82,21 +75,19 @@ void add_rules_since_retirement(std::vector<Rule>& rules, std::int64_t schema,
   rules.push_back({"evicted_distribution",
                    "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
                    "FROM evicted_distribution JOIN distribution USING (digest) WHERE " +
-                       not_aside(schema, "distribution", 4)});
-  if (schema > 2)
-    rules.push_back({"path",
-                     "SELECT 'path ' || path.id || ': has another scene than its attempt' "
-                     "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
-                     "WHERE " +
-                         path_kept + " AND " + attempt_kept +
-                         " AND path.scene_id IS NOT attempt.scene_id"});
+                       not_aside("distribution", 4)});
+  rules.push_back({"path",
+                   "SELECT 'path ' || path.id || ': has another scene than its attempt' "
+                   "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                   "WHERE " +
+                       path_kept + " AND " + attempt_kept +
+                       " AND path.scene_id IS NOT attempt.scene_id"});
   for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)})
     rules.push_back(rule_of_sums(mode, code, counted));
 }
 
-/// What holds since there may be a cap of paths (schema 5), and distributions make room.
-void add_rules_since_cap(std::vector<Rule>& rules, std::int64_t schema,
-                         const std::string& counted) {
+/// Of what makes room: paths beyond a cap, distributions by their last use.
+void add_rules_of_room(std::vector<Rule>& rules, const std::string& counted) {
   // What came again after damage may have been counted twice.
   rules.push_back(
       {"experience",
@@ -107,33 +98,29 @@ void add_rules_since_cap(std::vector<Rule>& rules, std::int64_t schema,
            counted +
            ") + (SELECT count(*) FROM path WHERE path.task_id = experience.task_id "
            "AND path.robot_id = experience.robot_id AND retired_ms IS NOT NULL AND " +
-           std::string(kIsDropped) + " AND " + not_aside(schema, "path", 1) +
+           std::string(kIsDropped) + " AND " + not_aside("path", 1) +
            ") AS found FROM experience) WHERE dropped < found"});
   rules.push_back(
       {"distribution",
        "SELECT 'distribution ' || id || ': nothing says when it was used' FROM distribution "
        "WHERE id NOT IN (SELECT id FROM distribution_use) AND " +
-           not_aside(schema, "distribution", 4)});
+           not_aside("distribution", 4)});
   rules.push_back({"distribution_use",
                    "SELECT 'distribution ' || id || ': used, but not there' FROM distribution_use "
                    "WHERE id NOT IN (SELECT id FROM distribution)"});
 }
 
-std::vector<Rule> rules_of(std::int64_t schema) {
-  const std::string path_kept = not_aside(schema, "path", 1);
-  const std::string attempt_kept = not_aside(schema, "attempt", 2);
-  const std::string in_use = path_kept + (schema > 1 ? " AND retired_ms IS NULL" : "");
+std::vector<Rule> make_rules() {
+  const std::string path_kept = not_aside("path", 1);
+  const std::string attempt_kept = not_aside("attempt", 2);
+  const std::string in_use = path_kept + " AND retired_ms IS NULL";
   // An attempt that came again stands there twice.
   const std::string counted =
-      schema < kFirstWithSetAside
-          ? "TRUE"
-          : "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id"
-            " AND replaced_by IS NOT NULL)";
+      "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id"
+      " AND replaced_by IS NOT NULL)";
   // A repair may have left it without.
   const std::string is_orphan =
-      schema < kFirstWithSetAside
-          ? "FALSE"
-          : "EXISTS (SELECT 1 FROM set_aside WHERE kind = 5 AND set_aside.id = path.id)";
+      "EXISTS (SELECT 1 FROM set_aside WHERE kind = 5 AND set_aside.id = path.id)";
   std::vector<Rule> rules = {
       {"path",
        "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
@@ -144,9 +131,9 @@ std::vector<Rule> rules_of(std::int64_t schema) {
            " AND NOT " + is_orphan},
       {"attempt",
        "SELECT 'attempt ' || attempt.id || ': its path is missing' FROM attempt "
-       "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL AND " +
-           // It was beyond the cap.
-           std::string(schema < kFirstWithCap ? "" : "NOT (status = 1 AND path_id IS NULL) AND ") +
+       "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL "
+       // It was beyond the cap.
+       "AND NOT (status = 1 AND path_id IS NULL) AND " +
            attempt_kept},
       {"attempt",
        "SELECT 'attempt ' || attempt.id || ': its path is of another robot or task' FROM attempt "
@@ -164,10 +151,8 @@ std::vector<Rule> rules_of(std::int64_t schema) {
            "FROM attempt WHERE attempt.task_id = experience.task_id "
            "AND attempt.robot_id = experience.robot_id AND " +
            counted + ") AS found FROM experience) WHERE attempts <> found"}};
-  if (schema > 1)
-    add_rules_since_retirement(rules, schema, counted);
-  if (schema >= kFirstWithCap)
-    add_rules_since_cap(rules, schema, counted);
+  add_rules_of_attempts(rules, counted);
+  add_rules_of_room(rules, counted);
   return rules;
 }
 
@@ -195,15 +180,15 @@ class Checker {
 
   Database* database_;
   const std::function<void(double)>* progress_;
-  std::int64_t schema_ = 0;
   StoreCheck check_;
   std::set<std::string> unread_;  // tables with a part that no check could read
 };
 
 StoreCheck Checker::run(const std::filesystem::path& file) {
   check_.file = file.string();
+  std::int64_t schema = 0;
   try {
-    schema_ = known_schema(*database_, file, embedded_migrations());
+    schema = known_schema(*database_, file, embedded_migrations());
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
@@ -214,21 +199,19 @@ StoreCheck Checker::run(const std::filesystem::path& file) {
     check_pages();
     return std::move(check_);
   }
-  if (schema_ == 0)
+  if (schema == 0)
     throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
-  check_.schema_version = static_cast<std::uint32_t>(schema_);
+  check_.schema_version = static_cast<std::uint32_t>(schema);
   count_tables();
-  if (schema_ >= kFirstWithSetAside)
-    check_pages();
+  check_pages();
   guarded("", [&] { check_structure(); });
   guarded("setting", [&] { check_epoch(); });
   guarded("robot", [&] { check_robots(); });
   (*progress_)(kPagesShare);
   guarded("path", [&] { check_paths(); });
-  if (schema_ > 2)
-    guarded("scene", [&] { check_scenes(); });
+  guarded("scene", [&] { check_scenes(); });
   guarded("distribution", [&] { check_distributions(); });
-  for (const Rule& rule : rules_of(schema_))
+  for (const Rule& rule : make_rules())
     guarded(rule.table, [&] {
       Statement query(database_->connection(), rule.query);
       while (query.step())
@@ -273,13 +256,10 @@ void Checker::count_tables() {
     });
   }
   guarded("path", [&] {
-    check_.damaged_paths = static_cast<std::uint64_t>(database_->integer(
-        schema_ < kFirstWithSetAside ? "SELECT count(*) FROM path WHERE damaged = 1"
-                                     : "SELECT count(*) FROM set_aside WHERE kind = 1"));
-    if (schema_ > 1)
-      check_.retired_paths = static_cast<std::uint64_t>(
-          database_->integer("SELECT count(*) FROM path WHERE retired_ms IS NOT NULL AND " +
-                             not_aside(schema_, "path", 1)));
+    check_.damaged_paths = static_cast<std::uint64_t>(
+        database_->integer("SELECT count(*) FROM set_aside WHERE kind = 1"));
+    check_.retired_paths = static_cast<std::uint64_t>(database_->integer(
+        "SELECT count(*) FROM path WHERE retired_ms IS NOT NULL AND " + not_aside("path", 1)));
   });
   check_.bytes = static_cast<std::uint64_t>(database_->integer("PRAGMA page_count") *
                                             database_->integer("PRAGMA page_size"));
@@ -335,7 +315,7 @@ void Checker::check_epoch() {
 }
 
 void Checker::check_robots() {
-  for (const std::string& label : select_robots(*database_, schema_ >= kFirstWithGeometry).damaged)
+  for (const std::string& label : select_robots(*database_).damaged)
     note("robot", "'" + label + "': its row is damaged (checksum)");
 }
 
@@ -343,8 +323,8 @@ void Checker::check_paths() {
   constexpr std::int64_t kPage = 1000;
   const std::int64_t last =
       std::max<std::int64_t>(database_->integer("SELECT max(id) FROM path"), 1);
-  for (PathsChecked page = store::check_paths(*database_, schema_, 0, kPage); page.paths > 0;
-       page = store::check_paths(*database_, schema_, page.last_id, kPage)) {
+  for (PathsChecked page = store::check_paths(*database_, 0, kPage); page.paths > 0;
+       page = store::check_paths(*database_, page.last_id, kPage)) {
     for (const std::int64_t id : page.damaged)
       note("path", std::to_string(id) + ": damaged (checksum)");
     (*progress_)(kPagesShare +
@@ -356,8 +336,8 @@ void Checker::check_scenes() {
   constexpr std::int64_t kPage = 1000;
   const std::int64_t last =
       std::max<std::int64_t>(database_->integer("SELECT max(id) FROM scene"), 1);
-  for (ScenesChecked page = store::check_scenes(*database_, schema_, 0, kPage); page.scenes > 0;
-       page = store::check_scenes(*database_, schema_, page.last_id, kPage)) {
+  for (ScenesChecked page = store::check_scenes(*database_, 0, kPage); page.scenes > 0;
+       page = store::check_scenes(*database_, page.last_id, kPage)) {
     for (const std::int64_t id : page.damaged)
       note("scene", std::to_string(id) + ": damaged (checksum)");
     (*progress_)(kPagesShare + kPathsShare +
@@ -368,8 +348,7 @@ void Checker::check_scenes() {
 void Checker::check_distributions() {
   std::vector<std::pair<std::int64_t, Digest>> rows;  // both are in an index
   Statement query(database_->connection(), "SELECT id, digest FROM distribution WHERE " +
-                                               not_aside(schema_, "distribution", 4) +
-                                               " ORDER BY digest");
+                                               not_aside("distribution", 4) + " ORDER BY digest");
   while (query.step())
     rows.emplace_back(query.column_integer(0), id_of<Digest>(query.column_blob(1)));
   for (const auto& [row, digest] : rows) {

@@ -39,14 +39,9 @@ void bind_raw(Statement& statement, int index, const RawValue& value) {
 struct TableShape {
   std::string_view name;
   std::size_t columns;
-  std::size_t least_columns;  ///< a row from before the last ones were added has fewer
 };
-constexpr std::array<TableShape, 6> kShapes = {{{"task", 2, 2},
-                                                {"scene", 7, 7},
-                                                {"robot", 11, 11},
-                                                {"audit", 12, 12},
-                                                {"path", 16, 15},
-                                                {"attempt", 22, 22}}};
+constexpr std::array<TableShape, 6> kShapes = {
+    {{"task", 2}, {"scene", 7}, {"robot", 11}, {"audit", 12}, {"path", 16}, {"attempt", 22}}};
 constexpr int kSqlError = 1;  // SQLITE_ERROR: no such table, no such index
 constexpr std::size_t kDistributionColumns = 14, kDistributionDigest = 1, kDistributionRevision = 2;
 
@@ -148,19 +143,19 @@ void Salvager::take(const RawRow& row) {
     return;
   }
   for (const TableShape& shape : kShapes)
-    if (columns >= shape.least_columns && columns <= shape.columns)
+    if (columns == shape.columns)
       insert(shape, row);
 }
 
 /// Content that was damaged before its page was sealed.
 void Salvager::set_bad_content_aside() const {
-  constexpr std::int64_t kRows = 1000, kSchema = 4;
-  for (PathsChecked page = check_paths(*target_, kSchema, 0, kRows); page.paths > 0;
-       page = check_paths(*target_, kSchema, page.last_id, kRows))
+  constexpr std::int64_t kRows = 1000;
+  for (PathsChecked page = check_paths(*target_, 0, kRows); page.paths > 0;
+       page = check_paths(*target_, page.last_id, kRows))
     for (const std::int64_t id : page.damaged)
       put_aside(*target_, AsideKind::Path, id);
-  for (ScenesChecked page = check_scenes(*target_, kSchema, 0, kRows); page.scenes > 0;
-       page = check_scenes(*target_, kSchema, page.last_id, kRows))
+  for (ScenesChecked page = check_scenes(*target_, 0, kRows); page.scenes > 0;
+       page = check_scenes(*target_, page.last_id, kRows))
     for (const std::int64_t id : page.damaged)
       put_aside(*target_, AsideKind::Scene, id);
 }
@@ -418,8 +413,7 @@ std::size_t sealed_page_size(Database& source) {
         return size;
   }
   throw Failure(ErrorCode::Storage,
-                "its pages bear no checksums: it is from before schema 4, or no store at all; "
-                "restore a backup");
+                "its pages bear no checksums: it is no store; restore a backup");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct Salvaged {
 /// and is lost stands there as a row without content, set aside, until its owner brings it again: a
 /// robot at its registration, a path or a scene with a report.
 ///
-/// \param source  of schema 4 or later; may be damaged wherever it is.
+/// \param source  may be damaged wherever it is.
 /// \param target  an empty store of today's schema.
 /// \throws Failure(Storage) if the source has no checksums, so that nobody knows what is damaged.
 Salvaged salvage(Database& source, Database& target, const Progress& progress);

@@ -18,11 +18,12 @@ def document(**others) -> str:
     return json.dumps({
         "id": "ab" * 32, "revision": 3, "store_epoch": "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "task": "sweep",
         "robot": "cd" * 32, "T_task_base": [1, 2, 3, 0, 0, math.sqrt(0.5), math.sqrt(0.5)], "profile": "default",
-        "selection": {"sources": [], "weighting": "sources", "since_ms": 0}, "engines": "test", "state": "ready",
+        "selection": {"sources": [], "weighting": "sources", "since_ms": 0}, "engines": "test", "state": "ready", "reason": "",
         "sources": [], "configurations": 500, "weights": WEIGHTS, "means": MEANS,
         "covariances": np.asarray(COVARIANCES).tolist(), "limits": [[-9, 9]] * 3, "cuts": None, "k_curve": None,
         "held_out_score": None, "recommended_share": 0.75, "guided_share": 0.75, "evidence": "none", "guided": None,
-        "control": None, "recent": [], "fitted_ms": 1, "transfer_time_s": 0, "fit_time_s": 0, "fit": None, **others})
+        "control": None, "recent": [], "fitted_ms": 1, "transfer_time_s": 0, "fit_time_s": 0, "fit": None,
+        "filters": "", **others})
 
 
 def density_written_out(q, weights, means, covariances):

@@ -29,11 +29,12 @@ def around(q, digest) -> kinship.Distribution:
     return kinship.Distribution.from_json(json.dumps({
         "id": "ab" * 32, "revision": 3, "store_epoch": "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "task": "sweep",
         "robot": digest, "T_task_base": None, "profile": "default",
-        "selection": {"sources": [], "weighting": "sources", "since_ms": 0}, "engines": "test", "state": "ready",
+        "selection": {"sources": [], "weighting": "sources", "since_ms": 0}, "engines": "test", "state": "ready", "reason": "",
         "sources": [], "configurations": 500, "weights": [1.0], "means": [list(q)],
         "covariances": [np.diag([0.5] * len(q)).tolist()], "limits": [[-6, 6]] * len(q), "cuts": None, "k_curve": None,
         "held_out_score": None, "recommended_share": 0.75, "guided_share": 0.75, "evidence": "none", "guided": None,
-        "control": None, "recent": [], "fitted_ms": 1, "transfer_time_s": 0, "fit_time_s": 0, "fit": None}))
+        "control": None, "recent": [], "fitted_ms": 1, "transfer_time_s": 0, "fit_time_s": 0, "fit": None,
+        "filters": ""}))
 
 
 class OfAUr10e(unittest.TestCase):

@@ -242,7 +242,7 @@ TEST_F(Carry, ALongListOfRetirementsIsToldPieceByPiece) {
   EXPECT_EQ(carry_retirements(way, retired_, {.retirements = 20}), kPaths);
   EXPECT_EQ(told, (std::vector<std::size_t>{20, 20, 10}));
   EXPECT_EQ(rests, 3);
-  // The same where no list says so: as of a store from before there was one.
+  // The same where the list does not say so: as of one that lost entries in a repair.
   const auto other = store::open_sqlite_store(directory_ / "other.db");
   ASSERT_TRUE(other->register_robot(panda_));
   for (std::uint64_t number = 1; number <= kPaths; ++number)

@@ -15,10 +15,6 @@
 #include "server/store/sqlite/database/page_seal.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/files/store_file.hpp"
-#include "server/store/sqlite/opening/connection.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
-#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::checked_vfs_test {
@@ -206,26 +202,6 @@ TEST_F(CheckedWal, IsReadAfterARecovery) {
   killed.execute("PRAGMA wal_checkpoint(TRUNCATE)");
   Database reader(copy, Access::ReadOnly);
   EXPECT_EQ(code_of_reading(reader), SQLITE_OK);
-}
-
-TEST(SealStore, AnOlderStoreIsSealedWhenItIsMigrated) {
-  const test::TemporaryDirectory directory;
-  const fs::path file = directory / "a%b?c#d.db";
-  fs::copy_file(test::source_dir() + "/tests/golden/store-3.db", file);
-  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
-  const fs::perms before = fs::status(file).permissions();
-  {
-    const auto database = open_migrated(file, embedded_migrations());
-    EXPECT_TRUE(is_sealed(database->connection()));
-    EXPECT_EQ(database->integer("SELECT integrity_check = 'ok' FROM pragma_integrity_check"), 1);
-    EXPECT_EQ(database->integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
-    EXPECT_EQ(database->integer("SELECT count(*) FROM attempt"), 11);
-  }
-  EXPECT_EQ(fs::status(file).permissions(), before);
-  EXPECT_FALSE(fs::exists(file.string() + ".sealing"));
-  Database kept(file.string() + ".backup-3", Access::ReadOnly);
-  EXPECT_FALSE(is_sealed(kept.connection()));
-  EXPECT_EQ(kept.integer("SELECT count(*) FROM attempt"), 11);
 }
 
 /// Calls that wrote something, of this process so far.

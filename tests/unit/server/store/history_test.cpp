@@ -6,7 +6,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -234,20 +233,6 @@ TEST_F(HistoryOfClients, AMarkThatTheStoreNeverMadeChangesNothing) {
     EXPECT_FALSE(store_->begin_epoch_if_lost(forged)) << i;
   }
   EXPECT_EQ(store_->epoch(), epoch_);
-}
-
-TEST_F(HistoryTest, AStoreOfAnOlderServerKeepsItsEpochAndIsMarkedFromNowOn) {
-  report(1, 3);
-  const Uuid epoch = store_->epoch();
-  store_.reset();
-  Database(file_, Access::ReadWrite).execute("DELETE FROM setting WHERE key <> 'epoch'");
-  fs::remove(witness_);
-  open();
-  EXPECT_EQ(store_->epoch(), epoch);
-  const HistoryMark mark = store_->point().mark;
-  open();
-  EXPECT_EQ(store_->epoch(), epoch);
-  EXPECT_FALSE(store_->has_lost(mark));
 }
 
 TEST_F(HistoryTest, ADamagedWitnessIsNone) {

@@ -8,7 +8,6 @@
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
-#include "tests/support/places.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -181,16 +180,6 @@ TEST_F(Maintenance, AStoreOfAKilledServerIsCheckedWithItsWal) {
   EXPECT_EQ(open_sqlite_store(elsewhere / "store.db")->status().attempts, 9U);
 }
 
-TEST_F(Maintenance, AnOlderStoreIsCheckedAsItIs) {
-  const fs::path old = directory_ / "old.db";
-  fs::copy_file(test::source_dir() + "/tests/golden/store-1.db", old);
-  const StoreCheck check = check_store(old, ignore);
-  EXPECT_EQ(check.schema_version, 1U);
-  EXPECT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
-  EXPECT_EQ(backup_store(old, copy_, ignore), fs::file_size(old));
-  EXPECT_EQ(check_store(copy_, ignore).schema_version, 1U);
-}
-
 TEST_F(Maintenance, EveryVerbRefusesWhatIsMissingOpenOrNoStore) {
   const auto each = [&](const fs::path& file) {
     return std::vector<Error>{refusal([&] { check_store(file, ignore); }),
@@ -299,24 +288,25 @@ TEST_F(Maintenance, TwoRestoresInOneSecondKeepBothStoresAndNameThem) {
   EXPECT_EQ(check_store(second.replaced, ignore).epoch, first.epoch);
 }
 
-TEST_F(Maintenance, AnOlderBackupIsMigratedOnItsWay) {
-  restore_store(test::source_dir() + "/tests/golden/store-1.db", file_, ignore);
-  const StoreCheck check = check_store(file_, ignore);
-  EXPECT_EQ(check.schema_version, embedded_migrations().size());
-  EXPECT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
+TEST_F(Maintenance, AStoreOfTodayIsNotMigrated) {
+  const Migrated migrated = migrate_store(file_);
+  EXPECT_EQ(migrated.from, embedded_migrations().size());
+  EXPECT_EQ(migrated.to, migrated.from);
+  EXPECT_TRUE(migrated.backup.empty());
 }
 
-TEST_F(Maintenance, AMigrationKeepsTheStoreAsItWas) {
-  const fs::path old = directory_ / "old.db";
-  fs::copy_file(test::source_dir() + "/tests/golden/store-1.db", old);
-  const Migrated migrated = migrate_store(old);
-  EXPECT_EQ(migrated.from, 1U);
-  EXPECT_EQ(migrated.to, embedded_migrations().size());
-  EXPECT_EQ(check_store(migrated.backup, ignore).schema_version, 1U);
-  EXPECT_EQ(check_store(old, ignore).problems, 0U);
-  const Migrated again = migrate_store(old);
-  EXPECT_EQ(again.from, again.to);
-  EXPECT_TRUE(again.backup.empty());
+TEST_F(Maintenance, EveryVerbRefusesAStoreOfANewerSchema) {
+  edit("PRAGMA user_version = 9; INSERT INTO setting VALUES ('newer', '')");
+  for (const Error& error : {refusal([&] { check_store(file_, ignore); }),
+                             refusal([&] { backup_store(file_, copy_, ignore); }),
+                             refusal([&] { migrate_store(file_); }),
+                             refusal([&] { restore_store(file_, directory_ / "new", ignore); })}) {
+    EXPECT_EQ(error.code, ErrorCode::Storage);
+    EXPECT_NE(error.message.find("has schema 9; this binary knows up to 1; "), std::string::npos)
+        << error.message;
+    EXPECT_NE(error.message.find("'kinship paths export'"), std::string::npos) << error.message;
+  }
+  EXPECT_FALSE(fs::exists(copy_));
 }
 
 }  // namespace

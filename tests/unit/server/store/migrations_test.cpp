@@ -1,6 +1,7 @@
 #include "server/store/sqlite/opening/migrations.hpp"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <array>
 #include <fstream>
@@ -10,7 +11,6 @@
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
-#include "server/store/sqlite/opening/seal_store.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -78,22 +78,15 @@ TEST_F(Migrations, OfAStoreThatWasThereAreInItsAuditLog) {
                    before + "' AND became = '" + after + "' AND target = '" + file_.string() +
                    "' AND client LIKE 'kinshipd of user %'");
   };
-  const auto known = embedded_migrations();
-  const std::int64_t newest = std::ssize(known);
-  run(known.first(3));
-  run(known.first(6));
-  EXPECT_EQ(entries("schema 3", "schema 6"), 1);
-  run(known);
-  std::vector<Migration> next(known.begin(), known.end());
-  next.push_back({newest + 1, "broken", "CREATE TABLE extra (x INTEGER); CREATE nonsense;"});
-  const std::int64_t before = integer("SELECT count(*) FROM audit");
-  EXPECT_THROW(run(next), SqliteError);
-  EXPECT_EQ(integer("SELECT count(*) FROM audit"), before) << "in the transaction of the migration";
-  next.back() = {newest + 1, "extra", "CREATE TABLE extra (x INTEGER) STRICT;"};
-  run(next);
-  EXPECT_EQ(entries("schema " + std::to_string(newest), "schema " + std::to_string(newest + 1)), 1);
-  run(next);
-  EXPECT_EQ(integer("SELECT count(*) FROM audit"), before + 1);
+  const Migration third{3, "0003_more", "CREATE TABLE more (x INTEGER) STRICT;"};
+  run(std::array{first_});
+  EXPECT_THROW(run(std::array{first_, kBroken}), SqliteError);
+  EXPECT_EQ(integer("SELECT count(*) FROM audit"), 0) << "in the transaction of the migration";
+  run(std::array{first_, kSecond, third});
+  EXPECT_EQ(entries("schema 1", "schema 2"), 1);
+  EXPECT_EQ(entries("schema 2", "schema 3"), 1);
+  run(std::array{first_, kSecond, third});
+  EXPECT_EQ(integer("SELECT count(*) FROM audit"), 2);
 }
 
 TEST_F(Migrations, OfANewStoreAreNot) {
@@ -112,6 +105,13 @@ TEST_F(Migrations, KeepACopyOfAnOlderStore) {
   EXPECT_EQ(copy.integer("SELECT count(*) FROM task"), 1);
 }
 
+TEST_F(Migrations, OfACopyKeepNoCopyOfIt) {
+  run(std::array{first_});
+  open_migrated(file_, std::array{first_, kSecond}, Keep::Nothing);
+  EXPECT_EQ(integer("PRAGMA user_version"), 2);
+  EXPECT_FALSE(std::filesystem::exists(backup()));
+}
+
 TEST_F(Migrations, ThatFailLeaveNothingBehind) {
   run(std::array{first_});
   EXPECT_THROW(run(std::array{first_, kBroken}), SqliteError);
@@ -123,8 +123,11 @@ TEST_F(Migrations, ThatFailLeaveNothingBehind) {
 
 TEST_F(Migrations, RefuseANewerStore) {
   run(std::array{first_, kSecond});
-  EXPECT_NE(refusal(std::array{first_}).find("has schema 2; this binary knows up to 1"),
-            std::string::npos);
+  EXPECT_NE(refusal(std::array{first_})
+                .find("has schema 2; this binary knows up to 1; serve it with the program that "
+                      "wrote it, 'kinship paths export' there and 'kinship paths import'"),
+            std::string::npos)
+      << refusal(std::array{first_});
   EXPECT_EQ(integer("PRAGMA user_version"), 2);
 }
 
@@ -132,8 +135,9 @@ TEST_F(Migrations, RefuseAnEditedHistory) {
   run(std::array{first_});
   Migration edited = first_;
   edited.text = "-- another text";
-  EXPECT_NE(refusal(std::array{edited, kSecond}).find("another text of migration 1"),
-            std::string::npos);
+  const std::string why = refusal(std::array{edited, kSecond});
+  EXPECT_NE(why.find("another text of migration 1"), std::string::npos) << why;
+  EXPECT_NE(why.find("'kinship paths export'"), std::string::npos) << why;
   EXPECT_FALSE(std::filesystem::exists(backup()));
   Database(file_, Access::ReadWrite).execute("DELETE FROM schema_migration");
   EXPECT_NE(refusal(std::array{first_}).find("records migrations up to 0"), std::string::npos);
@@ -143,6 +147,14 @@ TEST_F(Migrations, RefuseAFileOfSomebodyElse) {
   Database(file_, Access::Create).execute("CREATE TABLE t (x)");
   EXPECT_NE(refusal(embedded_migrations()).find("no Kinship store"), std::string::npos);
   EXPECT_EQ(integer("SELECT count(*) FROM sqlite_master"), 1);
+  std::filesystem::remove(file_);
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(file_.c_str(), &other), SQLITE_OK);
+  sqlite3_exec(other, "VACUUM", nullptr, nullptr, nullptr);
+  sqlite3_close(other);
+  EXPECT_NE(refusal(embedded_migrations()).find("an empty database of another program"),
+            std::string::npos)
+      << refusal(embedded_migrations());
   std::ofstream(file_) << std::string(5000, 'x');
   EXPECT_NE(refusal(embedded_migrations()).find("no SQLite database"), std::string::npos);
 }

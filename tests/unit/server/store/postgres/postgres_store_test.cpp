@@ -247,10 +247,10 @@ TEST_F(PostgresStoreTest, AReportThatComesWhileOthersRetireItIsRetired) {
   EXPECT_TRUE(other->read_paths(robot_.digest, "shelf", {.limit = 10}).empty());
 }
 
-TEST_F(PostgresStoreTest, ARetirementIsListedAlsoIfItIsOfBeforeThereWasAList) {
+TEST_F(PostgresStoreTest, ARetiredPathIsToldAlsoWhereTheListLacksIt) {
   test::report(*store_, {attempt(1), attempt(2)});
   ASSERT_TRUE(store_->retire_path(attempt(1).report_uuid));
-  sql("DELETE FROM retired_report");  // as of a store of an older server that was migrated
+  sql("DELETE FROM retired_report");
   const Feed<ArrivedReport> feed = store_->list_arrivals("", "", 10);
   ASSERT_EQ(feed.rows.size(), 2U);
   EXPECT_TRUE(feed.rows[0].is_retired);

@@ -94,6 +94,14 @@ TEST(DistributionBlob, RefusesCutsAndScoresThatNoFitWrites) {
     EXPECT_FALSE(decode_distribution(encode_distribution(wrong)));
 }
 
+TEST(DistributionBlob, RefusesAnotherFormat) {
+  std::vector<std::uint8_t> blob = encode_distribution(example());
+  for (const std::uint8_t format : {std::uint8_t{0}, std::uint8_t{2}}) {
+    blob[0] = format;
+    EXPECT_FALSE(decode_distribution(blob)) << int{format};
+  }
+}
+
 TEST(DistributionBlob, RefusesEveryTruncationAndAnyByteMore) {
   std::vector<std::uint8_t> blob = encode_distribution(example());
   const std::span<const std::uint8_t> all(blob);

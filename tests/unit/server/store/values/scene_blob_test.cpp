@@ -55,7 +55,7 @@ TEST(SceneBlob, ASceneOfEqualThingsIsCompressed) {
   EXPECT_EQ(decode(blob)->objects.size(), 30U);
 }
 
-TEST(SceneBlob, OnlyAConstraintMakesFormatTwo) {
+TEST(SceneBlob, AConstraintComesBackWithItsInfiniteBounds) {
   RecordedScene scene;
   const SceneBlob without = encode_scene(scene);
   scene.constraint.emplace();
@@ -66,13 +66,22 @@ TEST(SceneBlob, OnlyAConstraintMakesFormatTwo) {
   EXPECT_EQ(plain(without), (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0,  //
                                                        0, 0, 0, 0, 0, 0, 0, 0,  //
                                                        0, 0, 0, 0, 0, 0, 0, 0,  //
+                                                       0, 0, 0, 0, 0, 0, 0, 0,  //
                                                        0, 0, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(plain(with).front(), 2);
   EXPECT_EQ(with.size, without.size + 2 * 56 + 12 * 8);
   EXPECT_FALSE(decode(without)->constraint);
   const auto read = decode(with);
   ASSERT_TRUE(read && read->constraint);
   EXPECT_EQ(read->constraint->bounds, scene.constraint->bounds);
+}
+
+TEST(SceneBlob, OfAnotherFormatIsNothing) {
+  std::vector<std::uint8_t> bytes = plain(encode_scene({}));
+  ASSERT_TRUE(decode_scene(std::ssize(bytes), 1, bytes));
+  for (const std::uint8_t format : {std::uint8_t{0}, std::uint8_t{2}}) {
+    bytes[0] = format;
+    EXPECT_FALSE(decode_scene(std::ssize(bytes), 1, bytes)) << int{format};
+  }
 }
 
 TEST(SceneBlob, WhatIsNoSceneIsNothing) {
