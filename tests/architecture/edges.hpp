@@ -157,4 +157,8 @@ inline const std::vector<std::string> kStoreRooms = {"files", "database", "rows"
 inline const std::set<std::string> kStoreForValues = {"server/store/store.hpp",
                                                       "server/store/values/"};
 
+/// The same for server/store/rules, which knows no engine either.
+inline const std::set<std::string> kStoreForRules = {"server/store/store.hpp",
+                                                     "server/store/values/", "server/store/rules/"};
+
 }  // namespace kinship::architecture

@@ -114,14 +114,24 @@ TEST(Architecture, RoomsOfTheStoreLeanOnThoseBeforeThem) {
   }
 }
 
-TEST(Architecture, ValuesOfTheStoreKnowNoEngine) {
-  for (const Include& include : all_includes())
-    if (include.file.starts_with("server/store/values/") &&
-        include.target.starts_with("server/store/"))
+/// Of server/store the files of a room may include what is allowed alone, and no engine at all.
+void expect_no_engine(const std::string& room, const std::set<std::string>& allowed) {
+  for (const Include& include : all_includes()) {
+    if (!include.file.starts_with(room))
+      continue;
+    if (include.target.starts_with("server/store/"))
       EXPECT_TRUE(std::ranges::any_of(
-          kStoreForValues,
-          [&](const std::string& allowed) { return include.target.starts_with(allowed); }))
+          allowed, [&](const std::string& each) { return include.target.starts_with(each); }))
           << include.file << " includes " << include.target;
+    const std::string external = external_library_of(include.target);
+    EXPECT_TRUE(external != "SQLite" && external != "libpq")
+        << include.file << " includes " << include.target;
+  }
+}
+
+TEST(Architecture, ValuesAndRulesOfTheStoreKnowNoEngine) {
+  expect_no_engine("server/store/values/", kStoreForValues);
+  expect_no_engine("server/store/rules/", kStoreForRules);
 }
 
 TEST(Architecture, FilesStayReadable) {

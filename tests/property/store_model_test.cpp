@@ -5,14 +5,19 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <string>
+#include <tuple>
 
+#include "server/store/postgres/postgres_store.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "server/store/values/prepared_attempt.hpp"
+#include "tests/support/postgres_programs.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/store/postgres/fresh_database.hpp"
 
 /// Random reports with many retries and repeated paths against a model that holds what the
-/// contract says in a few maps; the store is reopened now and then.
+/// contract says in a few maps, on each engine; the store is reopened now and then.
 namespace kinship::store::store_model_test {
 namespace {
 
@@ -130,12 +135,24 @@ class Model {
   std::set<Pair> changed_;
 };
 
-/// The parameter is the cap of paths per robot and task; 0: none.
-class StoreModel : public testing::TestWithParam<std::size_t> {
+enum class Engine { Sqlite, Postgres };
+
+/// The engine, and the cap of paths per robot and task; 0: none.
+class StoreModel : public testing::TestWithParam<std::tuple<Engine, std::size_t>> {
  protected:
+  Engine engine() const { return std::get<0>(GetParam()); }
+  std::size_t cap() const { return std::get<1>(GetParam()); }
+  void SetUp() override {
+    if (const std::string missing = test::missing_postgres();
+        engine() == Engine::Postgres && !missing.empty())
+      GTEST_SKIP() << missing;
+  }
   void open() {
     store_.reset();
-    store_ = open_sqlite_store(directory_ / "s.db", {.max_paths_per_pair = GetParam()});
+    store_ = engine() == Engine::Sqlite
+                 ? open_sqlite_store(directory_ / "s.db", {.max_paths_per_pair = cap()})
+                 : open_postgres_store(FreshDatabases::of_program().url(directory_.path()),
+                                       {.max_paths_per_pair = cap()});
   }
   Body random_body() {
     return {generator_() % robots_.size(), generator_() % kTasks.size(), generator_() % kContents};
@@ -188,10 +205,17 @@ class StoreModel : public testing::TestWithParam<std::size_t> {
   const std::vector<RobotRecord> robots_ = {test::make_robot("panda", 1),
                                             test::make_robot("iiwa", 2)};
   std::unique_ptr<Store> store_;
-  Model model_{GetParam()};
+  Model model_{cap()};
 };
 
-INSTANTIATE_TEST_SUITE_P(WithCaps, StoreModel, testing::Values(0, 1, 3));
+std::string name_of_case(const testing::TestParamInfo<StoreModel::ParamType>& info) {
+  const auto [engine, cap] = info.param;
+  return (engine == Engine::Sqlite ? "Sqlite" : "Postgres") + std::to_string(cap);
+}
+INSTANTIATE_TEST_SUITE_P(WithCaps, StoreModel,
+                         testing::Combine(testing::Values(Engine::Sqlite, Engine::Postgres),
+                                          testing::Values(0, 1, 3)),
+                         name_of_case);
 
 TEST_P(StoreModel, EveryReceiptAndEveryReadingIsAsTheContractSays) {
   open();

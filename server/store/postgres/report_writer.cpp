@@ -5,8 +5,7 @@
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
-#include "server/store/postgres/rows/batch_knowledge.hpp"
-#include "server/store/postgres/rows/batch_plan.hpp"
+#include "server/store/postgres/rows/batch_reading.hpp"
 #include "server/store/postgres/rows/batch_writing.hpp"
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/values/clock.hpp"
@@ -135,12 +134,12 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
         require_standby(*connection_);
       const std::int64_t now = now_ms();
       const bool has_retired = retire_first(*connection_, attempts);
-      const BatchPlan plan =
-          make_plan(attempts, learn(*connection_, attempts, options_.max_paths_per_pair),
-                    options_.max_paths_per_pair, now);
-      if (has_retired || !plan.writes_nothing()) {
+      const std::uint64_t max_paths = options_.max_paths_per_pair;
+      const BatchChanges changes =
+          resolve_reports(attempts, read_state(*connection_, attempts, max_paths), max_paths, now);
+      if (has_retired || !changes.is_empty()) {
         const History::Step step = history_.advance(*connection_);
-        write_plan(*connection_, plan, now);
+        write_changes(*connection_, changes, now);
         waits_since_ms_ = now_ms();
         const CommitOutcome outcome = transaction.commit();
         waits_since_ms_ = 0;
@@ -154,7 +153,7 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
         history_.committed(step);
       }
       for (std::size_t i = 0; i < pending.size(); ++i)
-        *pending[i].receipt = plan.receipts[i];
+        *pending[i].receipt = changes.receipts[i];
       note("");
       return true;
     } catch (const PostgresError& error) {

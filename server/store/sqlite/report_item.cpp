@@ -4,7 +4,7 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/rows/attempt_rows.hpp"
+#include "server/store/sqlite/rows/report_writing.hpp"
 
 namespace kinship::store {
 namespace {
@@ -21,10 +21,10 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
   if (const std::optional<std::string> why = damaged.find(uuid))
     return {uuid, ReceiptStatus::TryAgain, *why};  // in a second try of its batch
   if (batch.is_undone_whole() && is_only_one)
-    return insert_attempt(batch, prepared, max_paths);
+    return write_report(batch, prepared, max_paths);
   Savepoint savepoint(batch.database());
   try {
-    Receipt receipt = insert_attempt(batch, prepared, max_paths);
+    Receipt receipt = write_report(batch, prepared, max_paths);
     savepoint.keep();
     return receipt;
   } catch (const SqliteError& error) {

@@ -20,7 +20,7 @@ class ReportItem : public WriteItem {
   /// Encodes and hashes on the caller's thread, which spares the writer's.
   /// \param history  told how far the item brought it, before `done` is called.
   /// \param damaged  where reports that damage keeps out are remembered. Both outlive the item.
-  /// \param max_paths  of a robot and task (retention.hpp); 0: no cap.
+  /// \param max_paths  of a robot and task (rules/report_resolver.hpp); 0: no cap.
   ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
              Store::ReportsDone done, std::uint64_t max_paths = 0);
 

@@ -25,7 +25,8 @@ struct SqliteOptions {
   /// brought into order; 0: none.
   std::uint64_t ballast_bytes = 0;
   std::uint64_t max_distribution_bytes = 0;  ///< beyond that those not used for longest go; 0: none
-  std::uint64_t max_paths_per_pair = 0;      ///< of a robot and task (retention.hpp); 0: no cap
+  std::uint64_t max_paths_per_pair =
+      0;  ///< of a robot and task (rules/report_resolver.hpp); 0: no cap
   std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: none
   /// Takes a line when damage is found, from a thread of the store's own; may be empty.
   std::function<void(std::string_view)> log = {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -7,6 +8,10 @@
 #include "server/store/values/columns.hpp"
 
 namespace kinship::store {
+
+/// Of a path that was dropped, with encoding 2.
+inline constexpr std::array<std::uint8_t, 1> kNoWaypoints = {0};
+inline constexpr std::int64_t kEncodingOfDropped = 2;
 
 /// What the checksum of a path is over: all that a transfer relies on, not the waypoints alone.
 struct PathContent {

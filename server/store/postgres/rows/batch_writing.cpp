@@ -1,6 +1,5 @@
 #include "server/store/postgres/rows/batch_writing.hpp"
 
-#include <array>
 #include <deque>
 #include <string>
 
@@ -15,8 +14,6 @@ using Integers = std::vector<std::int64_t>;
 using OptionalIntegers = std::vector<std::optional<std::int64_t>>;
 using Blobs = std::vector<Bytes>;
 using OptionalBlobs = std::vector<std::optional<Bytes>>;
-
-constexpr std::array<std::uint8_t, 1> kNoWaypoints = {0};
 
 // A scene that is damaged is written anew under its id: its paths and attempts have it again.
 constexpr std::string_view kWriteScenes =
@@ -76,7 +73,7 @@ constexpr std::string_view kWriteAttempts =
     " LEFT JOIN scene ON scene.content_sha256 = new.scene"
     " ORDER BY new.place ON CONFLICT (report_uuid) DO NOTHING";
 
-constexpr std::string_view kMend =
+constexpr std::string_view kRestore =
     "UPDATE attempt SET path_id = new.path_id, status = new.status"
     " FROM unnest($1, $2, $3) AS new (report_uuid, path_id, status)"
     " WHERE attempt.report_uuid = new.report_uuid";
@@ -122,10 +119,10 @@ std::optional<Bytes> scene_of(const PreparedAttempt& prepared) {
   return Bytes(prepared.scene->content.bytes);
 }
 
-Parameters scenes_in_columns(const BatchPlan& plan, std::int64_t now_ms) {
+Parameters scenes_in_columns(const BatchChanges& changes, std::int64_t now_ms) {
   Blobs contents, bytes;
   Integers sizes, encodings, crcs;
-  for (const auto& [content, scene] : plan.scenes) {
+  for (const auto& [content, scene] : changes.scenes) {
     const auto encoding = static_cast<std::int64_t>(scene->blob.encoding);
     contents.emplace_back(content.bytes);
     bytes.emplace_back(scene->blob.bytes);
@@ -140,17 +137,17 @@ struct DamagedColumns {
   Integers ids;
   OptionalIntegers replaced_by;
 
-  explicit DamagedColumns(const BatchPlan& plan) {
-    for (const DamagedPath& path : plan.damaged) {
+  explicit DamagedColumns(const BatchChanges& changes) {
+    for (const DamagedPath& path : changes.damaged) {
       ids.push_back(path.id);
       replaced_by.push_back(path.replaced_by);
     }
   }
 };
 
-Parameters dropped_in_columns(const BatchPlan& plan, std::int64_t now_ms) {
+Parameters dropped_in_columns(const BatchChanges& changes, std::int64_t now_ms) {
   Integers ids, crcs;
-  for (const KeptPath& path : plan.dropped) {
+  for (const KeptPath& path : changes.dropped) {
     ids.push_back(path.id);
     crcs.push_back(path.crc_when_dropped);
   }
@@ -160,24 +157,14 @@ Parameters dropped_in_columns(const BatchPlan& plan, std::int64_t now_ms) {
 /// The columns of kWritePaths.
 class PathColumns {
  public:
-  void add(const PlannedPath& path, std::int64_t now_ms) {
+  void add(const NewPath& path, std::int64_t now_ms) {
     const PreparedPath& prepared = *path.from->path;
-    const Bytes uuid(path.from->attempt.report_uuid.bytes);
     const std::optional<Bytes> pose = poses_.add(path.from->attempt.T_task_base);
-    PathContent content{uuid,
-                        pose.value_or(Bytes()),
-                        prepared.blob.dof,
-                        prepared.blob.waypoint_count,
-                        static_cast<std::int64_t>(prepared.blob.encoding),
-                        Bytes(prepared.blob.bytes)};
-    if (path.is_dropped) {
-      content.encoding = 2;
-      content.waypoints = Bytes(kNoWaypoints);
-    }
+    const PathContent content = content_of(path, pose.value_or(Bytes()));
     ids_.push_back(path.id);
     tasks_.push_back(path.key.task_id);
     robots_.push_back(path.key.robot_id);
-    uuids_.push_back(uuid);
+    uuids_.push_back(content.report_uuid);
     contents_.emplace_back(prepared.content.bytes);
     lengths_.push_back(prepared.length);
     placements_.push_back(pose);
@@ -208,18 +195,18 @@ class PathColumns {
 /// The columns of kWriteAttempts.
 class AttemptColumns {
  public:
-  void add(const PlannedAttempt& planned) {
-    const Attempt& attempt = planned.from->attempt;
+  void add(const NewAttempt& added) {
+    const Attempt& attempt = added.from->attempt;
     uuids_.emplace_back(attempt.report_uuid.bytes);
-    bodies_.emplace_back(planned.from->body.bytes);
-    tasks_.push_back(planned.key.task_id);
-    robots_.push_back(planned.key.robot_id);
-    paths_.push_back(planned.path_id);
-    statuses_.push_back(static_cast<std::int64_t>(planned.status));
+    bodies_.emplace_back(added.from->body.bytes);
+    tasks_.push_back(added.key.task_id);
+    robots_.push_back(added.key.robot_id);
+    paths_.push_back(added.path_id);
+    statuses_.push_back(static_cast<std::int64_t>(added.status));
     machines_.push_back(attempt.machine);
     placements_.push_back(poses_.add(attempt.T_task_base));
-    scenes_.push_back(scene_of(*planned.from));
-    received_.push_back(planned.from->received_ms);
+    scenes_.push_back(scene_of(*added.from));
+    received_.push_back(added.from->received_ms);
     add(attempt.record);
   }
 
@@ -255,11 +242,11 @@ class AttemptColumns {
   OptionalBlobs placements_, distributions_, scenes_;
 };
 
-Parameters mended_in_columns(const BatchPlan& plan) {
+Parameters restored_in_columns(const BatchChanges& changes) {
   Blobs uuids;
   OptionalIntegers paths;
   Integers statuses;
-  for (const MendedAttempt& attempt : plan.mended) {
+  for (const RestoredReport& attempt : changes.restored) {
     uuids.emplace_back(attempt.report_uuid.bytes);
     paths.push_back(attempt.path_id);
     statuses.push_back(static_cast<std::int64_t>(attempt.status));
@@ -281,10 +268,10 @@ struct TotalsColumns {
   }
 };
 
-Parameters changes_in_columns(const BatchPlan& plan) {
+Parameters pairs_in_columns(const BatchChanges& changes) {
   Integers tasks, robots, changed, paths, attempts, dropped;
   TotalsColumns guided, control;
-  for (const auto& [key, change] : plan.changes) {
+  for (const auto& [key, change] : changes.pairs) {
     tasks.push_back(key.task_id);
     robots.push_back(key.robot_id);
     changed.push_back(change.is_changed ? 1 : 0);
@@ -300,51 +287,51 @@ Parameters changes_in_columns(const BatchPlan& plan) {
                     control.of_solved);
 }
 
-std::vector<Request> requests_of(const BatchPlan& plan, std::int64_t now_ms) {
+std::vector<Request> requests_of(const BatchChanges& changes, std::int64_t now_ms) {
   std::vector<Request> requests;
-  if (!plan.scenes.empty())
-    requests.push_back({kWriteScenes, scenes_in_columns(plan, now_ms)});
-  if (!plan.damaged.empty()) {
-    const DamagedColumns damaged(plan);
+  if (!changes.scenes.empty())
+    requests.push_back({kWriteScenes, scenes_in_columns(changes, now_ms)});
+  if (!changes.damaged.empty()) {
+    const DamagedColumns damaged(changes);
     requests.push_back({kSetAside, Parameters(now_ms, damaged.ids, damaged.replaced_by)});
   }
-  if (!plan.dropped.empty())
-    requests.push_back({kDrop, dropped_in_columns(plan, now_ms)});
-  if (!plan.paths.empty()) {
+  if (!changes.dropped.empty())
+    requests.push_back({kDrop, dropped_in_columns(changes, now_ms)});
+  if (!changes.paths.empty()) {
     PathColumns columns;
-    for (const PlannedPath& path : plan.paths)
+    for (const NewPath& path : changes.paths)
       columns.add(path, now_ms);
     requests.push_back({kWritePaths, columns.parameters()});
   }
-  if (!plan.damaged.empty()) {
-    const DamagedColumns damaged(plan);
+  if (!changes.damaged.empty()) {
+    const DamagedColumns damaged(changes);
     const Parameters parameters(damaged.ids, damaged.replaced_by);
     requests.push_back({kFollowReplacement, parameters});
     requests.push_back({kFollowReplacementOfSame, parameters});
   }
-  if (!plan.mended.empty())
-    requests.push_back({kMend, mended_in_columns(plan)});
-  if (!plan.resent.empty()) {
+  if (!changes.restored.empty())
+    requests.push_back({kRestore, restored_in_columns(changes)});
+  if (!changes.resent.empty()) {
     Blobs uuids;
-    for (const Uuid& uuid : plan.resent)
+    for (const Uuid& uuid : changes.resent)
       uuids.emplace_back(uuid.bytes);
     requests.push_back({kNoteResent, Parameters(uuids)});
   }
-  if (!plan.changes.empty())
-    requests.push_back({kChangePairs, changes_in_columns(plan)});
+  if (!changes.pairs.empty())
+    requests.push_back({kChangePairs, pairs_in_columns(changes)});
   return requests;
 }
 
 }  // namespace
 
-void write_plan(Connection& connection, const BatchPlan& plan, std::int64_t now_ms) {
-  std::vector<Request> requests = requests_of(plan, now_ms);
+void write_changes(Connection& connection, const BatchChanges& changes, std::int64_t now_ms) {
+  std::vector<Request> requests = requests_of(changes, now_ms);
   AttemptColumns columns;
-  for (const PlannedAttempt& attempt : plan.attempts)
+  for (const NewAttempt& attempt : changes.attempts)
     columns.add(attempt);
   requests.push_back({kWriteAttempts, columns.parameters(now_ms)});
   const std::vector<Rows> rows = connection.query_all(requests);
-  if (rows.back().changed() != std::ssize(plan.attempts))
+  if (rows.back().changed() != std::ssize(changes.attempts))
     throw PostgresError("40001", "another server wrote one of these reports meanwhile");
 }
 

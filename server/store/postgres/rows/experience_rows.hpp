@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/batch_knowledge.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/experience_key.hpp"
 
 /// One row per robot and task that somebody reported: its generations and its sums.
 namespace kinship::store::postgres {

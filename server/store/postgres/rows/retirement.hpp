@@ -6,8 +6,8 @@
 #include "proto/types/audit.hpp"
 #include "proto/types/result.hpp"
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/batch_knowledge.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/experience_key.hpp"
 
 /// Paths that people take out of every fit, and the entries of the audit log that say so, in the
 /// caller's writing transaction. Without `audit` none is kept.

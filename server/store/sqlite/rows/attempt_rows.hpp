@@ -4,22 +4,18 @@
 #include <string_view>
 #include <vector>
 
+#include "server/store/rules/batch_changes.hpp"
 #include "server/store/sqlite/database/database.hpp"
-#include "server/store/sqlite/database/writer.hpp"
 #include "server/store/store.hpp"
-#include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
 
-/// Writes one attempt, and its path and scene if they are new, into the batch. An attempt that came
-/// before is Duplicate only if what the receipt vouches for can be read; what cannot be read any
-/// more is set aside and written anew: Stored, or Recorded.
-/// \param max_paths  of its robot and task (retention.hpp); 0: no cap.
-/// \throws SqliteError; what was written by then is the caller's to undo.
-Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared, std::uint64_t max_paths = 0);
-
 /// The task's internal id; makes the task if it is missing.
 std::int64_t ensure_task(Database& database, std::string_view task);
+
+/// \return the id of the new row.
+std::int64_t insert_attempt(Database& database, const NewAttempt& added,
+                            std::optional<std::int64_t> scene_id, std::int64_t now_ms);
 
 /// The rows of one report, as the index has them.
 struct ReportRows {

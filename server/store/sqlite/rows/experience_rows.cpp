@@ -11,25 +11,6 @@
 namespace kinship::store {
 namespace {
 
-/// Empty for an arm that nobody judges.
-std::string_view sums_of(SamplingMode mode) {
-  switch (mode) {
-    case SamplingMode::Guided:
-      return ", guided_attempts = guided_attempts + 1, guided_solved = guided_solved + ?4,"
-             " guided_checks = guided_checks + ?5,"
-             " guided_checks_squared = guided_checks_squared + ?5 * ?5,"
-             " guided_checks_of_solved = guided_checks_of_solved + ?4 * ?5";
-    case SamplingMode::Control:
-      return ", control_attempts = control_attempts + 1, control_solved = control_solved + ?4,"
-             " control_checks = control_checks + ?5,"
-             " control_checks_squared = control_checks_squared + ?5 * ?5,"
-             " control_checks_of_solved = control_checks_of_solved + ?4 * ?5";
-    case SamplingMode::Uniform:
-      break;
-  }
-  return "";
-}
-
 /// One by one, without those that cannot be read.
 std::vector<KnownAttempt> readable_recent_of(Database& database, const ExperienceKey& key,
                                              std::int64_t max_rows) {
@@ -98,37 +79,46 @@ void RobotNames::read_all() {
     names_[labels->column_integer(0)].label = labels->column_text(1);
 }
 
-void ensure_experience(Database& database, const ExperienceKey& key) {
-  database
-      .cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
+std::uint64_t ensure_experience(Database& database, const ExperienceKey& key) {
+  {
+    const auto query =
+        database.cached("SELECT paths FROM experience WHERE task_id = ? AND robot_id = ?");
+    if (query->bind_all(key.task_id, key.robot_id).step())
+      return count_of(*query, 0);
+  }
+  database.cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?)")
       ->bind_all(key.task_id, key.robot_id)
       .run();
+  return 0;
 }
 
-void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
-                   bool brought_path) {
-  const std::string_view sums = sums_of(record.sampling_mode);
-  const auto update =
-      database.cached("UPDATE experience SET attempts = attempts + 1, paths = paths + ?3" +
-                      std::string(sums) + " WHERE task_id = ?1 AND robot_id = ?2");
-  update->bind_all(key.task_id, key.robot_id, std::int64_t{brought_path ? 1 : 0});
-  if (!sums.empty())
-    update->bind(4, std::int64_t{record.outcome == Outcome::Solved ? 1 : 0})
-        .bind(5, static_cast<double>(record.collision_checks));
-  update->run();
+void add_to_experience(Database& database, const ExperienceKey& key, const PairChange& change) {
+  const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
+  const ModeTotals& guided = change.guided;
+  const ModeTotals& control = change.control;
+  database
+      .cached(
+          "UPDATE experience SET attempts = attempts + ?3, paths = paths + ?4,"
+          " dropped = dropped + ?5, guided_attempts = guided_attempts + ?6,"
+          " guided_solved = guided_solved + ?7, guided_checks = guided_checks + ?8,"
+          " guided_checks_squared = guided_checks_squared + ?9,"
+          " guided_checks_of_solved = guided_checks_of_solved + ?10,"
+          " control_attempts = control_attempts + ?11, control_solved = control_solved + ?12,"
+          " control_checks = control_checks + ?13,"
+          " control_checks_squared = control_checks_squared + ?14,"
+          " control_checks_of_solved = control_checks_of_solved + ?15"
+          " WHERE task_id = ?1 AND robot_id = ?2")
+      ->bind_all(key.task_id, key.robot_id, change.attempts, change.paths, change.dropped,
+                 integer(guided.attempts), integer(guided.solved), guided.checks,
+                 guided.checks_squared, guided.checks_of_solved, integer(control.attempts),
+                 integer(control.solved), control.checks, control.checks_squared,
+                 control.checks_of_solved)
+      .run();
 }
-
-void count_path(Database& database, const ExperienceKey& key) { uncount_paths(database, key, -1); }
 
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths) {
   database.cached("UPDATE experience SET paths = paths - ? WHERE task_id = ? AND robot_id = ?")
       ->bind_all(paths, key.task_id, key.robot_id)
-      .run();
-}
-
-void count_dropped(Database& database, const ExperienceKey& key) {
-  database.cached("UPDATE experience SET dropped = dropped + 1 WHERE task_id = ? AND robot_id = ?")
-      ->bind_all(key.task_id, key.robot_id)
       .run();
 }
 

@@ -8,17 +8,12 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "server/store/rules/batch_changes.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
 
 /// One row per robot and task that somebody reported: its generations and its sums.
 namespace kinship::store {
-
-/// The internal ids of a robot and a task.
-struct ExperienceKey {
-  std::int64_t task_id = 0;
-  std::int64_t robot_id = 0;
-};
 
 /// Digests and labels of robots by their internal ids, read as they are asked for; where a robot's
 /// row is damaged, those of all from their indexes. Lives as long as one reading.
@@ -41,18 +36,11 @@ class RobotNames {
   std::map<std::int64_t, Name> names_;
 };
 
-/// Makes the row of a robot and task unless it is there.
-void ensure_experience(Database& database, const ExperienceKey& key);
+/// Makes the row of a robot and task unless it is there. \return how many paths are in use.
+std::uint64_t ensure_experience(Database& database, const ExperienceKey& key);
 
-/// Counts an attempt, its path if it brought one, and what it cost its arm.
-void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
-                   bool brought_path);
-
-/// Counts the path alone of an attempt that came again.
-void count_path(Database& database, const ExperienceKey& key);
-
-/// Counts a path that was not kept, or is not any more. It is not taken out of the others.
-void count_dropped(Database& database, const ExperienceKey& key);
+/// Adds all but the generation, which the batch raises.
+void add_to_experience(Database& database, const ExperienceKey& key, const PairChange& change);
 
 /// Takes paths out of the count.
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths);

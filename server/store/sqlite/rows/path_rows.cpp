@@ -1,6 +1,5 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 
-#include <array>
 #include <string>
 #include <utility>
 
@@ -76,11 +75,10 @@ std::optional<ExperienceKey> key_in_use(Database& database, std::int64_t id) {
 }
 
 /// Takes a path that is in use out of it.
-void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id,
-                    std::optional<std::int64_t> replaced_by) {
+void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id) {
   Database& database = batch.database();
   const bool was_aside = find_aside(database, AsideKind::Path, id).has_value();
-  put_aside(database, AsideKind::Path, id, replaced_by);
+  put_aside(database, AsideKind::Path, id);
   if (was_aside)
     return;
   uncount_paths(database, key, 1);
@@ -137,7 +135,6 @@ PathsChecked check_one_by_one(Database& database, std::int64_t after_id, std::in
 /// Its checksum goes on covering the rest of the row.
 /// \return false if the row cannot be read, so that it cannot be written either.
 bool remove_waypoints(Database& database, std::int64_t id) {
-  constexpr std::array<std::uint8_t, 1> kNone = {0};
   return can_read([&] {
     std::uint32_t crc = 0;
     {
@@ -152,7 +149,7 @@ bool remove_waypoints(Database& database, std::int64_t id) {
     database
         .cached(
             "UPDATE path SET retired_ms = ?, encoding = 2, crc32c = ?, waypoints = ? WHERE id = ?")
-        ->bind_all(now_ms(), std::int64_t{crc}, Bytes(kNone), id)
+        ->bind_all(now_ms(), std::int64_t{crc}, Bytes(kNoWaypoints), id)
         .run();
     savepoint.keep();
     return true;
@@ -189,8 +186,10 @@ SameContent find_same(Database& database, const ExperienceKey& key, const Digest
     const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
     if (!aside && is_readable(database, id))
       same.readable = id;
-    else if (!aside || (!aside->replaced_by && !aside->retired))
+    else if (!aside)
       same.damaged.push_back(id);
+    else if (!aside->replaced_by && !aside->retired)
+      same.set_aside.push_back(id);
   }
   return same;
 }
@@ -227,25 +226,36 @@ std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey
   return std::nullopt;
 }
 
-std::int64_t insert_path(Database& database, const ExperienceKey& key,
-                         const PreparedAttempt& prepared, const PathArrival& arrival) {
-  const PreparedPath& path = *prepared.path;
-  const auto T_task_base = optional_pose_blob(prepared.attempt.T_task_base);
-  const PathContent content{Bytes(prepared.attempt.report_uuid.bytes),
-                            blob_or_null(T_task_base).value_or(Bytes()),
-                            path.blob.dof,
-                            path.blob.waypoint_count,
-                            static_cast<std::int64_t>(path.blob.encoding),
-                            Bytes(path.blob.bytes)};
+std::set<KeptPath> select_largest(Database& database, const ExperienceKey& key,
+                                  std::uint64_t limit) {
+  const auto query = database.cached(
+      "SELECT content_sha256, id FROM path INDEXED BY path_by_content "
+      "WHERE robot_id = ? AND task_id = ? AND retired_ms IS NULL" +
+      std::string(kNotAside) + "ORDER BY content_sha256 DESC LIMIT ?");
+  query->bind_all(key.robot_id, key.task_id, static_cast<std::int64_t>(limit));
+  std::set<KeptPath> largest;
+  while (query->step())
+    largest.insert({id_of<Digest>(query->column_blob(0)), query->column_integer(1)});
+  return largest;
+}
+
+std::int64_t insert_path(Database& database, const NewPath& path,
+                         std::optional<std::int64_t> scene_id, std::int64_t now_ms) {
+  const PreparedPath& prepared = *path.from->path;
+  const auto T_task_base = optional_pose_blob(path.from->attempt.T_task_base);
+  const PathContent content = content_of(path, blob_or_null(T_task_base).value_or(Bytes()));
+  std::optional<std::int64_t> retired_ms;
+  if (path.is_dropped || path.is_retired)
+    retired_ms = now_ms;
   database
       .cached(
           "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
           " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, scene_id, retired_ms) "
           "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(key.task_id, key.robot_id, content.report_uuid, Bytes(path.content.bytes),
-                 path.length, blob_or_null(T_task_base), content.dof, content.waypoint_count,
-                 content.encoding, std::int64_t{content.crc()}, content.waypoints,
-                 arrival.received_ms, arrival.scene_id, arrival.retired_ms)
+      ->bind_all(path.key.task_id, path.key.robot_id, content.report_uuid,
+                 Bytes(prepared.content.bytes), prepared.length, blob_or_null(T_task_base),
+                 content.dof, content.waypoint_count, content.encoding, std::int64_t{content.crc()},
+                 content.waypoints, path.received_ms, scene_id, retired_ms)
       .run();
   return database.last_insert_id();
 }
@@ -291,30 +301,28 @@ void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
     if (find_aside(database, AsideKind::Path, path))
       continue;
     if (const auto key = key_in_use(database, path))
-      put_path_aside(batch, *key, path, std::nullopt);
+      put_path_aside(batch, *key, path);
     else
       put_aside(database, AsideKind::Path, path);
   }
 }
 
-void replace_path(Batch& batch, const ExperienceKey& key, std::int64_t damaged, std::int64_t by) {
-  put_path_aside(batch, key, damaged, by);
-}
-
 void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id) {
   if (is_in_use(batch.database(), key, id))
-    put_path_aside(batch, key, id, std::nullopt);
+    put_path_aside(batch, key, id);
   retire_aside(batch.database(), id);
 }
 
-void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id) {
-  Database& database = batch.database();
-  if (remove_waypoints(database, id))
-    uncount_paths(database, key, 1);
-  else
-    retire_damaged(batch, key, id);
-  count_dropped(database, key);
-  batch.paths_changed(key.task_id, key.robot_id);
+void write_damaged(Database& database, const ExperienceKey& key, const DamagedPath& path) {
+  if (path.replaced_by || is_in_use(database, key, path.id))
+    put_aside(database, AsideKind::Path, path.id, path.replaced_by);
+  if (!path.replaced_by)
+    retire_aside(database, path.id);
+}
+
+void drop_path(Database& database, const ExperienceKey& key, std::int64_t id) {
+  if (!remove_waypoints(database, id))
+    write_damaged(database, key, {.id = id});
 }
 
 PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit) {

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
+#include "server/store/rules/batch_changes.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
@@ -13,27 +15,19 @@
 
 namespace kinship::store {
 
-/// The paths of one content that are in use (not retired).
-struct SameContent {
-  std::optional<std::int64_t> readable;
-  std::vector<std::int64_t> damaged;  ///< that nothing replaced yet
-};
 /// Reads what it finds, and looks at its checksum.
 SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content);
 
 /// Whether a path, or what replaced it, can be read, or was retired, so that nobody wants it.
 bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id);
 
-/// What a path is written with beside what its attempt says.
-struct PathArrival {
-  std::int64_t received_ms = 0;
-  std::optional<std::int64_t> scene_id;
-  std::optional<std::int64_t> retired_ms = {};  ///< missing: it is in use
-};
+/// From an index: the paths in use of the largest digests, at most `limit`.
+std::set<KeptPath> select_largest(Database& database, const ExperienceKey& key,
+                                  std::uint64_t limit);
 
-/// \return the id of the new path.
-std::int64_t insert_path(Database& database, const ExperienceKey& key,
-                         const PreparedAttempt& prepared, const PathArrival& arrival);
+/// Under an id of its own. \return that.
+std::int64_t insert_path(Database& database, const NewPath& path,
+                         std::optional<std::int64_t> scene_id, std::int64_t now_ms);
 
 /// Paths as read, and the ids of those whose checksum or content is wrong.
 struct PathsRead {
@@ -63,14 +57,15 @@ std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey
 /// is aside already stays so; one that is retired was out of the counts before. Their rows are not
 /// touched, they may lie on a damaged page.
 void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
-/// One of a known robot and task, in use until now, for which a report brought another row.
-void replace_path(Batch& batch, const ExperienceKey& key, std::int64_t damaged, std::int64_t by);
 /// Sets one aside as retired: it could not be written.
 void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
 
+/// Sets one aside as rules/batch_changes says, which has the counts too; not replaced: as retired.
+void write_damaged(Database& database, const ExperienceKey& key, const DamagedPath& path);
+
 /// Takes a path out of use for good: its row stays, retired, its waypoints do not. One that cannot
-/// be written is set aside as retired.
-void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id);
+/// be written is set aside as retired. The counts are in rules/batch_changes.
+void drop_path(Database& database, const ExperienceKey& key, std::int64_t id);
 
 /// A part of a full check.
 struct PathsChecked {

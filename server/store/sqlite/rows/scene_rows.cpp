@@ -57,17 +57,21 @@ std::vector<std::int64_t> next_ids(Database& database, std::int64_t after_id, st
 
 }  // namespace
 
-std::int64_t ensure_scene(Database& database, const PreparedScene& scene,
-                          std::int64_t received_ms) {
-  const Bytes content(scene.content.bytes);
-  std::vector<std::int64_t> damaged;
-  for (const std::int64_t id : ids_of(database, content)) {
+SceneRows find_scene(Database& database, const Digest& content) {
+  SceneRows rows;
+  for (const std::int64_t id : ids_of(database, Bytes(content.bytes))) {
     const std::optional<Aside> aside = find_aside(database, AsideKind::Scene, id);
     if (!aside && can_read_scene(database, id))
-      return id;
-    if (!aside || !aside->replaced_by)
-      damaged.push_back(id);
+      rows.readable = id;
+    else if (!aside || !aside->replaced_by)
+      rows.damaged.push_back(id);
   }
+  return rows;
+}
+
+std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms,
+                          const std::vector<std::int64_t>& damaged) {
+  const Bytes content(scene.content.bytes);
   const auto encoding = static_cast<std::int64_t>(scene.blob.encoding);
   const Bytes bytes(scene.blob.bytes);
   const std::int64_t crc = scene_crc(content, scene.blob.size, encoding, bytes);

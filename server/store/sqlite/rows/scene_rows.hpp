@@ -10,9 +10,16 @@
 /// Scenes, one row for each content.
 namespace kinship::store {
 
-/// The row of a scene's content, which is made if it is missing or damaged; from then on the new
-/// row stands for the damaged one.
-std::int64_t ensure_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms);
+/// The rows of one content.
+struct SceneRows {
+  std::optional<std::int64_t> readable;
+  std::vector<std::int64_t> damaged;  ///< that nothing replaced yet
+};
+SceneRows find_scene(Database& database, const Digest& content);
+
+/// A new row, which from then on stands for the damaged ones of its content. \return its id.
+std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms,
+                          const std::vector<std::int64_t>& damaged);
 
 /// A scene as read: nothing if it is damaged, was set aside before, or is not there.
 struct SceneRead {

@@ -1,4 +1,4 @@
-#include "server/store/postgres/rows/batch_knowledge.hpp"
+#include "server/store/postgres/rows/batch_reading.hpp"
 
 #include <algorithm>
 #include <array>
@@ -122,25 +122,10 @@ std::vector<Bytes> scenes_of(PreparedAttempts attempts) {
   return scenes;
 }
 
-/// Those that may be written: of robots that are registered, and not known to be another report.
-std::vector<const PreparedAttempt*> promising(PreparedAttempts attempts,
-                                              const BatchKnowledge& known) {
-  std::vector<const PreparedAttempt*> rest;
-  for (const PreparedAttempt* const each : attempts) {
-    const auto robot = known.robots.find(each->attempt.robot);
-    const auto earlier = known.reports.find(each->attempt.report_uuid);
-    if (robot == known.robots.end() || (each->path && each->path->blob.dof != robot->second.dof) ||
-        (earlier != known.reports.end() && !is_again(*each, earlier->second)))
-      continue;
-    rest.push_back(each);
-  }
-  return rest;
-}
-
-WantedPairs pairs_of(PreparedAttempts attempts, const BatchKnowledge& known) {
+WantedPairs pairs_of(PreparedAttempts attempts, const BatchState& state) {
   std::map<std::pair<std::string, std::int64_t>, std::int64_t> paths;
   for (const PreparedAttempt* const each : attempts)
-    paths[{each->attempt.task, known.robots.at(each->attempt.robot).id}] += each->path ? 1 : 0;
+    paths[{each->attempt.task, state.robots.at(each->attempt.robot).id}] += each->path ? 1 : 0;
   WantedPairs pairs;
   for (const auto& [pair, count] : paths) {
     pairs.tasks.push_back(pair.first);
@@ -150,7 +135,7 @@ WantedPairs pairs_of(PreparedAttempts attempts, const BatchKnowledge& known) {
   return pairs;
 }
 
-WantedContents contents_of(PreparedAttempts attempts, const BatchKnowledge& known) {
+WantedContents contents_of(PreparedAttempts attempts, const BatchState& state) {
   std::set<std::pair<PairName, Digest>> distinct;
   WantedContents wanted;
   for (const PreparedAttempt* const each : attempts) {
@@ -158,44 +143,44 @@ WantedContents contents_of(PreparedAttempts attempts, const BatchKnowledge& know
     if (!each->path || !distinct.insert({pair, each->path->content}).second)
       continue;
     wanted.tasks.push_back(each->attempt.task);
-    wanted.robots.push_back(known.robots.at(each->attempt.robot).id);
+    wanted.robots.push_back(state.robots.at(each->attempt.robot).id);
     wanted.contents.emplace_back(each->path->content.bytes);
   }
   return wanted;
 }
 
 /// What decides which pairs are to be locked.
-void learn_robots(Connection& connection, PreparedAttempts attempts, BatchKnowledge& known) {
+void read_robots(Connection& connection, PreparedAttempts attempts, BatchState& state) {
   const std::array<Request, 3> requests = {Request{kBeforeReports},
                                            Request{kRobots, Parameters(robots_of(attempts))},
                                            Request{kBodies, Parameters(uuids_of(attempts))}};
   const std::vector<Rows> rows = connection.query_all(requests);
   for (const Row row : rows[1])
     if (!is_removed_label(row.column_text(3)))
-      known.robots[id_of<Digest>(row.column_blob(0))] = {row.column_integer(1),
+      state.robots[id_of<Digest>(row.column_blob(0))] = {row.column_integer(1),
                                                          row.column_integer(2)};
   for (const Row row : rows[2])
-    known.reports[id_of<Uuid>(row.column_blob(0))] = {.body = id_of<Digest>(row.column_blob(1)),
+    state.reports[id_of<Uuid>(row.column_blob(0))] = {.body = id_of<Digest>(row.column_blob(1)),
                                                       .machine = std::string(row.column_text(2))};
 }
 
-void take_pairs(const Rows& rows, BatchKnowledge& known) {
+void take_pairs(const Rows& rows, BatchState& state) {
   for (const Row row : rows)
-    known.pairs[{id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))}] = {
+    state.pairs[{id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))}] = {
         .key = {row.column_integer(2), row.column_integer(3)},
         .paths = count_of(row, 4),
         .contents = {},
         .largest = {}};
 }
 
-void take_reports(const Rows& rows, const Rows& paths, BatchKnowledge& known) {
+void take_reports(const Rows& rows, const Rows& paths, BatchState& state) {
   constexpr int kIsRetired = 8, kIsDamaged = 9;
   std::map<std::int64_t, bool> vouched_for;
   for (const Row row : paths)
     vouched_for[row.column_integer(0)] =
         row.column_integer(kIsRetired) != 0 ||
         (row.column_integer(kIsDamaged) == 0 && has_right_path_crc(row));
-  known.reports.clear();
+  state.reports.clear();
   for (const Row row : rows) {
     EarlierReport report{.body = id_of<Digest>(row.column_blob(1)),
                          .machine = std::string(row.column_text(2)),
@@ -204,32 +189,35 @@ void take_reports(const Rows& rows, const Rows& paths, BatchKnowledge& known) {
                          .is_scene_readable = row.column_integer(5) == 0};
     if (report.path_id)
       report.is_path_vouched_for = vouched_for[*report.path_id];
-    known.reports.emplace(id_of<Uuid>(row.column_blob(0)), std::move(report));
+    state.reports.emplace(id_of<Uuid>(row.column_blob(0)), std::move(report));
   }
 }
 
-void take_contents(const Rows& rows, BatchKnowledge& known) {
+void take_contents(const Rows& rows, BatchState& state) {
   constexpr int kRobot = 8, kTask = 9, kContent = 10;
   for (const Row row : rows) {
-    Pair& pair = known.pairs.at(
+    Pair& pair = state.pairs.at(
         {id_of<Digest>(row.column_blob(kRobot)), std::string(row.column_text(kTask))});
-    pair.contents[id_of<Digest>(row.column_blob(kContent))] = {row.column_integer(0),
-                                                               has_right_path_crc(row)};
+    SameContent& same = pair.contents[id_of<Digest>(row.column_blob(kContent))];
+    if (has_right_path_crc(row))
+      same.readable = row.column_integer(0);
+    else
+      same.damaged.push_back(row.column_integer(0));
   }
 }
 
-void take_largest(const Rows& rows, BatchKnowledge& known) {
+void take_largest(const Rows& rows, BatchState& state) {
   for (const Row row : rows)
-    known.pairs.at({id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
+    state.pairs.at({id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
         .largest.insert({id_of<Digest>(row.column_blob(3)), row.column_integer(2),
                          crc_when_dropped(row.column_blob(4), row.column_blob(5),
                                           row.column_integer(6), row.column_integer(7))});
 }
 
-void learn_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths,
-                 BatchKnowledge& known) {
-  const WantedPairs pairs = pairs_of(attempts, known);
-  const WantedContents contents = contents_of(attempts, known);
+void read_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths,
+                BatchState& state) {
+  const WantedPairs pairs = pairs_of(attempts, state);
+  const WantedContents contents = contents_of(attempts, state);
   const std::string of_reports = paths_of_reports(), of_contents = paths_of_contents();
   const Parameters uuids(uuids_of(attempts));
   const auto paths = std::ranges::count_if(
@@ -248,45 +236,40 @@ void learn_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_
   if (max_paths > 0)
     requests.push_back({kLargest, Parameters(pairs.tasks, pairs.robots, pairs.paths,
                                              static_cast<std::int64_t>(max_paths),
-                                             static_cast<std::int64_t>(kMostDroppedAtOnce))});
+                                             static_cast<std::int64_t>(kMaxDroppedAtOnce))});
   const std::vector<Rows> rows = connection.query_all(requests);
-  take_pairs(rows[2], known);
-  take_reports(rows[3], rows[4], known);
+  take_pairs(rows[2], state);
+  take_reports(rows[3], rows[4], state);
   for (const Row row : rows[5])
-    known.retired.insert(id_of<Uuid>(row.column_blob(0)));
-  take_contents(rows[6], known);
+    state.retired.insert(id_of<Uuid>(row.column_blob(0)));
+  take_contents(rows[6], state);
   for (const Row row : rows[7])
-    known.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
+    state.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
   for (const Row row : rows[8])
-    known.path_ids.push_back(row.column_integer(0));
+    state.path_ids.push_back(row.column_integer(0));
   if (max_paths > 0)
-    take_largest(rows[9], known);
+    take_largest(rows[9], state);
 }
 
 }  // namespace
 
-BatchKnowledge learn(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths) {
-  BatchKnowledge known;
-  learn_robots(connection, attempts, known);
-  const std::vector<const PreparedAttempt*> rest = promising(attempts, known);
+BatchState read_state(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths) {
+  BatchState state;
+  read_robots(connection, attempts, state);
+  const std::vector<const PreparedAttempt*> rest = acceptable(attempts, state);
   if (!rest.empty()) {
-    const auto refused = known.reports;
-    learn_pairs(connection, rest, max_paths, known);
-    known.reports.insert(refused.begin(), refused.end());
+    const auto refused = state.reports;
+    read_pairs(connection, rest, max_paths, state);
+    state.reports.insert(refused.begin(), refused.end());
   }
-  return known;
+  return state;
 }
 
 std::uint32_t crc_when_dropped(Bytes report_uuid, Bytes T_task_base, std::int64_t dof,
                                std::int64_t waypoint_count) {
-  constexpr std::array<std::uint8_t, 1> kNone = {0};
-  constexpr std::int64_t kEncoding = 2;
-  return PathContent{report_uuid, T_task_base, dof, waypoint_count, kEncoding, Bytes(kNone)}.crc();
-}
-
-bool is_again(const PreparedAttempt& prepared, const EarlierReport& earlier) {
-  return earlier.body == prepared.body || (earlier.machine != prepared.attempt.machine &&
-                                           earlier.body == body_said_by(prepared, earlier.machine));
+  return PathContent{report_uuid,    T_task_base,        dof,
+                     waypoint_count, kEncodingOfDropped, Bytes(kNoWaypoints)}
+      .crc();
 }
 
 }  // namespace kinship::store::postgres

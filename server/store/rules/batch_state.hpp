@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/values/experience_key.hpp"
+#include "server/store/values/prepared_attempt.hpp"
+
+/// What a store has of the reports of a batch before they are written. An engine reads it in the
+/// transaction that writes the changes, so that nothing changes in between.
+namespace kinship::store {
+
+using PreparedAttempts = std::span<const PreparedAttempt* const>;
+
+struct KnownRobot {
+  std::int64_t id = 0;
+  std::int64_t dof = 0;
+};
+
+/// A report that came before under a UUID.
+struct EarlierReport {
+  Digest body;
+  std::string machine;
+  std::int64_t received_ms = 0;
+  std::optional<std::int64_t> path_id = {};
+  /// The path can be read, or is not wanted: there is none, or it is retired.
+  bool is_path_vouched_for = true;
+  bool is_scene_readable = true;  ///< or there is none
+};
+
+/// The paths with the content of one that comes, neither retired nor replaced.
+struct SameContent {
+  std::optional<std::int64_t> readable;
+  std::vector<std::int64_t> damaged;    ///< in use until now: they are counted
+  std::vector<std::int64_t> set_aside;  ///< found damaged before: they are not counted any more
+};
+
+/// A path in use that may have to go.
+struct KeptPath {
+  Digest content;
+  std::int64_t id = 0;
+  /// Checksum of its row once it is dropped; 0 if the engine reads the row when it drops it.
+  std::uint32_t crc_when_dropped = 0;
+
+  /// The one to go first is the first.
+  bool operator<(const KeptPath& other) const {
+    return content != other.content ? other.content < content : other.id < id;
+  }
+};
+
+/// A robot and task of the batch.
+struct Pair {
+  ExperienceKey key;
+  std::uint64_t paths = 0;                 ///< in use
+  std::map<Digest, SameContent> contents;  ///< of those that come
+  std::set<KeptPath> largest;              ///< as many as the batch may have to drop, and one more
+};
+
+/// A digest of a robot with the name of a task.
+using PairName = std::pair<Digest, std::string>;
+
+struct BatchState {
+  std::map<Digest, KnownRobot> robots;  ///< that are registered
+  std::map<Uuid, EarlierReport> reports;
+  std::set<Uuid> unreadable;  ///< reports that came before and were counted; their rows are damaged
+  std::map<Uuid, std::int64_t> retired_paths;  ///< of reports whose rows are damaged or lost
+  std::set<Uuid> retired;                      ///< reports whose path is retired, here or elsewhere
+  std::map<PairName, Pair> pairs;
+  std::map<Digest, bool> scenes;       ///< by content: whether it can be read
+  std::vector<std::int64_t> path_ids;  ///< for the new ones; one for each attempt with a path
+};
+
+}  // namespace kinship::store
