@@ -156,8 +156,8 @@ kinship_code kinship_world_edge_free(kinship_world* world, const double* from, c
     require(proof, "proof");
     check_clearance(clearance_m);
     Eigen::MatrixXd ends(static_cast<Eigen::Index>(world->dof), 2);
-    ends << read_configurations(*world, from, 1, dof, "from"),
-        read_configurations(*world, to, 1, dof, "to");
+    ends.col(0) = read_configurations(*world, from, 1, dof, "from");
+    ends.col(1) = read_configurations(*world, to, 1, dof, "to");
     write_structure(prove(*world, ends, clearance_m), proof, "proof");
     return KINSHIP_OK;
   });
