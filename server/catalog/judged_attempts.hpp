@@ -21,11 +21,11 @@ struct Context {
   auto operator<=>(const Context&) const = default;
 };
 
-/// By distribution; those that are missing are known to nobody (any more).
+/// By distribution; a missing one is not known, or not any more.
 using Contexts = std::map<Digest, Context>;
 
-/// Attempts of a context that nobody knows (clients that do not say, distributions that
-/// were evicted) count as if so many more had followed: three half-lives, an eighth of the weight.
+/// An attempt of an unknown context (its client did not say, its distribution was evicted) counts
+/// as if so many more had followed: three half-lives, an eighth of the weight.
 inline constexpr std::uint32_t kAgeOfUnknown = 1200;
 
 /// What guidance of one context is judged from.

@@ -27,7 +27,7 @@ using test::Robot;
 constexpr int kScenes = 4;
 constexpr double kStep = 0.05;    // joint units: how far apart edges are looked at without a proof
 constexpr double kDense = 1e-3;   // the same for what is held to be true
-constexpr double kDenser = 1e-4;  // and where there is no room: elsewhere bodies move by less of it
+constexpr double kDenser = 1e-4;  // where kRoom_m is missing: half of kDense moves no body so far
 constexpr double kRoom_m = 5e-3;  // an edge with so much is not to be refused
 
 /// Three sliding joints and a wrist, with a tool 10 mm thick.
