@@ -41,10 +41,11 @@ struct kinship_sampler {
 
 struct kinship_world {
   kinship_world(const kinship::models::LoadedRobot& robot,
+                const kinship::collision::RobotSolids& solids,
                 const kinship::collision::Surroundings& surroundings, std::string its_warning)
       : dof(static_cast<std::size_t>(robot.chain.dof())),
         warning(std::move(its_warning)),
-        world(robot.chain, robot.shapes, surroundings),
+        world(solids, surroundings),
         prover(world) {}
   const std::size_t dof;
   const std::string warning;

@@ -384,8 +384,9 @@ typedef struct kinship_proof {
  * move along it is bounded against their distances, so nothing is stepped over, however thin.
  * Limits of joints are not checked; continuous joints turn the way their numbers say.
  * \param from, to     dof finite numbers each, joint units. \param dof  the world's.
- * \param clearance_m  KINSHIP_CLEARANCE_M, or another one from 1e-5 to 0.1: what comes nearer where
- * it is looked at counts as touching. The smaller, the longer an edge along a surface takes.
+ * \param clearance_m  KINSHIP_CLEARANCE_M, or another one from 1e-5 to 0.1: what comes nearer to an
+ * obstacle, where it is looked at, counts as touching; of the robot's own links at most 1 mm is
+ * asked. The smaller, the longer an edge along a surface takes.
  * \param proof        set with KINSHIP_OK, whether the edge is free or not. */
 KINSHIP_API kinship_code kinship_world_edge_free(kinship_world* world, const double* from,
                                                  const double* to, size_t dof, double clearance_m,

@@ -36,7 +36,7 @@ collision::Surroundings read_surroundings(const kinship_surroundings& given,
 }
 
 /// A sentence a line.
-std::string doubts_of(const models::LoadedRobot& robot,
+std::string doubts_of(const models::LoadedRobot& robot, const collision::RobotSolids& solids,
                       const collision::Surroundings& surroundings) {
   std::string lines;
   const auto add = [&](const std::vector<std::string>& sentences) {
@@ -45,6 +45,8 @@ std::string doubts_of(const models::LoadedRobot& robot,
   };
   add(robot.warnings);
   add(geometry::find_doubts(robot.chain, robot.shapes));
+  if (std::string touching = collision::describe_always_touching(solids); !touching.empty())
+    add({std::move(touching)});
   add(geometry::find_unreachable(robot.chain, robot.shapes, surroundings.T_task_base,
                                  surroundings.scene, surroundings.attached));
   return lines;
@@ -66,13 +68,6 @@ Eigen::Map<const Eigen::MatrixXd> read_configurations(const kinship_world& world
       throw Failure(invalid_input(name + "[" + std::to_string(i) + "] is " +
                                   number_text(numbers[i]) + ", must be finite"));
   return read;
-}
-
-void check_clearance(double clearance_m) {
-  if (!(clearance_m >= collision::kLeastClearance_m && clearance_m <= collision::kLargestRoom_m))
-    throw Failure(invalid_input("clearance_m is " + number_text(clearance_m) + ", must be " +
-                                number_text(collision::kLeastClearance_m) + " to " +
-                                number_text(collision::kLargestRoom_m)));
 }
 
 /// The edges up to the first that is not free.
@@ -124,7 +119,8 @@ kinship_code kinship_world_create(const kinship_robot_file* file,
         surroundings == nullptr
             ? kinship::collision::Surroundings{}
             : read_surroundings(read_structure(surroundings, "surroundings"), robot.chain);
-    *world = new kinship_world(robot, around, doubts_of(robot, around));
+    const kinship::collision::RobotSolids solids(robot.chain, robot.shapes);
+    *world = new kinship_world(robot, solids, around, doubts_of(robot, solids, around));
     if (dof != nullptr)
       *dof = (*world)->dof;
     return KINSHIP_OK;
@@ -154,7 +150,7 @@ kinship_code kinship_world_edge_free(kinship_world* world, const double* from, c
   return guarded([&] {
     require(world, "world");
     require(proof, "proof");
-    check_clearance(clearance_m);
+    kinship::collision::check_clearance("clearance_m", clearance_m);
     Eigen::MatrixXd ends(static_cast<Eigen::Index>(world->dof), 2);
     ends.col(0) = read_configurations(*world, from, 1, dof, "from");
     ends.col(1) = read_configurations(*world, to, 1, dof, "to");
@@ -168,7 +164,7 @@ kinship_code kinship_world_path_free(kinship_world* world, const double* waypoin
   return guarded([&] {
     require(world, "world");
     require(proof, "proof");
-    check_clearance(clearance_m);
+    kinship::collision::check_clearance("clearance_m", clearance_m);
     if (count < 2 || count > kMaxWaypoints)
       throw kinship::Failure(kinship::invalid_input(
           "count is " + std::to_string(count) + ", must be 2 to " + std::to_string(kMaxWaypoints)));

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <sstream>
@@ -14,6 +15,7 @@
 #include "proto/json/problem_json.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/collision/edge_prover.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/scene_meshes.hpp"
 
@@ -39,12 +41,21 @@ void print_forward(const ForwardAnswer& answer, bool json, std::ostream& out) {
       << pose_text(answer.transfer) << frame;
 }
 
-/// Leaves out solutions in which the robot touches something.
-void leave_out_colliding(collision::CollisionWorld& world, InverseAnswer& answer) {
+/// What solutions must not touch, or come near to, as kinship-plan has it.
+struct CheckedWorld {
+  CheckedWorld(const DescribedRobot& robot, const geometry::RobotShapes& shapes,
+               const collision::Surroundings& surroundings)
+      : world(robot.chain, shapes, surroundings), prover(world) {}
+  collision::CollisionWorld world;
+  collision::EdgeProver prover;
+};
+
+/// Leaves out solutions in which the robot touches something, or comes too near to it.
+void leave_out_colliding(collision::EdgeProver& prover, double clearance_m, InverseAnswer& answer) {
   Eigen::MatrixXd free(answer.solutions.rows(), answer.solutions.cols());
   Eigen::Index kept = 0;
   for (Eigen::Index column = 0; column < answer.solutions.cols(); ++column)
-    if (!world.collides(answer.solutions.col(column)))
+    if (prover.clear_ahead(answer.solutions.col(column), {clearance_m}) == 1)
       free.col(kept++) = answer.solutions.col(column);
   answer.colliding = static_cast<std::uint64_t>(answer.solutions.cols() - kept);
   if (kept == 0 && answer.solutions.cols() > 0)
@@ -104,22 +115,22 @@ Result<collision::Surroundings> read_surroundings(const InverseCommandOptions& o
 }
 
 /// What solutions must not touch; none unless it was asked for, or with an exit code in `code`.
-std::optional<collision::CollisionWorld> make_world(const InverseCommandOptions& options,
-                                                    const DescribedRobot& robot, std::ostream& err,
-                                                    int& code) {
+std::unique_ptr<CheckedWorld> make_world(const InverseCommandOptions& options,
+                                         const DescribedRobot& robot, std::ostream& err,
+                                         int& code) {
   if (!options.collision_free)
-    return std::nullopt;
+    return nullptr;
   const auto geometry = read_geometry(kInverse, options.robot, robot.description, err);
   if (!geometry) {
     code = kFailed;
-    return std::nullopt;
+    return nullptr;
   }
   const auto surroundings = read_surroundings(options);
   if (!surroundings) {
     code = refuse(kInverse, surroundings.error(), err);
-    return std::nullopt;
+    return nullptr;
   }
-  return collision::CollisionWorld(robot.chain, *geometry, *surroundings);
+  return std::make_unique<CheckedWorld>(robot, *geometry, *surroundings);
 }
 
 /// Calls `use` with each line's value; a broken line ends it. \return an exit code.
@@ -182,7 +193,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
   const auto placement = placement_of(options.placement);
   if (!placement)
     return refuse(kInverse, placement.error(), err);
-  auto world = make_world(options, *robot, err, code);
+  const auto world = make_world(options, *robot, err, code);
   if (code != kDone)
     return code;
   const inverse::Solver solver(robot->chain);
@@ -197,7 +208,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
   const auto answer_one = [&](const Eigen::Isometry3d& pose) -> std::optional<Error> {
     InverseAnswer answer = solve(solver, T_base_task * pose * T_frame_tip, inverse_options);
     if (world)
-      leave_out_colliding(*world, answer);
+      leave_out_colliding(world->prover, options.clearance_m, answer);
     print_inverse(answer, options.json, out);
     return std::nullopt;
   };

@@ -29,6 +29,7 @@ struct InverseCommandOptions {
   std::string frame = "tip";    ///< whose pose that is: "tip" or "transfer"
   std::string placement;        ///< T_task_base; with it poses are in the task frame
   bool collision_free = false;  ///< solutions that touch something are left out and counted
+  double clearance_m = 1e-3;  ///< what comes nearer touches, as collision::EdgeProofOptions has it
   std::filesystem::path scene;  ///< a problem file: what surrounds the robot in its first problem
   int max_solutions = 8;        ///< 0: all
   double min_distance = 0.2;

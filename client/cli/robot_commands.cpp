@@ -90,14 +90,14 @@ void measure(const CheckOptions& options, const kinematics::Chain& chain,
   check.time_per_pose_us = time_us / std::max(1, options.poses);
 }
 
-std::string geometry_text(const geometry::RobotShapes& geometry) {
+std::string geometry_text(const geometry::RobotShapes& geometry, std::size_t unchecked) {
   const auto around_meshes = static_cast<std::uint64_t>(
       std::ranges::count_if(geometry.shapes, &geometry::LinkShape::approximate));
   return count_text(geometry.shapes.size(), "shape") +
          (around_meshes > 0 ? ", " + std::to_string(around_meshes) + " of them around meshes"
                             : "") +
-         "; " + count_text(geometry.never_colliding.size(), "pair") +
-         " of links never checked against each other";
+         "; " + count_text(unchecked, "pair") +
+         " of links never checked against each other ('kinship robots links' names them)";
 }
 
 /// What a server can filter with for a robot with meshes, and how well that does.
@@ -154,14 +154,14 @@ void print_mimics(const kinematics::Chain& chain, std::ostream& out) {
 }
 
 void print_check(const RobotCheck& check, const kinematics::Chain& chain,
-                 const RobotDescription& description,
-                 const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
+                 const RobotDescription& description, const std::string& geometry,
+                 std::ostream& out) {
   out << "robot       " << check.robot.hex() << '\n'
       << "chain       " << check.base_link << " -> " << check.tip_link << ", "
       << check.joints.size() << " joints\n";
   print_mimics(chain, out);
   print_transfer(description, out);
-  out << "geometry    " << (geometry ? geometry_text(*geometry) : "not known") << '\n'
+  out << "geometry    " << geometry << '\n'
       << "structure   " << check.structure << '\n'
       << "solver      " << check.solver << '\n'
       << "inverse     " << number_text(check.solutions_per_pose, 2) << " solutions and "
@@ -190,11 +190,14 @@ void warn_without_transfer(const char* command, const models::RobotArguments& ar
          "qz qw\" ('kinship robots frames' shows it)\n";
 }
 
-/// Who names pairs has all others checked, also those that cannot but touch.
-void warn_of_touching(const char* command, const kinematics::Chain& chain,
-                      const geometry::RobotShapes& geometry, std::ostream& err) {
+/// Links that touch wherever the robot goes: they are not checked, but are where pairs are named,
+/// for then all others are.
+void warn_of_touching(const char* command, const collision::RobotSolids& solids,
+                      std::ostream& err) {
   constexpr collision::TouchSamples kSamples{200, 190};
-  const collision::RobotSolids solids(chain, geometry);
+  const kinematics::Chain& chain = solids.parts().chain;
+  if (const std::string touching = collision::describe_always_touching(solids); !touching.empty())
+    err << command << ": warning: " << touching << '\n';
   for (const auto& [a, b] : collision::links_always_touching(solids.parts(), kSamples))
     err << command << ": '" << chain.links()[static_cast<std::size_t>(a)].name << "' and '"
         << chain.links()[static_cast<std::size_t>(b)].name
@@ -223,9 +226,12 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   const auto geometry = read_geometry(kCommand, options.robot, robot->description, err);
   warn_without_transfer(kCommand, options.robot, robot->description, err);
   RobotCheck check;
+  std::string geometry_words = "not known";
   if (geometry) {
     warn_of_geometry(kCommand, chain, *geometry, err);
-    warn_of_touching(kCommand, chain, *geometry, err);
+    const collision::RobotSolids solids(chain, *geometry);
+    warn_of_touching(kCommand, solids, err);
+    geometry_words = geometry_text(*geometry, solids.parts().unchecked.size());
     check.links = checked_links(chain, *geometry);
   }
   check.robot = chain.digest();
@@ -240,7 +246,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (options.json)
     out << json::to_json(check) << '\n';
   else
-    print_check(check, chain, robot->description, geometry, out);
+    print_check(check, chain, robot->description, geometry_words, out);
   if (options.json || !geometry)
     return kDone;
   const auto fitted = collision::fit_robot(chain, *geometry);

@@ -8,6 +8,7 @@
 #include "client/cli/robot_commands.hpp"
 #include "client/cli/robot_upkeep_commands.hpp"
 #include "client/cli/srdf_command.hpp"
+#include "robots/collision/edge_prover.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -94,6 +95,11 @@ void add_inverse(CLI::App& group, Session& session) {
   command->add_option("--placement", options->placement, kPlacementHelp);
   command->add_flag("--collision-free", options->collision_free,
                     "Leave out solutions in which the robot touches itself or the scene");
+  command
+      ->add_option("--clearance", options->clearance_m,
+                   "With --collision-free: what comes nearer touches, m, as kinship-plan has it "
+                   "(default 0.001)")
+      ->check(arguments::between(collision::kLeastClearance_m, collision::kLargestRoom_m));
   command
       ->add_option("--scene", options->scene,
                    "Problem file: scene, attached objects and placement of its first problem, "

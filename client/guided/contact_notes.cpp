@@ -1,8 +1,10 @@
 #include "client/guided/contact_notes.hpp"
 
 #include <algorithm>
+#include <iomanip>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 namespace kinship::planner {
@@ -12,9 +14,15 @@ constexpr std::size_t kNoted = 200;     // more say nothing new
 constexpr std::size_t kThingsTold = 3;  // on one line
 constexpr std::size_t kNamesTold = 4;   // of what touches one of them
 
-/// Something that is touched.
+std::string millimetres(double length_m) {
+  std::ostringstream text;
+  text << std::setprecision(3) << 1e3 * length_m << " mm";
+  return text.str();
+}
+
+/// Something that is touched, or that something is too near to.
 struct Touched {
-  std::string name;
+  std::string text;                            // "touches 'wall'"
   std::size_t configurations = 0;              // in which it is
   std::map<std::string, std::size_t> by = {};  // what touches it, in how many of them
 };
@@ -30,6 +38,13 @@ std::string names_text(const Touched& touched) {
 }
 
 }  // namespace
+
+std::string near_text(const collision::NearPair& near) {
+  const std::string first = "'" + near.first + "' ", second = "'" + near.second + "'";
+  return near.clearance_m > 0 ? first + "is " + millimetres(near.clearance_m) + " from " + second +
+                                    ", nearer than the clearance of " + millimetres(near.asked_m)
+                              : first + "touches " + second;
+}
 
 void ContactNotes::note(const Eigen::Ref<const Eigen::VectorXd>& q) {
   if (colliding_.size() < kNoted)
@@ -55,22 +70,26 @@ std::string ContactNotes::text() {
   std::map<std::string, Touched> things;
   for (const Eigen::VectorXd& q : colliding_) {
     std::set<std::string> touched;
-    for (const auto& [by, name] : world_.find_contacts(q)) {
-      ++things[name].by[by];
-      touched.insert(name);
+    for (const auto& near : find_near_(q)) {
+      const std::string what =
+          (near.clearance_m > 0 ? "is less than " + millimetres(near.asked_m) + " from '"
+                                : "touches '") +
+          near.second + "'";
+      ++things[what].by[near.first];
+      touched.insert(what);
     }
-    for (const std::string& name : touched)
-      ++things[name].configurations;
+    for (const std::string& what : touched)
+      ++things[what].configurations;
   }
   std::vector<Touched> told;
-  for (auto& [name, touched] : things) {
-    touched.name = name;
+  for (auto& [what, touched] : things) {
+    touched.text = what;
     told.push_back(std::move(touched));
   }
   std::ranges::stable_sort(told, std::greater{}, &Touched::configurations);
   std::string text;
   for (std::size_t i = 0; i < std::min(kThingsTold, told.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + names_text(told[i]) + " touches '" + told[i].name + "'";
+    text += (i == 0 ? "" : ", ") + names_text(told[i]) + " " + told[i].text;
     if (colliding_.size() > 1)
       text += " in " + std::to_string(told[i].configurations) + " of " +
               std::to_string(colliding_.size()) + (i == 0 ? " configurations" : "");

@@ -4,11 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <iomanip>
 #include <limits>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -63,12 +61,6 @@ std::string described(const planning::RegionConstraint::Vector6& excess) {
       text += (text.empty() ? "" : ", ") + std::string(displacement_name(i)) + " by " +
               std::to_string(excess[i]);
   return text + " outside Bw";
-}
-
-std::string millimetres(double length_m) {
-  std::ostringstream text;
-  text << std::setprecision(3) << 1e3 * length_m << " mm";
-  return text.str();
 }
 
 /// "every goal collides: 'l4' touches 'wall'", or the text alone where nothing more is known.
@@ -153,8 +145,8 @@ class Planning {
         T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
         world_(robot.solids,
                {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
-        goal_contacts_(world_),
         prover_(world_),
+        goal_contacts_(find_near()),
         is_free_(what_is_free(stop)),
         recorder_(recorder),
         generator_(problem.seed) {}
@@ -238,7 +230,7 @@ class Planning {
       result.start = start_;
       return true;
     }
-    ContactNotes contacts(world_);
+    ContactNotes contacts(find_near());
     const planning::IsFree watched = contacts.watched(is_free_);
     planning::StartConfiguration found = planning::start_configuration(
         robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_start,
@@ -248,7 +240,7 @@ class Planning {
       result.not_planned = not_planned_by(found.reason);
       result.reason =
           found.reason == NoPath::StartCollides
-              ? with_detail("every configuration of the start collides", contacts_text(contacts))
+              ? with_detail("every configuration of the start collides", contacts.text())
               : explain(found.reason);
       return false;
     }
@@ -347,9 +339,9 @@ class Planning {
     const std::string text(describe(reason));
     switch (reason) {
       case NoPath::StartCollides:
-        return text + contact_text(": ", start_);
+        return with_detail(text, contact_text(start_));
       case NoPath::GoalsCollide:
-        return with_detail(text, contacts_text(goal_contacts_));
+        return with_detail(text, goal_contacts_.text());
       case NoPath::StartOutOfReach:
       case NoPath::StartBeyondLimits:
       case NoPath::StartNotFound:
@@ -379,26 +371,24 @@ class Planning {
     return describe(inverse::find_unreached(chain, T_base_tip), chain);
   }
 
-  /// What is touched, or what the first one is too near to, if none touches anything.
-  std::string contacts_text(ContactNotes& contacts) {
-    const std::string text = contacts.text();
-    return text.empty() && !contacts.noted().empty() ? contact_text("", contacts.noted().front())
-                                                     : text;
+  FindNear find_near() {
+    if (settings_.clearance_m > 0)
+      return [this](const Eigen::VectorXd& q) {
+        return prover_.find_near(q, {settings_.clearance_m});
+      };
+    return [this](const Eigen::VectorXd& q) {
+      std::vector<collision::NearPair> touching;
+      for (const auto& [first, second] : world_.find_contacts(q))
+        touching.push_back({first, second});
+      return touching;
+    };
   }
 
-  std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
-    const auto quoted = [](const std::string& name) { return "'" + name + "'"; };
-    if (const auto contact = world_.find_contact(q))
-      return before + quoted(contact->first) + " touches " + quoted(contact->second);
-    if (!is_free_.proves_edges())
-      return "";
-    const collision::EdgeProof proof = prover_.prove(q, q, {settings_.clearance_m});
-    if (proof.is_free())
-      return "";
-    const collision::EdgeRefutation& near = *proof.refutation;
-    return before + quoted(near.first) + " is " + millimetres(near.clearance_m) + " from " +
-           quoted(near.second) + ", nearer than the clearance of " +
-           millimetres(settings_.clearance_m);
+  /// What touches at a configuration, or comes nearest of what is too near.
+  std::string contact_text(const Eigen::VectorXd& q) {
+    const std::vector<collision::NearPair> near = find_near()(q);
+    const auto nearest = std::ranges::min_element(near, {}, &collision::NearPair::clearance_m);
+    return nearest == near.end() ? "" : near_text(*nearest);
   }
 
   const PlannedRobot& robot_;
@@ -406,8 +396,8 @@ class Planning {
   const PlanSettings& settings_;
   const Eigen::Isometry3d T_task_base_;
   collision::CollisionWorld world_;
-  ContactNotes goal_contacts_;
   collision::EdgeProver prover_;
+  ContactNotes goal_contacts_;
   planning::IsFree is_free_;
   Eigen::VectorXd start_;    // dof; from find_start on
   Eigen::Matrix2Xd bounds_;  // around it

@@ -7,11 +7,14 @@
 
 namespace kinship::planner {
 
+/// Resolutions that may be asked for, joint units.
+inline constexpr double kLeastResolution = 1e-4, kLargestResolution = 1;
+
 /// How every problem of a run is planned, guided or not.
 struct PlanSettings {
   double resolution = 0.05;  ///< between checked configurations, joint units
-  /// What comes nearer counts as touching, and all edges of a path are proven, m; 0: edges are only
-  /// asked about at the resolution.
+  /// What comes nearer counts as touching, and all edges of a path are proven, m, as
+  /// collision::EdgeProofOptions says; 0: edges are only asked about at the resolution.
   double clearance_m = 1e-3;
   double overshoot = 1.5;               ///< see planning::BirrtOptions
   std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting

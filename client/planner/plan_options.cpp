@@ -38,7 +38,7 @@ A problem that cannot be planned (start or goal in collision, goal out of reach,
 cannot keep to a constraint) is answered with its reason, and the others are planned. proto/FORMATS.md has the formats.
 
 Exit codes: 0 every line was answered (unsolved is an answer); 1 failed or interrupted, the robot was refused (its label belongs to
-another robot), no problem could be attempted, or a report could not be kept; 2 wrong usage; 3 a file or folder does not exist, or
+another robot), no problem fits it or could be read, or a report could not be kept; 2 wrong usage; 3 a file or folder does not exist, or
 no such task or distribution (--guidance require); 4 no server answered (--guidance require).)";
 
 std::vector<std::string> guide_words() {
@@ -88,14 +88,15 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       });
   CLI::Option* const clearance =
       app.add_option("--clearance", settings.clearance_m,
-                     "what comes nearer counts as touching, m: every edge of a path is proven to "
-                     "touch nothing, by bounds of how far the robot moves")
+                     "what comes nearer to an obstacle counts as touching, m: every edge of a path "
+                     "is proven to touch nothing, by bounds of how far the robot moves; of the "
+                     "robot's own links, and what it holds, at most 1 mm is asked")
           ->check(between(collision::kLeastClearance_m, collision::kLargestRoom_m))
           ->capture_default_str();
   app.add_option("--resolution", raw.resolution,
                  "prove nothing, but check configurations that are at most so far apart, joint "
                  "units, as studies do: what is thinner may be missed")
-      ->check(between(1e-4, 1.0))
+      ->check(between(kLeastResolution, kLargestResolution))
       ->excludes(clearance);
   app.add_option("--max-checks", settings.max_checks, "collision checks after which to give up")
       ->check(between(std::uint64_t{1}, kMax))

@@ -137,7 +137,11 @@ class Run {
                   options.task},
         meshes_(options.problems.parent_path(),
                 models::parse_packages(options.robot.packages).value_or_throw()),
-        scenes_(options, robot_.chain, streams.messages) {}
+        scenes_(options, robot_.chain, streams.messages) {
+    if (const std::string touching = collision::describe_always_touching(robot_.solids);
+        !touching.empty())
+      streams.messages << "warning: " << touching << '\n';
+  }
 
   /// \return whether every line has its result; false if `stop` ended it.
   bool answer(std::vector<ProblemLine>& lines, Progress& progress,

@@ -29,7 +29,7 @@ struct RunSummary {
 /// \param stop  asked often; true ends the run cleanly: what is planned is written and reported.
 /// \return      fails if the server refuses the robot (nothing is planned if it does so at once),
 /// if
-///              no problem could be attempted, or a report could not be kept.
+///              no problem fits the robot or could be read, or a report could not be kept.
 /// \throws Failure if the robot cannot be read or the results cannot be written.
 RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
                     const std::function<bool()>& stop);

@@ -16,6 +16,7 @@
 #include "client/python/guidance_handle.hpp"
 #include "client/python/waiting.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/number_text.hpp"
 #include "robots/collision/edge_prover.hpp"
 #include "robots/geometry/geometry_doubts.hpp"
 
@@ -76,10 +77,31 @@ planner::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& p
 /// What kinship-plan warns of: solids of the robot and of the scene that cannot be meant.
 std::vector<std::string> doubts_of(const Robot& robot, const Plan& made) {
   std::vector<std::string> doubts = geometry::find_doubts(robot.chain(), robot.shapes());
+  if (std::string touching = collision::describe_always_touching(robot.planned()->solids);
+      !touching.empty())
+    doubts.push_back(std::move(touching));
   for (std::string& sentence :
        planner::GeometryWarnings(robot.chain(), robot.shapes()).find(made.problem, made.planned))
     doubts.push_back(std::move(sentence));
   return doubts;
+}
+
+/// Either a clearance, which is proven, or a resolution, which is not.
+/// \throws Failure(InvalidInput) if both are given, or one is out of its limits.
+void read_proof(std::optional<double> clearance, std::optional<double> resolution,
+                planner::PlanSettings& settings) {
+  if (clearance && resolution)
+    throw Failure(invalid_input(
+        "plan: takes clearance, which is proven, or resolution, with which nothing is, not both"));
+  if (clearance)
+    collision::check_clearance("clearance", *clearance);
+  if (resolution &&
+      !(*resolution >= planner::kLeastResolution && *resolution <= planner::kLargestResolution))
+    throw Failure(invalid_input("resolution is " + number_text(*resolution) + ", must be from " +
+                                number_text(planner::kLeastResolution) + " to " +
+                                number_text(planner::kLargestResolution)));
+  settings.clearance_m = resolution ? 0 : clearance.value_or(settings.clearance_m);
+  settings.resolution = resolution.value_or(settings.resolution);
 }
 
 Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
@@ -251,15 +273,11 @@ void bind_planning(py::module_& module) {
       [](const std::shared_ptr<Robot>& robot, const Problem& problem,
          const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
          const std::string& arm, const std::string& planner, std::uint64_t max_checks,
-         double clearance, std::optional<double> resolution, std::uint64_t shortcut_checks,
-         int max_goals, double limit_slack) {
+         std::optional<double> clearance, std::optional<double> resolution,
+         std::uint64_t shortcut_checks, int max_goals, double limit_slack) {
         planner::PlanSettings settings;
         settings.max_checks = max_checks;
-        if (!(clearance >= collision::kLeastClearance_m && clearance <= collision::kLargestRoom_m))
-          throw std::invalid_argument("plan: clearance of " + std::to_string(clearance) +
-                                      " m, must be from 1e-5 to 0.1 m");
-        settings.clearance_m = resolution ? 0 : clearance;
-        settings.resolution = resolution.value_or(settings.resolution);
+        read_proof(clearance, resolution, settings);
         settings.shortcut_checks = shortcut_checks;
         settings.max_goals = max_goals;
         settings.limit_slack = limit_slack;
@@ -269,8 +287,7 @@ void bind_planning(py::module_& module) {
       },
       py::arg("robot"), py::arg("problem"), py::arg("guidance") = py::none(), py::kw_only(),
       py::arg("seed") = py::none(), py::arg("arm") = "", py::arg("planner") = "",
-      py::arg("max_checks") = planner::PlanSettings{}.max_checks,
-      py::arg("clearance") = planner::PlanSettings{}.clearance_m,
+      py::arg("max_checks") = planner::PlanSettings{}.max_checks, py::arg("clearance") = py::none(),
       py::arg("resolution") = py::none(),
       py::arg("shortcut_checks") = planner::PlanSettings{}.shortcut_checks,
       py::arg("max_goals") = planner::PlanSettings{}.max_goals,
@@ -282,7 +299,8 @@ seed             instead of the problem's: equal seed, equal path
 arm              'guided', 'control' or 'uniform'; empty: chosen as the evidence says
 planner          'birrt', 'cbirrt2', 'roadmap' or 'ompl:NAME'; empty: as the problem needs
 max_checks       collision checks after which it gives up
-clearance        what comes nearer counts as touching, m: every edge of the path is proven
+clearance        what comes nearer to an obstacle counts as touching, m, by default 0.001: every edge
+                 of the path is proven; of the robot's own links at most 0.001 is asked
 resolution       instead of a proof: between checked configurations, joint units
 shortcut_checks  spent on shortening the path
 max_goals        goal configurations found for a goal pose

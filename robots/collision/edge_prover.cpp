@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "proto/types/failure.hpp"
+#include "proto/types/number_text.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::collision {
@@ -18,6 +21,13 @@ constexpr int kCuts = 4, kLevels = 3;
 constexpr double kFarthest_m = 1e4;  // on one edge: what is farther is no motion of a robot
 
 }  // namespace
+
+void check_clearance(const std::string& name, double clearance_m) {
+  if (!(clearance_m >= kLeastClearance_m && clearance_m <= kLargestRoom_m))
+    throw Failure(invalid_input(name + " is " + number_text(clearance_m) + " m, must be from " +
+                                number_text(kLeastClearance_m) + " to " +
+                                number_text(kLargestRoom_m) + " m"));
+}
 
 EdgeProver::EdgeProver(CollisionWorld& world)
     : world_(world),
@@ -43,17 +53,21 @@ EdgeProver::EdgeProver(CollisionWorld& world)
         chain.joint_before_both(world.bodies_[first].joint, world.bodies_[second].joint));
 }
 
-void EdgeProver::check(const Eigen::Ref<const Eigen::MatrixXd>& qs,
-                       const EdgeProofOptions& options) const {
+void EdgeProver::begin(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                       const EdgeProofOptions& options) {
   if (qs.rows() != middles_.rows())
     throw std::invalid_argument("EdgeProver: " + std::to_string(qs.rows()) + " values for " +
                                 std::to_string(middles_.rows()) + " joints");
   if (!qs.allFinite())
     throw std::invalid_argument("EdgeProver: q is not finite");
-  if (!(options.clearance_m >= kLeastClearance_m && options.clearance_m <= kLargestRoom_m))
-    throw std::invalid_argument("EdgeProver: clearance of " + std::to_string(options.clearance_m) +
-                                " m, must be from " + std::to_string(kLeastClearance_m) + " to " +
-                                std::to_string(kLargestRoom_m) + " m");
+  check_clearance("clearance", options.clearance_m);
+  clearances_ = {options.clearance_m, std::min(options.clearance_m, kOwnClearance_m)};
+}
+
+double EdgeProver::clearance_m(const BodyPair& pair) const {
+  const bool is_own = world_.bodies_[pair.first].kind != BodyKind::Obstacle &&
+                      world_.bodies_[pair.second].kind != BodyKind::Obstacle;
+  return is_own ? clearances_.moving_m : clearances_.standing_m;
 }
 
 EdgeProof EdgeProver::prove(const Eigen::Ref<const Eigen::VectorXd>& from,
@@ -65,14 +79,13 @@ EdgeProof EdgeProver::prove(const Eigen::Ref<const Eigen::VectorXd>& from,
 const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen::MatrixXd>& from,
                                                     const Eigen::Ref<const Eigen::MatrixXd>& to,
                                                     const EdgeProofOptions& options) {
-  check(from, options);
-  check(to, options);
+  begin(from, options);
+  begin(to, options);
   if (from.cols() != to.cols())
     throw std::invalid_argument("EdgeProver: " + std::to_string(from.cols()) + " starts and " +
                                 std::to_string(to.cols()) + " ends");
   from_ = from;
   change_ = to - from;
-  clearance_m_ = options.clearance_m;
   proofs_.assign(static_cast<std::size_t>(from.cols()), {});
   for (EdgeProof& proof : proofs_)
     proof.least_clearance_m = std::numeric_limits<double>::infinity();
@@ -104,9 +117,9 @@ void EdgeProver::ask_lanes() {
     bounds_.bound_all(from_.col(column), from_.col(column) + change_.col(column), motion_m);
     const double farthest_m = motion_m.cols() == 0 ? 0 : motion_m.row(0).maxCoeff();
     if (!(farthest_m <= kFarthest_m))
-      throw std::invalid_argument("EdgeProver: an edge on which a body may move by " +
-                                  std::to_string(farthest_m) + " m, at most " +
-                                  std::to_string(kFarthest_m) + " m are looked at");
+      throw Failure(invalid_input("on an edge a body may move by " + number_text(farthest_m) +
+                                  " m, of which at most " + number_text(kFarthest_m) +
+                                  " m are looked at"));
     const double count = std::max(1.0, std::ceil(farthest_m / (2 * kFirstGrowth_m)));
     for (double i = 0; i < count; ++i)
       parts_.push_back({edge, i / count, (i + 1) / count});
@@ -138,7 +151,7 @@ void EdgeProver::ask_parts(std::span<const Part> parts, bool is_last) {
       grown_m_ = grown_m_.cwiseMax(half * motion_m);
   }
   const LaneAnswer answer =
-      world_.lanes_.ask_grown(middles_.leftCols(count), grown_m_, clearance_m_, /*is_ahead=*/false);
+      world_.lanes_.ask_grown(middles_.leftCols(count), grown_m_, clearances_, /*is_ahead=*/false);
   for (int lane = 0; lane < static_cast<int>(count); ++lane)
     if (const Part& part = parts[static_cast<std::size_t>(lane)];
         (answer.maybe >> lane & 1U) != 0 && !proofs_[part.edge].refutation)
@@ -284,9 +297,10 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
   if (world_.bodies_[a].joint != both)
     motion_m += motion_m_(both + 1, static_cast<Eigen::Index>(a));
   Place &from = places_[piece.from], &to = places_[piece.to];
+  const double clearance = clearance_m(pairs_[pair]);
   const auto are_apart = [&] { return motion_m < from.distances[pair].m + to.distances[pair].m; };
   for (Place* place : {&from, &to})  // what may be too near is refused, however little it moves
-    if (!place->distances[pair].is_close && place->distances[pair].m <= clearance_m_ &&
+    if (!place->distances[pair].is_close && place->distances[pair].m <= clearance &&
         !measure(*place, pair, std::numeric_limits<double>::infinity()))
       return false;
   if (are_apart())
@@ -318,7 +332,7 @@ bool EdgeProver::measure(Place& place, std::size_t pair, double enough_m) {
   if (!distance.is_close)
     return true;
   proof.least_clearance_m = std::min(proof.least_clearance_m, distance.m);
-  if (distance.m > clearance_m_)
+  if (distance.m > clearance_m(pairs_[pair]))
     return true;
   proof.refutation = {place.q, place.share, world_.bodies_[a].name, world_.bodies_[b].name,
                       distance.m};
@@ -327,26 +341,24 @@ bool EdgeProver::measure(Place& place, std::size_t pair, double enough_m) {
 
 Eigen::Index EdgeProver::clear_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                      const EdgeProofOptions& options) {
-  check(qs, options);
-  return alike_ahead(qs, options.clearance_m, true);
+  begin(qs, options);
+  return alike_ahead(qs, true);
 }
 
 Eigen::Index EdgeProver::near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                     const EdgeProofOptions& options) {
-  check(qs, options);
-  return alike_ahead(qs, options.clearance_m, false);
+  begin(qs, options);
+  return alike_ahead(qs, false);
 }
 
-Eigen::Index EdgeProver::alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
-                                     double clearance_m, bool clear) {
+Eigen::Index EdgeProver::alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool clear) {
   if (!world_.standing_contacts_.empty())
     return clear ? 0 : qs.cols();
-  clearance_m_ = clearance_m;
   grown_m_.setZero();
   for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
     const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
     const LaneAnswer answer = world_.lanes_.ask_grown(qs.middleCols(first, count), grown_m_,
-                                                      clearance_m, /*is_ahead=*/clear);
+                                                      clearances_, /*is_ahead=*/clear);
     for (Eigen::Index i = 0; i < count; ++i) {
       const bool is_near =
           (answer.surely >> i & 1U) != 0 ||
@@ -367,12 +379,39 @@ bool EdgeProver::is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q) 
       if (const Body& body = world_.bodies_[index]; body.joint >= 0)
         world_.T_base_bodies_[index] =
             world_.T_base_joints_[static_cast<std::size_t>(body.joint)] * body.T_joint_body;
-    const Solid &a = world_.bodies_[pair.first].solid, &b = world_.bodies_[pair.second].solid;
-    const Eigen::Isometry3d &T_a = world_.T_base_bodies_[pair.first],
-                            &T_b = world_.T_base_bodies_[pair.second];
-    return cheap_distance_m(a, T_a, b, T_b) > clearance_m_ ||
-           close_distance_m(a, T_a, b, T_b, clearance_m_ + kMotionRounding_m) > clearance_m_;
+    return placed_distance_m(pair) > clearance_m(pair);
   });
+}
+
+double EdgeProver::placed_distance_m(const BodyPair& pair) const {
+  const Solid &a = world_.bodies_[pair.first].solid, &b = world_.bodies_[pair.second].solid;
+  const Eigen::Isometry3d &T_a = world_.T_base_bodies_[pair.first],
+                          &T_b = world_.T_base_bodies_[pair.second];
+  const double clearance = clearance_m(pair), cheap_m = cheap_distance_m(a, T_a, b, T_b);
+  return cheap_m > clearance ? cheap_m
+                             : close_distance_m(a, T_a, b, T_b, clearance + kMotionRounding_m);
+}
+
+std::vector<NearPair> EdgeProver::find_near(const Eigen::Ref<const Eigen::VectorXd>& q,
+                                            const EdgeProofOptions& options) {
+  begin(q, options);
+  world_.place(q);
+  std::vector<NearPair> near;
+  const auto add = [&](const BodyPair& pair, double distance_m) {
+    const auto [first, second] = world_.names(pair);
+    for (NearPair& known : near)
+      if (known.first == first && known.second == second) {
+        known.clearance_m = std::min(known.clearance_m, distance_m);
+        return;
+      }
+    near.push_back({first, second, distance_m, clearance_m(pair)});
+  };
+  for (const BodyPair& pair : world_.standing_contacts_)
+    add(pair, 0);
+  for (const BodyPair& pair : world_.pairs_)
+    if (const double distance_m = placed_distance_m(pair); distance_m <= clearance_m(pair))
+      add(pair, distance_m);
+  return near;
 }
 
 }  // namespace kinship::collision

@@ -17,18 +17,27 @@ namespace kinship::collision {
 /// The smallest clearance that may be asked for, m: far above rounding, so that halving ends.
 inline constexpr double kLeastClearance_m = 1e-5;
 
+/// Clearance of the robot's links, and what it holds, from one another, m, where less is not asked
+/// for: a wrist may pass its hand by a few millimetres wherever it goes, and knows where both are.
+inline constexpr double kOwnClearance_m = 1e-3;
+
 struct EdgeProofOptions {
-  /// What comes nearer than this may count as touching, m. Halving ends there: the smaller, the
-  /// more configurations an edge along a surface costs.
+  /// What comes nearer to an obstacle than this may count as touching, m, and, up to
+  /// kOwnClearance_m, what comes nearer to another link. Halving ends there: the smaller, the more
+  /// configurations an edge along a surface costs.
   double clearance_m = 1e-3;
 };
+
+/// \throws Failure(InvalidInput) if a clearance is not from kLeastClearance_m to kLargestRoom_m.
+/// \param name  of the argument, for the message
+void check_clearance(const std::string& name, double clearance_m);
 
 /// Where an edge is not free.
 struct EdgeRefutation {
   Eigen::VectorXd q;          ///< dof, joint units
   double share = 0;           ///< of the edge before q, 0 to 1
   std::string first, second;  ///< the names of what touches there, or nearly does
-  double clearance_m = 0;     ///< between the two: at most EdgeProofOptions::clearance_m
+  double clearance_m = 0;     ///< between the two: at most what is asked of them
 };
 
 /// What is known of the straight line between two configurations.
@@ -42,6 +51,13 @@ struct EdgeProof {
   std::uint64_t distances = 0;       ///< measured, of a pair of bodies each
 
   bool is_free() const noexcept { return !refutation; }
+};
+
+/// Two things that are as near to each other as may count as touching.
+struct NearPair {
+  std::string first, second;  ///< names
+  double clearance_m = 0;     ///< between the two; 0: they touch
+  double asked_m = 0;         ///< that is asked of them; at least clearance_m
 };
 
 /// Proves that a robot touches nothing on the straight line between two configurations, or finds
@@ -63,8 +79,8 @@ class EdgeProver {
 
   /// \param from, to  dof, joint units; limits are not checked, continuous joints turn the way
   ///                  their numbers say.
-  /// \throws std::invalid_argument if a size is wrong, a value not finite, or clearance_m not from
-  ///         kLeastClearance_m to kLargestRoom_m, or a body may move by more than 10 km.
+  /// \throws std::invalid_argument if a size is wrong or a value not finite
+  /// \throws Failure(InvalidInput) as check_clearance(), or if a body may move by more than 10 km.
   EdgeProof prove(const Eigen::Ref<const Eigen::VectorXd>& from,
                   const Eigen::Ref<const Eigen::VectorXd>& to,
                   const EdgeProofOptions& options = {});
@@ -79,13 +95,19 @@ class EdgeProver {
   /// How many configurations, from the first on, are farther than the clearance from touching
   /// anything, before one is not.
   /// \param qs  dof x n, joint units
-  /// \throws std::invalid_argument as above.
+  /// \throws as above.
   Eigen::Index clear_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                            const EdgeProofOptions& options = {});
 
   /// The same the other way round: how many are not, before one is.
   Eigen::Index near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                           const EdgeProofOptions& options = {});
+
+  /// All pairs that are too near at one configuration, of each pair of names the nearest, for
+  /// messages; those of the last joints come first.
+  /// \throws as above.
+  std::vector<NearPair> find_near(const Eigen::Ref<const Eigen::VectorXd>& q,
+                                  const EdgeProofOptions& options = {});
 
  private:
   /// What is known of a pair at a configuration.
@@ -115,7 +137,9 @@ class EdgeProver {
     double from = 0, to = 0;
   };
 
-  void check(const Eigen::Ref<const Eigen::MatrixXd>& qs, const EdgeProofOptions& options) const;
+  /// Checks what is asked and takes over the clearances.
+  void begin(const Eigen::Ref<const Eigen::MatrixXd>& qs, const EdgeProofOptions& options);
+  double clearance_m(const BodyPair& pair) const;  ///< that is asked of a pair
   /// Asks the lanes about the edges, part by part; what they leave open becomes pieces.
   void ask_lanes();
   /// Asks about at most kLanes parts. \param is_last  whether they are not cut into smaller ones
@@ -138,10 +162,11 @@ class EdgeProver {
   /// Measures a pair, closely unless it reaches what is enough. \return whether it is not too near.
   bool measure(Place& place, std::size_t pair, double enough_m);
   /// How many, from the first on, are clear, or not, before one answers otherwise.
-  Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, double clearance_m,
-                           bool clear);
+  Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool clear);
   /// Whether no pair that the lanes doubt is too near. \param lane  q's, of the last question
   bool is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q);
+  /// Of a pair where the world placed it, close where it may be too near.
+  double placed_distance_m(const BodyPair& pair) const;
   void look_at(Piece piece);  ///< by value: the list grows
 
   CollisionWorld& world_;
@@ -154,7 +179,7 @@ class EdgeProver {
 
   // Of the edges that are asked about.
   Eigen::MatrixXd from_, change_;  // dof x n
-  double clearance_m_ = 0;
+  LaneRoom clearances_;
   std::vector<EdgeProof> proofs_;
   std::deque<Place> places_;
   std::size_t used_places_ = 0;

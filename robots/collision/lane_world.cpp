@@ -84,21 +84,21 @@ LaneAnswer LaneWorld::ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
 }
 
 LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
-                                const Eigen::Ref<const Eigen::MatrixXd>& motion_m, double room_m,
-                                bool is_ahead) {
+                                const Eigen::Ref<const Eigen::MatrixXd>& motion_m,
+                                const LaneRoom& room, bool is_ahead) {
   constexpr double kOfFloats = 1 + 1e-6;
   const auto moves = [&](int joint, std::size_t body) {  // as what the joint moves sees it
     return motion_m(joint + 1, static_cast<Eigen::Index>(index_of_body_[body]));
   };
-  const auto grown = [&](double by_m) { return static_cast<float>((by_m + room_m) * kOfFloats); };
+  const auto grown = [](double by_m) { return static_cast<float>(by_m * kOfFloats); };
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    growth_[i] = grown(moves(-1, i));
+    growth_[i] = grown(moves(-1, i) + room.standing_m);
     const LaneBody& body = bodies_[i];
     for (int k = 0; k < body.others; ++k) {
       const auto at = static_cast<std::size_t>(body.first_other + k);
       const int both = joints_before_both_[at];
-      growth_[bodies_.size() + at] =
-          grown(moves(both, i) + moves(both, static_cast<std::size_t>(others_[at].body)));
+      growth_[bodies_.size() + at] = grown(
+          moves(both, i) + moves(both, static_cast<std::size_t>(others_[at].body)) + room.moving_m);
     }
   }
   return answer(qs, fastest(qs.cols()), is_ahead, true);

@@ -20,6 +20,12 @@ struct LaneAnswer {
   std::uint32_t surely = 0;  ///< collides for sure; a part of maybe
 };
 
+/// By how much more than their motion pairs are grown, m.
+struct LaneRoom {
+  double standing_m = 0;  ///< of a moving body and what stands still
+  double moving_m = 0;    ///< of two moving bodies
+};
+
 /// The moving bodies of a world as spheres, and what stands around as boxes, capsules and
 /// cylinders, asked about several configurations at once. Where solids touch it never says free.
 /// Not shared between threads.
@@ -45,10 +51,10 @@ class LaneWorld {
   /// much
   ///                  each grows towards what stands still ([0]) and what the k-th joint moves
   ///                  ([k])
-  /// \param room_m    by how much more every pair is
+  /// \param room      by how much more pairs are
   /// \param is_ahead  nothing is known of those behind the first that surely collides
   LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
-                       const Eigen::Ref<const Eigen::MatrixXd>& motion_m, double room_m,
+                       const Eigen::Ref<const Eigen::MatrixXd>& motion_m, const LaneRoom& room,
                        bool is_ahead);
 
   /// Whether it has room for the robot; else everything may collide.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "robots/collision/body.hpp"
@@ -23,12 +24,17 @@ class RobotSolids {
     kinematics::Chain chain;
     std::vector<Body> bodies;  ///< of the links
     LinkPairs unchecked;
+    LinkPairs always_touching;  ///< of these, those found in random configurations
   };
   const Parts& parts() const noexcept { return *parts_; }
 
  private:
   std::shared_ptr<const Parts> parts_;
 };
+
+/// Names the pairs of links that are not checked because they touch wherever the robot goes, and
+/// says what to do: a sentence without a full stop at its end; empty if there are none.
+std::string describe_always_touching(const RobotSolids& robot);
 
 /// The links of a robot and what surrounds it.
 /// \throws Failure(InvalidInput) as CollisionWorld's constructor says.

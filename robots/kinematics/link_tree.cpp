@@ -49,7 +49,7 @@ std::string kind_of(const urdf::Geometry& geometry) {
   }
 }
 
-TreeJoint read_joint_of(const urdf::Joint& source) {
+TreeJoint read_joint_of(const urdf::ModelInterface& model, const urdf::Joint& source) {
   TreeJoint joint{.name = source.name, .type = type_of(source), .lower = {}, .upper = {}};
   const bool has_limits = joint.type == "revolute" || joint.type == "prismatic";
   if (has_limits && source.limits != nullptr) {
@@ -59,14 +59,14 @@ TreeJoint read_joint_of(const urdf::Joint& source) {
   if (source.mimic != nullptr)
     joint.mimics = source.mimic->joint_name;
   if (joint.type != "fixed")
-    joint.fault = find_joint_fault(source);
+    joint.fault = find_joint_fault(model, source);
   return joint;
 }
 
-TreeLink read_link_of(const urdf::Link& source, int parent) {
+TreeLink read_link_of(const urdf::ModelInterface& model, const urdf::Link& source, int parent) {
   TreeLink link{.name = source.name, .parent = parent, .joint = {}};
   if (source.parent_joint != nullptr)
-    link.joint = read_joint_of(*source.parent_joint);
+    link.joint = read_joint_of(model, *source.parent_joint);
   for (const auto& collision : source.collision_array)
     if (collision != nullptr && collision->geometry != nullptr)
       link.collision.push_back(kind_of(*collision->geometry));
@@ -203,11 +203,11 @@ Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf) {
   if (!model)
     return model.error();
   std::vector<urdf::LinkConstSharedPtr> found = {(*model)->getRoot()};
-  std::vector<TreeLink> tree = {read_link_of(*found[0], -1)};
+  std::vector<TreeLink> tree = {read_link_of(**model, *found[0], -1)};
   for (std::size_t i = 0; i < found.size(); ++i)
     for (const auto& joint : found[i]->child_joints) {
       found.push_back((*model)->getLink(joint->child_link_name));
-      tree.push_back(read_link_of(*found.back(), static_cast<int>(i)));
+      tree.push_back(read_link_of(**model, *found.back(), static_cast<int>(i)));
     }
   return tree;
 }

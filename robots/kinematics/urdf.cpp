@@ -145,6 +145,15 @@ void check_on_chain(const urdf::Joint& joint) {
                   "', which is not supported");
 }
 
+/// Whether a joint mimics one that the URDF does not have.
+bool lacks_leader(const urdf::ModelInterface& model, const urdf::Joint& joint) {
+  return joint.mimic != nullptr && model.getJoint(joint.mimic->joint_name) == nullptr;
+}
+
+std::string no_leader_text(const urdf::Joint& joint) {
+  return "mimics joint '" + joint.mimic->joint_name + "', which is not in the URDF";
+}
+
 /// What gives a joint off the chain its value: nothing, or a joint of the chain that it follows.
 struct JointValue {
   double value = 0;         ///< where it stands; of one that follows, its offset
@@ -219,8 +228,10 @@ class HeldJoints {
     return value;
   }
 
-  /// What the joint that it mimics makes of a joint; 0 if that one is none, or there is none.
+  /// What the joint that it mimics makes of a joint; 0 if that one does not move, or there is none.
   JointValue mimicked_value(const urdf::Joint& joint, std::vector<std::string>& followers) const {
+    if (lacks_leader(model_, joint))
+      throw refused(words(joint) + " " + no_leader_text(joint) + "; hold it where it stands");
     const urdf::JointConstSharedPtr leader =
         joint.mimic == nullptr ? nullptr : model_.getJoint(joint.mimic->joint_name);
     if (leader == nullptr || !has_one_value(*leader))
@@ -364,12 +375,12 @@ ChainParts read_parts(const RobotDescription& description) {
 
 }  // namespace
 
-std::string find_joint_fault(const urdf::Joint& joint) {
+std::string find_joint_fault(const urdf::ModelInterface& model, const urdf::Joint& joint) {
   if (!has_one_value(joint))
     return "";
   try {
     read_joint(joint);
-    return "";
+    return lacks_leader(model, joint) ? no_leader_text(joint) : "";
   } catch (const Failure& failure) {
     return failure.error().message.substr(words(joint).size() + 2);  // after "joint 'j': "
   }

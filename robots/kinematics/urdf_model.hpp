@@ -24,6 +24,7 @@ using UrdfModel = std::shared_ptr<const urdf::ModelInterface>;
 Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints = nullptr);
 
 /// Why a joint that moves can be no joint of a robot, e.g. crossed limits; empty if it can.
-std::string find_joint_fault(const urdf::Joint& joint);
+/// \param model  that it is of
+std::string find_joint_fault(const urdf::ModelInterface& model, const urdf::Joint& joint);
 
 }  // namespace kinship::kinematics

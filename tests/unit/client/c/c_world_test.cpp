@@ -182,8 +182,8 @@ TEST_F(CWorld, WithoutSurroundingsARobotCanTouchOnlyItself) {
 TEST_F(CWorld, WhatIsNoEdgeIsRefusedWithNameValueAndLimit) {
   ASSERT_NO_FATAL_FAILURE(make_world());
   const Configuration q = turned(0.1);
-  expect_refused(prove(q, q, 0), "clearance_m is 0, must be 1e-05 to 0.1");
-  expect_refused(prove(q, q, 0.2), "clearance_m is 0.2, must be 1e-05 to 0.1");
+  expect_refused(prove(q, q, 0), "clearance_m is 0 m, must be from 1e-05 to 0.1 m");
+  expect_refused(prove(q, q, 0.2), "clearance_m is 0.2 m, must be from 1e-05 to 0.1 m");
   expect_refused(prove(q, q, std::nan("")), "clearance_m is nan");
   Configuration no_number = q;
   no_number[3] = std::numeric_limits<double>::infinity();

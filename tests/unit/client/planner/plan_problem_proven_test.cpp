@@ -50,5 +50,16 @@ TEST(PlanProblemProven, AStartNearerThanTheClearanceIsNamedWithItsDistance) {
       << result.reason;
 }
 
+TEST(PlanProblemProven, WhatIsTooNearIsNamedAmongWhatTouches) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.resize(4, 3);
+  problem.goal_configurations << 0.12, 0.12, 0, Eigen::Matrix3d::Zero();  // 14 mm beside, and in it
+  PlanSettings wide;
+  wide.clearance_m = 0.05;
+  const std::string reason = planned(problem, wide).result.reason;
+  EXPECT_NE(reason.find("is less than 50 mm from 'wall' in 2 of 3"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("touches 'wall' in 1 of 3"), std::string::npos) << reason;
+}
+
 }  // namespace
 }  // namespace kinship::planner::plan_problem_test

@@ -84,6 +84,15 @@ class Paths(OfAUr10e):
         with self.assertRaisesRegex(kinship.InvalidInput, "'nimble' is no planner"):
             kinship.plan(self.robot, self.problem, planner="nimble")
 
+    def test_are_proven_or_by_steps(self):
+        self.assertTrue(kinship.plan(self.robot, self.problem, clearance=0.005).proven)
+        self.assertFalse(kinship.plan(self.robot, self.problem, resolution=0.05).proven)
+        with self.assertRaisesRegex(kinship.InvalidInput, "not both"):
+            kinship.plan(self.robot, self.problem, clearance=0.001, resolution=0.05)
+        for resolution in (0, -1, 2, float("nan")):
+            with self.assertRaisesRegex(kinship.InvalidInput, "resolution is .*, must be from 1e-04 to 1"):
+                kinship.plan(self.robot, self.problem, resolution=resolution)
+
 
 class Doubts(OfAUr10e):
     def test_are_warned_of_when_solids_cannot_be_meant(self):

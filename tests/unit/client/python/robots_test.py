@@ -127,6 +127,29 @@ class Worlds(unittest.TestCase):
         self.assertEqual(kinship.World(self.robot, scene).contact(self.ready)[1], "ball")
         self.assertTrue(kinship.World(self.robot, scene, T_task_base=pose_at(0, 0, 2)).free(self.ready))
 
+    def test_what_is_nearer_than_the_clearance_is_not_free(self):
+        scene = kinship.Scene()
+        hand = self.robot.fk(self.ready, frame="transfer")[:3, 3]
+        scene.add_box("shelf", pose_at(*(hand - [0, 0, 0.12])), [0.1, 0.1, 0.01])
+        world = kinship.World(self.robot, scene)
+        clearances = [clearance for clearance in (0, 0.001, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1)
+                      if world.free(self.ready, clearance=clearance)]
+        self.assertEqual(clearances[:2], [0, 0.001])
+        self.assertTrue(2 < len(clearances) < 8, clearances)
+        self.assertIsNone(world.contact(self.ready, clearance=clearances[-1]))
+        self.assertIn("shelf", world.contact(self.ready, clearance=0.1))
+        proof = world.prove([self.ready, self.ready], clearance=0.1)
+        self.assertEqual((proof.free, proof.edges, proof.share), (False, 0, 0))
+        self.assertIn("shelf", (proof.first, proof.second))
+        self.assertTrue(clearances[-1] < proof.clearance <= 0.1, proof.clearance)
+        self.assertAlmostEqual(proof.least_clearance, proof.clearance)
+        np.testing.assert_allclose(proof.q, self.ready)
+        proof = world.prove([self.ready, self.ready + 1e-3, self.ready])
+        self.assertEqual((proof.free, proof.edges, proof.q, proof.first), (True, 2, None, None))
+        for clearance in (-1, 0.2, float("nan")):
+            with self.assertRaisesRegex(kinship.InvalidInput, "clearance is .* must be from"):
+                world.free(self.ready, clearance=clearance)
+
     def test_threads_may_share_one(self):
         world = kinship.World(self.robot)
         many = random_configurations(self.robot, 3000, 6)

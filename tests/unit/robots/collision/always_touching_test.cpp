@@ -8,6 +8,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision::always_touching_test {
 namespace {
@@ -67,6 +68,20 @@ TEST(AlwaysTouching, IsWhatTouchesInEnoughOfAllSamples) {
     }
   }
   EXPECT_GT(found, 100U);
+}
+
+TEST(AlwaysTouching, WhatIsNotCheckedForItIsNamed) {
+  using namespace test_support;
+  geometry::RobotShapes shapes = toy_shapes(3);
+  EXPECT_EQ(describe_always_touching(RobotSolids(toy_chain(3), shapes)), "");
+  shapes.shapes.push_back({3, SphereShape{500}, shift(0)});  // mm for m
+  const std::string text = describe_always_touching(RobotSolids(toy_chain(3), shapes));
+  EXPECT_TRUE(
+      text.starts_with("'link1' and 'link3' touch wherever the robot goes, so they are not "
+                       "checked against each other"))
+      << text;
+  shapes.never_colliding = {{0, 1}};
+  EXPECT_EQ(describe_always_touching(RobotSolids(toy_chain(3), shapes)), "") << "all are checked";
 }
 
 TEST(AlwaysTouching, LinksAreLeftAloneWhereTheyAreNotAskedAbout) {

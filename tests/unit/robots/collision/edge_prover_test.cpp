@@ -4,7 +4,9 @@
 
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
+#include "proto/types/failure.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision::edge_prover_test {
@@ -87,7 +89,54 @@ TEST(EdgeProver, RefusesWhatIsNoEdge) {
   EXPECT_THROW(prover.prove(angles({0}), q), std::invalid_argument);
   EXPECT_THROW(prover.prove(q, angles({0, std::numeric_limits<double>::quiet_NaN()})),
                std::invalid_argument);
-  EXPECT_THROW(prover.prove(q, q, {.clearance_m = 0}), std::invalid_argument);
+  try {
+    prover.prove(q, q, {.clearance_m = 0});
+    ADD_FAILURE() << "a clearance of 0 m";
+  } catch (const Failure& failure) {
+    EXPECT_STREQ(failure.what(), "clearance is 0 m, must be from 1e-05 to 0.1 m");
+  }
+}
+
+/// The third link folded back over a ball that the first one carries.
+CollisionWorld folded_over_ball(double gap_m) {
+  geometry::RobotShapes shapes = toy_shapes(3);
+  const double ball_m = 0.1;
+  shapes.shapes.push_back(
+      {1, SphereShape{ball_m}, shift(-kLink_m / 2, kLink_m - kRadius_m - gap_m - ball_m)});
+  return {toy_chain(3), shapes, {}};
+}
+
+TEST(EdgeProver, OfTheRobotsOwnLinksAskedIsAMillimetreAtMost) {
+  const auto folded = angles({0, M_PI / 2, M_PI / 2});
+  const EdgeProofOptions wide{.clearance_m = 0.02}, narrow{.clearance_m = 1e-4};
+  CollisionWorld apart = folded_over_ball(0.004), near = folded_over_ball(0.0005);
+  EdgeProver of_apart(apart), of_near(near);
+  EXPECT_TRUE(of_apart.prove(folded, folded, wide).is_free());
+  EXPECT_EQ(of_apart.clear_ahead(folded, wide), 1);
+  EXPECT_TRUE(of_apart.find_near(folded, wide).empty());
+  EXPECT_FALSE(of_near.prove(folded, folded, wide).is_free());
+  EXPECT_EQ(of_near.clear_ahead(folded, wide), 0);
+  const std::vector<NearPair> pairs = of_near.find_near(folded, wide);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs.front().first + "-" + pairs.front().second, "link3-link1");
+  EXPECT_NEAR(pairs.front().clearance_m, 0.0005, 1.1e-4);
+  EXPECT_EQ(pairs.front().asked_m, kOwnClearance_m);
+  EXPECT_TRUE(of_near.prove(folded, folded, narrow).is_free());
+}
+
+TEST(EdgeProver, FindsAllThatIsTooNear) {
+  Surroundings surroundings = around(box_at("touched", 0.3, 0));
+  surroundings.scene.objects.push_back(box_at("near", 0.75, 0.05 + kRadius_m + 0.01));
+  surroundings.scene.objects.push_back(box_at("far", 0.75, -0.05 - kRadius_m - 0.03));
+  CollisionWorld world = world_with(surroundings);
+  EdgeProver prover(world);
+  const std::vector<NearPair> pairs = prover.find_near(angles({0, 0}), {.clearance_m = 0.02});
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_EQ(pairs[0].first + "-" + pairs[0].second, "link2-near");
+  EXPECT_NEAR(pairs[0].clearance_m, 0.01, 2e-4);
+  EXPECT_EQ(pairs[0].asked_m, 0.02);
+  EXPECT_EQ(pairs[1].first + "-" + pairs[1].second, "link1-touched");
+  EXPECT_EQ(pairs[1].clearance_m, 0);
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/link_tree.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/parallelogram_arm.hpp"
 #include "tests/unit/robots/kinematics/random_chains.hpp"
@@ -115,6 +117,18 @@ TEST(MimicJoints, ThatFollowEachOtherInALoopAreRefusedByName) {
             "joint 'weight_joint', which mimics 'weight_joint': a loop of mimic joints");
   RobotDescription broken = changed("mimic joint=\"bend\"", "mimic joint=\"piston_joint\"");
   broken.held_joints = {{"piston_joint", 0}};
+  EXPECT_EQ(message(broken), "fine");
+}
+
+TEST(MimicJoints, OfAJointThatIsNotThereAreRefusedUnlessHeld) {
+  RobotDescription broken = changed("mimic joint=\"bend\"", "mimic joint=\"bent\"");
+  EXPECT_EQ(message(broken),
+            "joint 'weight_joint' mimics joint 'bent', which is not in the URDF; hold it where it "
+            "stands");
+  const auto tree = read_link_tree(broken.urdf).value_or_throw();
+  const auto weight = std::ranges::find(tree, "weight", &TreeLink::name);
+  EXPECT_EQ(weight->joint.fault, "mimics joint 'bent', which is not in the URDF");
+  broken.held_joints = {{"weight_joint", 0}};
   EXPECT_EQ(message(broken), "fine");
 }
 
