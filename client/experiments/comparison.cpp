@@ -71,6 +71,9 @@ Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
     }
     uniform_figures.add(*result);
     guided_figures.add(*other->second);
+    const bool both_solved = result->solved && other->second->solved;
+    if (both_solved && result->proven != other->second->proven)
+      ++comparison.proven_by_one;
     ++comparison.pairs;
   }
   for (const auto& [name, result] : *guided_by_name)

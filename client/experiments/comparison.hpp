@@ -29,6 +29,7 @@ struct PlannerStatistics {
 /// for is no pair.
 struct Comparison {
   std::size_t pairs = 0;
+  std::size_t proven_by_one = 0;  ///< pairs of paths of which one is proven, the other is not
   PlannerStatistics uniform;
   PlannerStatistics guided;
   double mean_checks_ratio = 0;  ///< uniform / guided

@@ -160,6 +160,10 @@ std::vector<std::string> comparison_notes(const Comparison& comparison) {
   if (u.with_guidance > 0)
     notes.push_back(std::to_string(u.with_guidance) +
                     " of the uniform attempts drew from a distribution.");
+  if (comparison.proven_by_one > 0)
+    notes.push_back("Of " + std::to_string(comparison.proven_by_one) +
+                    " pairs of paths one is proven and the other is not (--resolution): they are "
+                    "not asked the same, in checks or in time.");
   if (!comparison.unpaired.empty())
     notes.push_back(std::to_string(comparison.unpaired.size()) +
                     " problems were answered by one side only and left out.");

@@ -195,6 +195,15 @@ TEST(ComparisonTable, SaysWhenGuidanceWasMissing) {
   EXPECT_NE(table.find("1.00"), std::string::npos);
 }
 
+TEST(ComparisonTable, SaysWhenOnlyOneSideIsProven) {
+  EXPECT_EQ(table_of(compared(kUniform, kGuided)).find("proven"), std::string::npos);
+  std::vector<ProblemResult> proven = kUniform;
+  for (ProblemResult& result : proven)
+    result.proven = result.solved;
+  EXPECT_NE(table_of(compared(proven, kGuided)).find("Of 2 pairs of paths one is proven"),
+            std::string::npos);
+}
+
 TEST(ComparisonTable, SaysUnsolvedInsteadOfInfinity) {
   const std::string table =
       table_of(compared({attempt("a", false, 60000, 9)}, {guided_attempt("a", true, 1000, 1)}));
