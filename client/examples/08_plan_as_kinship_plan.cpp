@@ -34,8 +34,8 @@ int main(int count, char** words) try {
   wanted.robot = arm.chain.digest();
   wanted.dof = arm.chain.dof();
   wanted.chain = arm.chain;  // follows the stored ways
-  planner::GuidanceBook guidance([&](const FetchRequest& request) { return client.fetch(request); },
-                                 wanted);
+  planner::GuidanceCache guidance(
+      [&](const FetchRequest& request) { return client.fetch(request); }, wanted);
   const planner::PlanSettings settings;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Problem problem = around_a_post(seed);

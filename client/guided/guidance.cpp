@@ -176,13 +176,13 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                      reply->rehearsal ? &*reply->rehearsal : nullptr, wanted);
 }
 
-GuidanceBook::Key GuidanceBook::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {
+GuidanceCache::Key GuidanceCache::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {
   if (!T_task_base)
     return std::nullopt;
   return to_pose_array(snapped(*T_task_base));
 }
 
-std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
+std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(
     const std::optional<Eigen::Isometry3d>& T_task_base) {
   const Key key = key_of(T_task_base);
   if (const auto known = answers_.find(key); known != answers_.end())
@@ -199,7 +199,7 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }
 
-QueryGuidance GuidanceBook::choose(const Problem& problem) const {
+QueryGuidance GuidanceCache::choose(const Problem& problem) const {
   const auto known = answers_.find(key_of(problem.T_task_base));
   if (known == answers_.end())
     return {.why_not = "nobody was asked for guidance at its placement"};
@@ -209,7 +209,7 @@ QueryGuidance GuidanceBook::choose(const Problem& problem) const {
           .sampling_mode = sampling_->choose(sampling_mode_seed(problem))};
 }
 
-void GuidanceBook::add(const PlannedProblem& planned) {
+void GuidanceCache::add(const PlannedProblem& planned) {
   if (sampling_)
     sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks);
 }

@@ -58,9 +58,9 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
 /// The guidance of a run, asked for once per distinct placement (snapped to 1 mm and 1 mrad) before
 /// planning; a missing placement is one of its own. When nobody answers once, nobody is asked
 /// again.
-class GuidanceBook {
+class GuidanceCache {
  public:
-  GuidanceBook(Fetch fetch, GuidanceOptions wanted)
+  GuidanceCache(Fetch fetch, GuidanceOptions wanted)
       : fetch_(std::move(fetch)), wanted_(std::move(wanted)) {}
 
   /// Asks unless the placement is known. \return the answer, and whether it is new.

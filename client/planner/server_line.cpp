@@ -130,7 +130,7 @@ NoGuidance ServerLine::fetch_guidance(GuidanceOptions wanted,
     why_unguided_ = trouble->message;
     return why_not(*trouble);
   }
-  guidance_ = std::make_unique<GuidanceBook>(
+  guidance_ = std::make_unique<GuidanceCache>(
       [this](const FetchRequest& request) {
         return wait_for<FetchReply>([&] { return client_->fetch(request); });
       },

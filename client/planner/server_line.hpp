@@ -72,7 +72,7 @@ class ServerLine {
   std::ostream& messages_;
   const std::function<bool()>& stop_;
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had
-  std::unique_ptr<GuidanceBook> guidance_;
+  std::unique_ptr<GuidanceCache> guidance_;
   std::optional<Error> trouble_;  // why the robot is not registered
   bool is_robot_refused_ = false;
   std::string why_unguided_;  // of every query, while there is no guidance_

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "proto/dds/loan.hpp"
-#include "proto/dds/senders.hpp"
+#include "proto/dds/matched_writers.hpp"
 #include "proto/security/permissions.hpp"
 
 namespace kinship::dds {
@@ -28,13 +28,13 @@ bool has_same_rights(const Caller& one, const Caller& other) {
 }  // namespace
 
 ClientWriters::ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
-                             std::string name, Qos qos, Hearers* hearers)
+                             std::string name, Qos qos, MatchedReaders* matched_readers)
     : participant_(participant.get()),
       directory_(participant.options().directory),
       topic_(topic.get()),
       name_(std::move(name)),
       qos_(std::move(qos)),
-      hearers_(hearers),
+      matched_readers_(matched_readers),
       readers_(
           dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr),
           "reader of readers") {
@@ -68,9 +68,11 @@ std::shared_ptr<const Entity> ClientWriters::make(const std::string& name, const
       dds_create_publisher(participant_, partition_qos(partition).get(), nullptr),
       "publisher " + partition);
   const std::shared_ptr<const Entity> writer(
-      new Entity(hearers_ ? hearers_->make_writer(*publisher, topic_, qos_.get(), "writer " + name_)
-                          : Entity(dds_create_writer(publisher->get(), topic_, qos_.get(), nullptr),
-                                   "writer " + name_)),
+      new Entity(
+          matched_readers_
+              ? matched_readers_->make_writer(*publisher, topic_, qos_.get(), "writer " + name_)
+              : Entity(dds_create_writer(publisher->get(), topic_, qos_.get(), nullptr),
+                       "writer " + name_)),
       [publisher](const Entity* each) { delete each; });  // before its publisher
   free_unread(Clock::now());
   const std::lock_guard lock(mutex_);

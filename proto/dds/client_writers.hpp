@@ -9,7 +9,7 @@
 #include <string>
 
 #include "proto/dds/entity.hpp"
-#include "proto/dds/hearers.hpp"
+#include "proto/dds/matched_readers.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/qos.hpp"
 #include "proto/dds/wait_loop.hpp"
@@ -33,9 +33,9 @@ class ClientWriters {
   /// \param topic   of these writers; outlives them.
   /// \param name    of the topic.
   /// \param loop    on whose thread readers are noticed.
-  /// \param hearers  that the writers are made with, if any; outlive them.
+  /// \param matched_readers  that the writers are made with, if any; outlive them.
   ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
-                std::string name, Qos qos, Hearers* hearers = nullptr);
+                std::string name, Qos qos, MatchedReaders* matched_readers = nullptr);
   ClientWriters(const ClientWriters&) = delete;
   ClientWriters& operator=(const ClientWriters&) = delete;
 
@@ -75,7 +75,7 @@ class ClientWriters {
   Handle topic_;
   std::string name_;
   Qos qos_;
-  Hearers* hearers_;  // null: nobody asks
+  MatchedReaders* matched_readers_;  // null: nobody asks
   OnNew on_new_;
   Entity readers_;                 // reader of what DDS knows of readers
   std::set<std::string> unknown_;  // who has a reader and is not let in; of the loop's thread

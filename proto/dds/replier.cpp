@@ -8,8 +8,8 @@
 
 #include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
-#include "proto/dds/refusal_allowance.hpp"
-#include "proto/dds/reply_line.hpp"
+#include "proto/dds/refusal_rate_limit.hpp"
+#include "proto/dds/reply_channel.hpp"
 
 namespace kinship::dds {
 
@@ -17,7 +17,7 @@ namespace kinship::dds {
 template <typename Conversation>
 class Answer<Conversation>::State {
  public:
-  State(const std::shared_ptr<ReplyLine>& line, ReplyLine::Place place, Caller caller)
+  State(const std::shared_ptr<ReplyChannel>& line, ReplyChannel::Place place, Caller caller)
       : line_(line), place_(std::move(place)), caller_(std::move(caller)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -46,8 +46,8 @@ class Answer<Conversation>::State {
   }
 
  private:
-  std::weak_ptr<ReplyLine> line_;
-  ReplyLine::Place place_;
+  std::weak_ptr<ReplyChannel> line_;
+  ReplyChannel::Place place_;
   Caller caller_;
   std::atomic<bool> is_sent_ = false;
 };
@@ -74,7 +74,7 @@ template <typename Conversation>
 class Replier<Conversation>::Implementation {
  public:
   Implementation(const Participant& participant, WaitLoop& loop, Handler handler, Gate gate)
-      : line_(std::make_shared<ReplyLine>(participant, loop, Wire<Conversation>::topics())),
+      : line_(std::make_shared<ReplyChannel>(participant, loop, Wire<Conversation>::topics())),
         has_security_(participant.credentials().has_value()),
         directory_(participant.options().directory),
         handler_(std::move(handler)),
@@ -141,12 +141,12 @@ class Replier<Conversation>::Implementation {
       return waiting_.release(sender->client, head);
     // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
     // may not ask at all is told so in its turn, and what he sends is not decoded.
-    const ReplyLine::Place place{sender->name, head};
+    const ReplyChannel::Place place{sender->name, head};
     if (line_->is_being_answered(place))
       return;
     const Result<Caller> caller = caller_of(*sender);
     if (caller ? is_refused(place, *caller, wire)
-               : !refusals_.take(sender->client, RefusalAllowance::Clock::now()))
+               : !refusals_.take(sender->client, RefusalRateLimit::Clock::now()))
       return;
     const auto held_until = hold(*sender, head);
     waiting_.push(*opening, {*sender, caller ? decoded(wire) : Decoded(caller.error())},
@@ -179,7 +179,7 @@ class Replier<Conversation>::Implementation {
   }
 
   /// Whether the gate keeps a request out, which is answered then.
-  bool is_refused(const ReplyLine::Place& place, const Caller& caller,
+  bool is_refused(const ReplyChannel::Place& place, const Caller& caller,
                   const WireRequest& wire) const {
     if (!gate_)
       return false;
@@ -201,7 +201,7 @@ class Replier<Conversation>::Implementation {
   }
 
   void serve(const codec::Head& head, Waiting waiting) {
-    const ReplyLine::Place place{waiting.sender.name, head};
+    const ReplyChannel::Place place{waiting.sender.name, head};
     if (!line_->begin(place))
       return;
     const Result<Caller> caller = caller_of(waiting.sender);
@@ -221,14 +221,14 @@ class Replier<Conversation>::Implementation {
   static constexpr std::size_t kWaitingRequests = 256;
   static constexpr std::chrono::milliseconds kMaxHold{100};  // then it is sent again
 
-  std::shared_ptr<ReplyLine> line_;  // shared for the moment in which an Answer sends
+  std::shared_ptr<ReplyChannel> line_;  // shared for the moment in which an Answer sends
   const std::string what_ = "requests of " + line_->name();
   const bool has_security_;
   const Directory directory_;
   Handler handler_;
   Gate gate_;
   Queue waiting_{kWaitingRequests};
-  RefusalAllowance refusals_;
+  RefusalRateLimit refusals_;
 };
 
 template <typename Conversation>

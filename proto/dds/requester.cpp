@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "proto/dds/request_line.hpp"
+#include "proto/dds/request_channel.hpp"
 #include "proto/dds/role_topics.hpp"
 
 namespace kinship::dds {
@@ -32,7 +32,7 @@ class Requester<Conversation>::Implementation {
     const auto outcome = line_->call(head, &message->wire, deadline, [&reply](const void* wire) {
       reply.emplace(codec::decode(*static_cast<const typename Wire<Conversation>::Reply*>(wire)));
     });
-    if (outcome != RequestLine::Outcome::Answered)
+    if (outcome != RequestChannel::Outcome::Answered)
       return nobody_answered(start);
     if (!*reply)
       return Error{ErrorCode::Internal,
@@ -59,8 +59,8 @@ class Requester<Conversation>::Implementation {
   }
 
   ParticipantOptions options_;
-  std::optional<Error> refusal_;     // of every request
-  std::optional<RequestLine> line_;  // unless
+  std::optional<Error> refusal_;        // of every request
+  std::optional<RequestChannel> line_;  // unless
 };
 
 template <typename Conversation>

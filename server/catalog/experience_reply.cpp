@@ -51,19 +51,20 @@ std::size_t room_for_experience(const FetchReply& reply) {
   return used < kMaxSampleBytes ? kMaxSampleBytes - used : 0;
 }
 
-FetchDone with_experience(ExperienceBook& book, const FetchRequest& request, FetchDone done) {
+FetchDone with_experience(ExperienceIndex& experience_index, const FetchRequest& request,
+                          FetchDone done) {
   ExperienceKey key{request.task, request.selection.sources, request.selection.since_ms,
                     request.experience_bytes};
-  if (!book.find(key))
-    book.ask(key, [](const SharedChoice&) {});
-  return [&book, key = std::move(key), known = request.known_experience,
+  if (!experience_index.find(key))
+    experience_index.ask(key, [](const SharedChoice&) {});
+  return [&experience_index, key = std::move(key), known = request.known_experience,
           done = std::move(done)](const FetchReply& reply) {
     if (!carries_experience(reply.status))
       return done(reply);
-    if (const SharedChoice choice = book.find(key))
+    if (const SharedChoice choice = experience_index.find(key))
       return send(reply, choice, known, done);
-    book.ask(key, [own = std::make_shared<const FetchReply>(reply), known,
-                   done](const SharedChoice& choice) { send(*own, choice, known, done); });
+    experience_index.ask(key, [own = std::make_shared<const FetchReply>(reply), known, done](
+                                  const SharedChoice& choice) { send(*own, choice, known, done); });
   };
 }
 

@@ -19,23 +19,22 @@ void send(FetchReply reply, const SharedRehearsal& known, const catalog::FetchDo
 
 }  // namespace
 
-catalog::FetchDone with_rehearsal(RehearsalBook& book, const FetchRequest& request,
-                                  RehearsalBook::TimePoint now, catalog::FetchDone done) {
+catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchRequest& request,
+                                  RehearsalScheduler::TimePoint now, catalog::FetchDone done) {
   const Result<fitting::DistributionKey> distribution =
-      fitting::make_key(request, book.geometry_revision(request.robot));
+      fitting::make_key(request, rehearsals.geometry_revision(request.robot));
   if (!distribution)
     return done;  // it will be refused
-  return [&book, key = RehearsalKey{*distribution, request.experience_bytes},
+  return [&rehearsals, key = RehearsalKey{*distribution, request.experience_bytes},
           deadline = now + request.deadline, waits = request.rehearsed,
           done = std::move(done)](const FetchReply& reply) {
     if (!carries_rehearsal(reply.status))
       return done(reply);
     if (!waits)
-      return send(reply, book.ask(key), done);
-    book.wait(key, deadline,
-              [own = std::make_shared<FetchReply>(reply), done](const SharedRehearsal& known) {
-                send(std::move(*own), known, done);
-              });
+      return send(reply, rehearsals.ask(key), done);
+    rehearsals.wait(key, deadline,
+                    [own = std::make_shared<FetchReply>(reply),
+                     done](const SharedRehearsal& known) { send(std::move(*own), known, done); });
   };
 }
 

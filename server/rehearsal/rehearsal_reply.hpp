@@ -2,7 +2,7 @@
 
 #include "proto/types/conversations.hpp"
 #include "server/catalog/pending_fit.hpp"
-#include "server/rehearsal/rehearsal_book.hpp"
+#include "server/rehearsal/rehearsal_scheduler.hpp"
 
 namespace kinship::rehearsal {
 
@@ -10,8 +10,8 @@ namespace kinship::rehearsal {
 /// else the reply has, unless that is refused, busy or of a robot that nobody knows. A request for
 /// a rehearsed reply waits for it until its deadline.
 /// \param request  one that asks for experience.
-/// \param book     outlives the reply.
-catalog::FetchDone with_rehearsal(RehearsalBook& book, const FetchRequest& request,
-                                  RehearsalBook::TimePoint now, catalog::FetchDone done);
+/// \param rehearsals  outlive the reply.
+catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchRequest& request,
+                                  RehearsalScheduler::TimePoint now, catalog::FetchDone done);
 
 }  // namespace kinship::rehearsal

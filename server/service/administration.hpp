@@ -20,7 +20,7 @@
 #include "server/service/audit_trail.hpp"
 #include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
-#include "server/service/known_downloads.hpp"
+#include "server/service/recent_downloads.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -120,7 +120,7 @@ class Administration {
   const Parts parts_;
   AuditTrail trail_;
   AnsweredChanges answered_;
-  KnownDownloads downloads_;
+  RecentDownloads downloads_;
 };
 
 }  // namespace kinship::service

@@ -8,7 +8,7 @@
 #include "proto/types/conversations.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/service/admin_page.hpp"
-#include "server/service/audit_allowance.hpp"
+#include "server/service/audit_rate_limit.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -31,7 +31,7 @@ class AuditTrail {
   /// After it was done. What cannot be kept now is in the log as begun.
   void end(AuditEntry entry, const std::string& before, const std::string& after) noexcept;
   /// Of something that was refused or failed, unless the page is Ok; of one client so many
-  /// (AuditAllowance), but for the end of what is in the log as begun. The next one kept counts the
+  /// (AuditRateLimit), but for the end of what is in the log as begun. The next one kept counts the
   /// others.
   void not_done(AuditEntry entry, const AdminPage& page) noexcept;
 
@@ -42,7 +42,7 @@ class AuditTrail {
   void add(const AuditEntry& entry) noexcept;
 
   store::Store& store_;
-  AuditAllowance allowance_;
+  AuditRateLimit allowance_;
 };
 
 }  // namespace kinship::service

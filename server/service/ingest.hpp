@@ -15,7 +15,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
-#include "server/catalog/advice_book.hpp"
+#include "server/catalog/advice_cache.hpp"
 #include "server/quotas/quota.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"

@@ -6,7 +6,7 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/summaries.hpp"
-#include "server/catalog/advice_book.hpp"
+#include "server/catalog/advice_cache.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/service/event_feed.hpp"
 

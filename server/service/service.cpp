@@ -127,8 +127,8 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
   return catalog;
 }
 
-rehearsal::RehearsalBookOptions Service::rehearsal_options() const {
-  rehearsal::RehearsalBookOptions options;
+rehearsal::RehearsalSchedulerOptions Service::rehearsal_options() const {
+  rehearsal::RehearsalSchedulerOptions options;
   options.processor_fraction = options_.rehearsal_fraction;
   options.wake = options_.wake;
   options.log = options_.log;

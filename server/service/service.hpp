@@ -16,16 +16,16 @@
 
 #include "proto/types/caller.hpp"
 #include "proto/types/conversations.hpp"
-#include "server/catalog/advice_book.hpp"
+#include "server/catalog/advice_cache.hpp"
 #include "server/catalog/catalog.hpp"
-#include "server/catalog/experience_book.hpp"
+#include "server/catalog/experience_index.hpp"
 #include "server/metrics/exposition.hpp"
-#include "server/quotas/client_book.hpp"
+#include "server/quotas/client_quotas.hpp"
 #include "server/quotas/known_tasks.hpp"
-#include "server/rehearsal/rehearsal_book.hpp"
+#include "server/rehearsal/rehearsal_scheduler.hpp"
 #include "server/runtime/clock.hpp"
+#include "server/runtime/error_counters.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/runtime/trouble_book.hpp"
 #include "server/runtime/worker_pool.hpp"
 #include "server/service/administration.hpp"
 #include "server/service/event_feed.hpp"
@@ -55,7 +55,7 @@ struct ServiceOptions {
   std::size_t fit_memory_bytes = std::size_t{2048} << 20U;  ///< of all fits together, at most
   std::size_t fit_queue = 256;           ///< fits that wait; more are answered Busy
   int fit_niceness = 10;                 ///< so that planners on the same machine come first
-  double rehearsal_fraction = 0.1;       ///< see RehearsalBookOptions::processor_fraction
+  double rehearsal_fraction = 0.1;       ///< see RehearsalSchedulerOptions::processor_fraction
   std::size_t short_task_queue = 1024;   ///< short jobs that wait: registering, listing, looking up
   std::size_t client_short_tasks = 128;  ///< of one client that wait
   std::chrono::milliseconds store_patience{2000};  ///< see StoreStatusReader
@@ -65,7 +65,7 @@ struct ServiceOptions {
   std::size_t max_robots = 1024;       ///< parsed ones in memory; others are read when needed
   /// Of replies, leases, waiting fetches and fits, in all and of one client.
   catalog::CatalogState::Limits catalog;
-  catalog::ExperienceBook::Limits experience;
+  catalog::ExperienceIndex::Limits experience;
   BackupPlace backups;
   UpstreamOptions upstream;
   runtime::Clock clock;
@@ -157,7 +157,7 @@ class Service {
 
  private:
   catalog::Catalog::Options catalog_options(const ServiceOptions& options);
-  rehearsal::RehearsalBookOptions rehearsal_options() const;
+  rehearsal::RehearsalSchedulerOptions rehearsal_options() const;
   Jobs::Options job_options(const ServiceOptions& options);
   Administration::Parts administration_parts();
   void take_in(ReportRequest request, std::function<void(const ReportReply&)> done,
@@ -169,7 +169,7 @@ class Service {
   using RegistrationPointer = std::shared_ptr<const Registration>;
   void begin(runtime::WorkerPool& pool, const RegistrationPointer& registration,
              std::function<void()> answer);
-  void tell_registered(const Registration& registration, const RegisterReply& reply);
+  void announce_registered(const Registration& registration, const RegisterReply& reply);
   runtime::WorkerPool& pool_for(const AdminRequest& request);
   std::size_t short_tasks() const;
   std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
@@ -199,23 +199,23 @@ class Service {
   const catalog::Catalog::TimePoint started_;
   const std::unique_ptr<store::Store> store_;
   mutable StoreStatusReader store_status_;
-  runtime::TroubleBook troubles_;
+  runtime::ErrorCounters troubles_;
   Measures measures_;
-  quotas::ClientBook clients_;
+  quotas::ClientQuotas clients_;
   quotas::KnownTasks known_tasks_;
   std::stop_source stop_source_;
   runtime::RobotRegistry robots_;
-  catalog::ExperienceBook experience_;
+  catalog::ExperienceIndex experience_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
   EventFeed events_;
   runtime::WorkerPool short_task_pool_;
   runtime::WorkerPool memory_task_pool_;  // asks the store nothing
   runtime::WorkerPool status_pool_;
-  catalog::AdviceBook advice_;
+  catalog::AdviceCache advice_;
   fitting::MemoryCeiling memory_;
   runtime::WorkerPool fitters_;
   catalog::Catalog catalog_;
-  rehearsal::RehearsalBook rehearsals_;
+  rehearsal::RehearsalScheduler rehearsals_;
   Ingest ingest_;
   Jobs jobs_;
   Administration administration_;

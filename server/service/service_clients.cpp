@@ -107,7 +107,7 @@ Ingest::Options Service::ingest_options() {
   return ingest;
 }
 
-/// Of those that are in the book; who follows something and was forgotten since is not.
+/// Of those that have quotas; who follows something and was forgotten since is not.
 std::vector<ClientUse> Service::list_clients() const {
   std::vector<ClientUse> rows = clients_.list();
   const std::map<std::string, catalog::ClientHolds> holds = catalog_.holds_of_clients();

@@ -64,7 +64,7 @@ void expose_refusals(Exposition& page, const std::vector<TroubleCount>& counts) 
 }
 
 /// One family of a few series, however many clients there are.
-void expose_quotas(Exposition& page, const quotas::ClientBook& clients) {
+void expose_quotas(Exposition& page, const quotas::ClientQuotas& clients) {
   page.family("kinship_quota_refusals_total", Type::Counter,
               "Requests of clients that had taken or held as much as one may, by quota.");
   for (std::size_t i = 0; i < quotas::kQuotaNames.size(); ++i)

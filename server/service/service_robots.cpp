@@ -31,13 +31,13 @@ void Service::register_robot(RobotDescription description,
       Registration{std::move(description), std::move(done), client, std::move(may_take)});
   const auto ask_store = [this, registration] {
     const Registration& asked = *registration;
-    tell_registered(
+    announce_registered(
         asked, robots_.register_robot(asked.description, options_.clock.unix_ms(), asked.may_take));
   };
   begin(memory_task_pool_, registration, [this, registration, ask_store] {
     const Registration& asked = *registration;
     if (const auto known = robots_.register_known(asked.description, asked.may_take))
-      return tell_registered(asked, *known);
+      return announce_registered(asked, *known);
     begin(short_task_pool_, registration, ask_store);
   });
 }
@@ -66,7 +66,7 @@ void Service::begin(runtime::WorkerPool& pool, const RegistrationPointer& regist
   registration->done(busy);
 }
 
-void Service::tell_registered(const Registration& registration, const RegisterReply& reply) {
+void Service::announce_registered(const Registration& registration, const RegisterReply& reply) {
   const RobotDescription& description = registration.description;
   if (reply.status == RegisterStatus::Refused) {
     troubles_.add(Trouble::RobotRefused, "'" + description.label + "': " + reply.message);

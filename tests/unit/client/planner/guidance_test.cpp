@@ -135,60 +135,60 @@ TEST(FetchGuidance, RefusesADistributionThatDoesNotFitTheRobot) {
   EXPECT_FALSE(answer_to(ready(1.5)).guidance);
 }
 
-TEST(GuidanceBook, AsksOncePerPlacementWithinAMillimetre) {
+TEST(GuidanceCache, AsksOncePerPlacementWithinAMillimetre) {
   int asked = 0;
-  GuidanceBook book(
+  GuidanceCache cache(
       [&](const FetchRequest&) {
         ++asked;
         return Result<FetchReply>(ready());
       },
       wanted());
-  EXPECT_TRUE(book.ask(placement(0.1)).second);
-  EXPECT_FALSE(book.ask(placement(0.1001)).second);
-  EXPECT_TRUE(book.ask(placement(0.2)).second);
+  EXPECT_TRUE(cache.ask(placement(0.1)).second);
+  EXPECT_FALSE(cache.ask(placement(0.1001)).second);
+  EXPECT_TRUE(cache.ask(placement(0.2)).second);
   EXPECT_EQ(asked, 2);
 }
 
-TEST(GuidanceBook, AMissingPlacementIsAskedForAsMissing) {
+TEST(GuidanceCache, AMissingPlacementIsAskedForAsMissing) {
   std::vector<bool> placed;
-  GuidanceBook book(
+  GuidanceCache cache(
       [&](const FetchRequest& request) {
         placed.push_back(request.T_task_base.has_value());
         return Result<FetchReply>(ready());
       },
       wanted());
-  EXPECT_TRUE(book.ask(std::nullopt).second);
-  EXPECT_FALSE(book.ask(std::nullopt).second);
-  EXPECT_TRUE(book.ask(placement(0)).second);
+  EXPECT_TRUE(cache.ask(std::nullopt).second);
+  EXPECT_FALSE(cache.ask(std::nullopt).second);
+  EXPECT_TRUE(cache.ask(placement(0)).second);
   EXPECT_EQ(placed, (std::vector<bool>{false, true}));
-  EXPECT_NE(book.choose(Problem{}).guidance, nullptr);
+  EXPECT_NE(cache.choose(Problem{}).guidance, nullptr);
 }
 
-TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
-  GuidanceBook book(
+TEST(GuidanceCache, FindsOnlyWhatWasAskedAndGot) {
+  GuidanceCache cache(
       [](const FetchRequest& request) {
         const bool experienced = request.T_task_base->translation().x() > 0;
         return Result<FetchReply>(experienced ? ready() : status_only(FetchStatus::NoExperience));
       },
       wanted());
-  book.ask(placement(-1));
-  book.ask(placement(1));
-  EXPECT_EQ(book.choose(problem_at(-1)).guidance, nullptr);
-  EXPECT_EQ(book.choose(problem_at(-1)).sampling_mode, SamplingMode::Uniform);
-  EXPECT_EQ(book.choose(problem_at(0.5)).guidance, nullptr);
-  ASSERT_NE(book.choose(problem_at(1)).guidance, nullptr);
-  EXPECT_EQ(book.choose(problem_at(1)).guidance->revision, 3U);
+  cache.ask(placement(-1));
+  cache.ask(placement(1));
+  EXPECT_EQ(cache.choose(problem_at(-1)).guidance, nullptr);
+  EXPECT_EQ(cache.choose(problem_at(-1)).sampling_mode, SamplingMode::Uniform);
+  EXPECT_EQ(cache.choose(problem_at(0.5)).guidance, nullptr);
+  ASSERT_NE(cache.choose(problem_at(1)).guidance, nullptr);
+  EXPECT_EQ(cache.choose(problem_at(1)).guidance->revision, 3U);
 }
 
 /// Guided queries at one placement that cost ten times as much as control ones.
-TEST(GuidanceBook, WhatItIsToldChangesTheArmsOfAllPlacements) {
-  GuidanceBook book([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wanted());
-  book.ask(placement(0));
-  book.ask(placement(1));
-  const auto guided = [&book] {
+TEST(GuidanceCache, WhatItIsToldChangesTheArmsOfAllPlacements) {
+  GuidanceCache cache([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wanted());
+  cache.ask(placement(0));
+  cache.ask(placement(1));
+  const auto guided = [&cache] {
     int count = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed)
-      count += book.choose(problem_at(1, seed)).sampling_mode == SamplingMode::Guided ? 1 : 0;
+      count += cache.choose(problem_at(1, seed)).sampling_mode == SamplingMode::Guided ? 1 : 0;
     return count;
   };
   EXPECT_GT(guided(), 100);
@@ -198,21 +198,21 @@ TEST(GuidanceBook, WhatItIsToldChangesTheArmsOfAllPlacements) {
     for (const SamplingMode mode : {SamplingMode::Guided, SamplingMode::Control}) {
       planned.result.sampling_mode = mode;
       planned.result.collision_checks = mode == SamplingMode::Guided ? 10'000 : 1000;
-      book.add(planned);
+      cache.add(planned);
     }
   EXPECT_LT(guided(), 20);
 }
 
-TEST(GuidanceBook, DoesNotAskAgainWhenNobodyAnswered) {
+TEST(GuidanceCache, DoesNotAskAgainWhenNobodyAnswered) {
   int asked = 0;
-  GuidanceBook book(
+  GuidanceCache cache(
       [&](const FetchRequest&) {
         ++asked;
         return Result<FetchReply>(Error{ErrorCode::Unavailable, "no server answered in 5 s"});
       },
       wanted());
-  EXPECT_EQ(book.ask(placement(0.1)).first.why_not, NoGuidance::NoServer);
-  EXPECT_EQ(book.ask(placement(0.2)).first.why_not, NoGuidance::NoServer);
+  EXPECT_EQ(cache.ask(placement(0.1)).first.why_not, NoGuidance::NoServer);
+  EXPECT_EQ(cache.ask(placement(0.2)).first.why_not, NoGuidance::NoServer);
   EXPECT_EQ(asked, 1);
 }
 

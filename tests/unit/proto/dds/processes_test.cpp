@@ -10,7 +10,7 @@
 #include <string>
 
 #include "proto/dds/qos.hpp"
-#include "proto/dds/request_line.hpp"
+#include "proto/dds/request_channel.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/child_process.hpp"
@@ -100,7 +100,7 @@ TEST(Processes, ClientsOfOnePartitionGetTheirOwnReplies) {
 TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
   const test::ReservedDomain domain;
   const Participant participant({.domain = domain.number()});
-  RequestLine line(participant, Uuid::random(), Wire<codec::AdminConversation>::topics());
+  RequestChannel line(participant, Uuid::random(), Wire<codec::AdminConversation>::topics());
   test::ChildProcess server = start_server(domain.number());
   const codec::Head head = line.next_head();
   codec::Message<kinship_wire_AdminRequest> message(head);  // by hand: encode() would refuse it
@@ -111,7 +111,7 @@ TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
   const auto outcome = line.call(head, &message.wire, in(10s), [&](const void* wire) {
     reply = codec::decode(*static_cast<const kinship_wire_AdminReply*>(wire)).value_or_throw();
   });
-  EXPECT_EQ(outcome, RequestLine::Outcome::Answered);
+  EXPECT_EQ(outcome, RequestChannel::Outcome::Answered);
   EXPECT_EQ(reply.status, AdminStatus::Refused);
   EXPECT_EQ(reply.message, "verb: 1000 is not between 0 and 27");
 }

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "proto/dds/endpoint_guard.hpp"
-#include "proto/dds/senders.hpp"
+#include "proto/dds/matched_writers.hpp"
 #include "tests/unit/proto/dds/secured_fleet.hpp"
 
 namespace kinship::dds::security_test {

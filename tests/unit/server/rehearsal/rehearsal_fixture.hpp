@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/catalog/experience_book.hpp"
+#include "server/catalog/experience_index.hpp"
 #include "server/rehearsal/rehearse.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/panda_experience.hpp"

@@ -47,15 +47,15 @@ TEST_F(Audit, WhatCannotBeKeptInTheAuditLogIsNotDone) {
 
 TEST_F(Audit, WhoIsRefusedForEverFillsNoDisk) {
   const Caller reader = named("anna", AccessRole::Reader);
-  for (std::uint64_t i = 0; i < AuditAllowance::kAtOnce + 50; ++i)
+  for (std::uint64_t i = 0; i < AuditRateLimit::kAtOnce + 50; ++i)
     ask(reader, AdminVerb::ResetTask, "shelf");
-  EXPECT_EQ(log_entries().size(), AuditAllowance::kAtOnce);
+  EXPECT_EQ(log_entries().size(), AuditRateLimit::kAtOnce);
   ask(named("ben", AccessRole::Reader), AdminVerb::ResetTask, "shelf");
   EXPECT_EQ(log_entries().back(), "ben reset_task shelf refused") << "nobody else is hidden";
   advance(std::chrono::seconds(2));
   ask(reader, AdminVerb::ResetTask, "shelf");
   const std::vector<AuditEntry> log = real_store_->list_audit("", "", 1000).rows;
-  ASSERT_EQ(log.size(), AuditAllowance::kAtOnce + 2);
+  ASSERT_EQ(log.size(), AuditRateLimit::kAtOnce + 2);
   EXPECT_NE(log[0].message.find("(50 of its own before it were not kept)"), std::string::npos)
       << log[0].message;
 }
@@ -86,23 +86,23 @@ TEST_F(Audit, WhatFailsForEverFillsNoDiskButTheEndOfWhatBeganIsKept) {
   failed.message = "disk I/O error";
   const Caller otto = named("otto", AccessRole::Operator);
   const auto fail = [&](AdminVerb verb) {
-    for (std::uint64_t i = 0; i < AuditAllowance::kAtOnce + 20; ++i)
+    for (std::uint64_t i = 0; i < AuditRateLimit::kAtOnce + 20; ++i)
       trail.not_done(audit_entry(otto, fleet::question(verb, "x")), failed);
   };
   fail(AdminVerb::EvictDistribution);
-  EXPECT_EQ(log_entries().size(), AuditAllowance::kAtOnce);
+  EXPECT_EQ(log_entries().size(), AuditRateLimit::kAtOnce);
   fail(AdminVerb::ResetTask);
-  EXPECT_EQ(log_entries().size(), 2 * AuditAllowance::kAtOnce + 20);
+  EXPECT_EQ(log_entries().size(), 2 * AuditRateLimit::kAtOnce + 20);
 }
 
 TEST_F(Audit, WhoInventsClientsSharesTheAllowanceOfOne) {
-  AuditAllowance allowance(clock_);
+  AuditRateLimit allowance(clock_);
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < 2 * AuditAllowance::kClients; ++i)
-    for (std::uint64_t j = 0; j <= AuditAllowance::kAtOnce; ++j)
+  for (std::size_t i = 0; i < 2 * AuditRateLimit::kClients; ++i)
+    for (std::uint64_t j = 0; j <= AuditRateLimit::kAtOnce; ++j)
       kept += allowance.take("invented " + std::to_string(i)).has_value();
-  EXPECT_LE(kept, (AuditAllowance::kClients + 1) * AuditAllowance::kAtOnce);
-  advance(std::chrono::seconds(AuditAllowance::kAtOnce));
+  EXPECT_LE(kept, (AuditRateLimit::kClients + 1) * AuditRateLimit::kAtOnce);
+  advance(std::chrono::seconds(AuditRateLimit::kAtOnce));
   EXPECT_EQ(allowance.take("honest"), 0U) << "who was quiet since makes room";
 }
 

@@ -1,4 +1,4 @@
-#include "proto/dds/request_line.hpp"
+#include "proto/dds/request_channel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ std::chrono::milliseconds delay_after(int sends) {
 
 }  // namespace
 
-RequestLine::Waiter::Waiter(const RequestLine& line)
+RequestChannel::Waiter::Waiter(const RequestChannel& line)
     : guard(dds_create_guardcondition(line.participant_), "guard condition"),
       waitset(dds_create_waitset(line.participant_), "waitset") {
   for (const Handle entity :
@@ -26,8 +26,8 @@ RequestLine::Waiter::Waiter(const RequestLine& line)
     require(dds_waitset_attach(waitset.get(), entity, 0), "waitset");
 }
 
-RequestLine::RequestLine(const Participant& participant, const Uuid& client_id,
-                         const Topics& topics)
+RequestChannel::RequestChannel(const Participant& participant, const Uuid& client_id,
+                               const Topics& topics)
     : participant_(participant.get()),
       waits_for_replies_(participant.credentials().has_value()),
       client_id_(client_id),
@@ -62,9 +62,9 @@ RequestLine::RequestLine(const Participant& participant, const Uuid& client_id,
   require(dds_set_status_mask(reader_.get(), DDS_SUBSCRIPTION_MATCHED_STATUS), "status mask");
 }
 
-RequestLine::Outcome RequestLine::call(const codec::Head& head, const void* request,
-                                       Clock::time_point deadline,
-                                       const std::function<void(const void*)>& on_reply) {
+RequestChannel::Outcome RequestChannel::call(const codec::Head& head, const void* request,
+                                             Clock::time_point deadline,
+                                             const std::function<void(const void*)>& on_reply) {
   std::unique_ptr<Waiter> waiter = acquire_waiter();
   Call call{on_reply, *waiter};
   {
@@ -86,8 +86,8 @@ RequestLine::Outcome RequestLine::call(const codec::Head& head, const void* requ
   }
 }
 
-RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* request,
-                                                 Clock::time_point deadline) {
+RequestChannel::Outcome RequestChannel::wait_for_reply(const Call& call, const void* request,
+                                                       Clock::time_point deadline) {
   int sends = 0;
   bool has_waited = false;  // what is there before that ends the first wait
   std::uint64_t servers_seen = servers_seen_;
@@ -123,7 +123,7 @@ RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* r
   }
 }
 
-void RequestLine::wait(const Waiter& waiter, Clock::time_point until) const {
+void RequestChannel::wait(const Waiter& waiter, Clock::time_point until) const {
   std::array<dds_attach_t, 4> ready{};
   const auto time = std::chrono::nanoseconds(until - Clock::now());
   require(dds_waitset_wait(waiter.waitset.get(), ready.data(), ready.size(),
@@ -133,7 +133,7 @@ void RequestLine::wait(const Waiter& waiter, Clock::time_point until) const {
   require(dds_take_guardcondition(waiter.guard.get(), &ignored), "guard condition");
 }
 
-void RequestLine::hand_out_replies(const Call& own) {
+void RequestChannel::hand_out_replies(const Call& own) {
   std::vector<Handle> others;
   while (true) {
     const Loan replies(reader_, "replies of " + name_);
@@ -161,7 +161,7 @@ void RequestLine::hand_out_replies(const Call& own) {
     dds_set_guardcondition(guard, true);
 }
 
-bool RequestLine::notice_servers() {
+bool RequestChannel::notice_servers() {
   dds_publication_matched_status_t status{};
   require(dds_get_publication_matched_status(writer_.get(), &status), "writer " + name_);
   if (status.current_count_change != 0 || status.total_count_change != 0) {
@@ -181,16 +181,16 @@ bool RequestLine::notice_servers() {
   return status.current_count > 0 && (!waits_for_replies_ || replies.current_count > 0);
 }
 
-std::uint64_t RequestLine::count_servers() {
+std::uint64_t RequestChannel::count_servers() {
   notice_servers();
   return servers_seen_;
 }
 
-bool RequestLine::has_server() const {
+bool RequestChannel::has_server() const {
   return dds_get_matched_subscriptions(writer_.get(), nullptr, 0) > 0;
 }
 
-void RequestLine::wake_all() {
+void RequestChannel::wake_all() {
   std::vector<Handle> guards;
   {
     const std::lock_guard lock(mutex_);
@@ -201,12 +201,12 @@ void RequestLine::wake_all() {
     dds_set_guardcondition(guard, true);
 }
 
-void RequestLine::cancel() {
+void RequestChannel::cancel() {
   is_cancelled_ = true;
   wake_all();
 }
 
-std::unique_ptr<RequestLine::Waiter> RequestLine::acquire_waiter() {
+std::unique_ptr<RequestChannel::Waiter> RequestChannel::acquire_waiter() {
   {
     const std::lock_guard lock(mutex_);
     if (!idle_waiters_.empty()) {
@@ -218,7 +218,7 @@ std::unique_ptr<RequestLine::Waiter> RequestLine::acquire_waiter() {
   return std::make_unique<Waiter>(*this);
 }
 
-void RequestLine::release_waiter(std::unique_ptr<Waiter> waiter) {
+void RequestChannel::release_waiter(std::unique_ptr<Waiter> waiter) {
   const std::lock_guard lock(mutex_);
   idle_waiters_.push_back(std::move(waiter));
 }

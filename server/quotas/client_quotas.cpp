@@ -1,4 +1,4 @@
-#include "server/quotas/client_book.hpp"
+#include "server/quotas/client_quotas.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,11 +49,11 @@ Wording wording_of(Quota quota) {
 
 }  // namespace
 
-void ClientBook::Meter::decay(double passed_s) { amount *= std::exp(-passed_s / kMeter_s); }
+void ClientQuotas::Meter::decay(double passed_s) { amount *= std::exp(-passed_s / kMeter_s); }
 
-double ClientBook::Meter::per_s() const { return amount / kMeter_s; }
+double ClientQuotas::Meter::per_s() const { return amount / kMeter_s; }
 
-ClientBook::Entry::Entry(std::string name, const std::array<Rate, kBuckets>& rates, TimePoint now)
+ClientQuotas::Entry::Entry(std::string name, const std::array<Rate, kBuckets>& rates, TimePoint now)
     : client(std::move(name)),
       buckets{TokenBucket(rates[0], now), TokenBucket(rates[1], now), TokenBucket(rates[2], now),
               TokenBucket(rates[3], now), TokenBucket(rates[4], now)},
@@ -62,14 +62,14 @@ ClientBook::Entry::Entry(std::string name, const std::array<Rate, kBuckets>& rat
   use.client = client;
 }
 
-ClientBook::ClientBook(const runtime::Clock& clock, const ClientRates& rates)
+ClientQuotas::ClientQuotas(const runtime::Clock& clock, const ClientRates& rates)
     : clock_(clock),
       rates_{by_the_second(rates.attempts_per_s), by_the_second(rates.bytes_per_s),
              by_the_day(rates.robots_per_day), by_the_day(rates.tasks_per_day),
              by_the_day(rates.stored_bytes_per_day)},
       max_clients_(std::max<std::size_t>(rates.max_clients, 1)) {}
 
-std::size_t ClientBook::bucket_of(Quota quota) {
+std::size_t ClientQuotas::bucket_of(Quota quota) {
   switch (quota) {
     case Quota::Attempts:
       return 0;
@@ -84,8 +84,8 @@ std::size_t ClientBook::bucket_of(Quota quota) {
   }
 }
 
-std::optional<Refusal> ClientBook::admit(const std::string& client, std::size_t bytes,
-                                         std::size_t attempts) {
+std::optional<Refusal> ClientQuotas::admit(const std::string& client, std::size_t bytes,
+                                           std::size_t attempts) {
   if (client.empty())
     return std::nullopt;
   const TimePoint now = clock_.now();
@@ -108,7 +108,7 @@ std::optional<Refusal> ClientBook::admit(const std::string& client, std::size_t 
   return std::nullopt;
 }
 
-std::optional<Refusal> ClientBook::may_add(const std::string& client, Quota quota) {
+std::optional<Refusal> ClientQuotas::may_add(const std::string& client, Quota quota) {
   if (client.empty())
     return std::nullopt;
   const TimePoint now = clock_.now();
@@ -116,7 +116,7 @@ std::optional<Refusal> ClientBook::may_add(const std::string& client, Quota quot
   return over(find(client, now), quota, 1, now);
 }
 
-void ClientBook::count_reply(const std::string& client, std::size_t bytes) {
+void ClientQuotas::count_reply(const std::string& client, std::size_t bytes) {
   if (client.empty())
     return;
   const TimePoint now = clock_.now();
@@ -127,7 +127,7 @@ void ClientBook::count_reply(const std::string& client, std::size_t bytes) {
   meter(entry, 0, bytes, now);
 }
 
-void ClientBook::count_robot(const std::string& client, const std::string& label, bool is_new) {
+void ClientQuotas::count_robot(const std::string& client, const std::string& label, bool is_new) {
   if (client.empty())
     return;
   const TimePoint now = clock_.now();
@@ -144,7 +144,7 @@ void ClientBook::count_robot(const std::string& client, const std::string& label
   labels.push_back(label);
 }
 
-void ClientBook::count_task(const std::string& client) {
+void ClientQuotas::count_task(const std::string& client) {
   if (client.empty())
     return;
   const TimePoint now = clock_.now();
@@ -154,7 +154,7 @@ void ClientBook::count_task(const std::string& client) {
   ++entry.use.created_tasks;
 }
 
-void ClientBook::count_stored(const std::string& client, std::size_t bytes) {
+void ClientQuotas::count_stored(const std::string& client, std::size_t bytes) {
   if (client.empty())
     return;
   const TimePoint now = clock_.now();
@@ -165,7 +165,7 @@ void ClientBook::count_stored(const std::string& client, std::size_t bytes) {
   entry.use.stored_bytes += bytes;
 }
 
-void ClientBook::count_refusal(const std::string& client, Quota quota) {
+void ClientQuotas::count_refusal(const std::string& client, Quota quota) {
   ++refusals_[static_cast<std::size_t>(quota)];
   if (client.empty())
     return;
@@ -176,7 +176,7 @@ void ClientBook::count_refusal(const std::string& client, Quota quota) {
   use.refused_for = kQuotaNames[static_cast<std::size_t>(quota)];
 }
 
-std::vector<ClientUse> ClientBook::list() const {
+std::vector<ClientUse> ClientQuotas::list() const {
   const TimePoint now = clock_.now();
   std::vector<ClientUse> rows;
   {
@@ -195,13 +195,13 @@ std::vector<ClientUse> ClientBook::list() const {
   return rows;
 }
 
-std::size_t ClientBook::size() const {
+std::size_t ClientQuotas::size() const {
   const std::lock_guard lock(mutex_);
   return entries_.size();
 }
 
 /// The client's entry, which is the newest then; of the others' if there is no room for it.
-ClientBook::Entry& ClientBook::find(const std::string& client, TimePoint now) {
+ClientQuotas::Entry& ClientQuotas::find(const std::string& client, TimePoint now) {
   auto place = places_.find(client);
   if (place == places_.end() && (entries_.size() < max_clients_ || forget_idle(now)))
     return *make(client, now);
@@ -218,7 +218,7 @@ ClientBook::Entry& ClientBook::find(const std::string& client, TimePoint now) {
   return entry;
 }
 
-ClientBook::Entries::iterator ClientBook::make(const std::string& client, TimePoint now) {
+ClientQuotas::Entries::iterator ClientQuotas::make(const std::string& client, TimePoint now) {
   entries_.emplace_front(client, rates_, now);
   entries_.front().use.last_seen_ms = clock_.unix_ms();
   places_.emplace(client, entries_.begin());
@@ -226,7 +226,7 @@ ClientBook::Entries::iterator ClientBook::make(const std::string& client, TimePo
 }
 
 /// Whether somebody made room: nothing is given away, for its quotas are whole again.
-bool ClientBook::forget_idle(TimePoint now) {
+bool ClientQuotas::forget_idle(TimePoint now) {
   constexpr int kMostLooked = 64;  // from those seen longest ago: a flood costs no more than that
   auto entry = entries_.end();
   for (int i = 0; i < kMostLooked && entry != entries_.begin(); ++i) {
@@ -245,7 +245,8 @@ bool ClientBook::forget_idle(TimePoint now) {
   return false;
 }
 
-void ClientBook::meter(Entry& entry, std::size_t attempts, std::size_t bytes, TimePoint now) const {
+void ClientQuotas::meter(Entry& entry, std::size_t attempts, std::size_t bytes,
+                         TimePoint now) const {
   const double passed_s = std::chrono::duration<double>(now - entry.metered).count();
   entry.metered = now;
   entry.attempts.decay(passed_s);
@@ -254,7 +255,7 @@ void ClientBook::meter(Entry& entry, std::size_t attempts, std::size_t bytes, Ti
   entry.bytes.amount += static_cast<double>(bytes);
 }
 
-std::optional<Refusal> ClientBook::over(Entry& entry, Quota quota, double amount, TimePoint now) {
+std::optional<Refusal> ClientQuotas::over(Entry& entry, Quota quota, double amount, TimePoint now) {
   const Rate& rate = rate_of(quota);
   const auto time = entry.buckets[bucket_of(quota)].time_until(rate, amount, now);
   if (time.count() <= 0)

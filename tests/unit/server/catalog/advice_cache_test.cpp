@@ -1,4 +1,4 @@
-#include "server/catalog/advice_book.hpp"
+#include "server/catalog/advice_cache.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/store_values.hpp"
 
-namespace kinship::catalog::advice_book_test {
+namespace kinship::catalog::advice_cache_test {
 namespace {
 
 constexpr double kProfileShare = 0.9;
@@ -20,7 +20,7 @@ AttemptCost cost(SamplingMode mode, std::uint64_t checks, Outcome outcome = Outc
   return {"shelf", {}, mode, outcome, checks, "birrt", kDistribution};
 }
 
-class AdviceBookTest : public testing::Test {
+class AdviceCacheTest : public testing::Test {
  protected:
   void run_later() {
     std::vector<std::function<void()>> waiting;
@@ -31,8 +31,8 @@ class AdviceBookTest : public testing::Test {
     for (const auto& run : waiting)
       run();
   }
-  Advice advise() { return book_.advise("shelf", {}, kContext, kProfileShare); }
-  std::uint64_t version() const { return book_.version("shelf", {}); }
+  Advice advise() { return advice_.advise("shelf", {}, kContext, kProfileShare); }
+  std::uint64_t version() const { return advice_.version("shelf", {}); }
 
   store::AttemptTotals stored_;
   int readings_ = 0;
@@ -44,21 +44,21 @@ class AdviceBookTest : public testing::Test {
   std::mutex mutex_;  ///< of `waiting_`: several threads may hand over at once
   std::vector<std::function<void()>> waiting_;
   bool has_room_ = true;
-  AdviceBook book_{[this](const Digest&, const std::string&) {
-                     ++readings_;
-                     on_read_();
-                     return stored_;
-                   },
-                   [this](const Digest& id) { return find_context_(id); },
-                   [this](std::function<void()> run) {
-                     const std::scoped_lock lock(mutex_);
-                     if (has_room_)
-                       waiting_.push_back(std::move(run));
-                     return has_room_;
-                   }};
+  AdviceCache advice_{[this](const Digest&, const std::string&) {
+                        ++readings_;
+                        on_read_();
+                        return stored_;
+                      },
+                      [this](const Digest& id) { return find_context_(id); },
+                      [this](std::function<void()> run) {
+                        const std::scoped_lock lock(mutex_);
+                        if (has_room_)
+                          waiting_.push_back(std::move(run));
+                        return has_room_;
+                      }};
 };
 
-TEST_F(AdviceBookTest, UntilTheStoreHasAnsweredTheProfileDecides) {
+TEST_F(AdviceCacheTest, UntilTheStoreHasAnsweredTheProfileDecides) {
   const Advice advice = advise();
   EXPECT_EQ(advice.recommended_share, kProfileShare);
   EXPECT_EQ(advice.evidence, "attempts are being counted: share of the profile");
@@ -68,7 +68,7 @@ TEST_F(AdviceBookTest, UntilTheStoreHasAnsweredTheProfileDecides) {
   EXPECT_EQ(readings_, 0) << "nobody waits for the store";
 }
 
-TEST_F(AdviceBookTest, ThenTheStoredAttemptsDo) {
+TEST_F(AdviceCacheTest, ThenTheStoredAttemptsDo) {
   stored_.guided.attempts = 7;
   stored_.guided.checks = 700;
   advise();
@@ -79,13 +79,13 @@ TEST_F(AdviceBookTest, ThenTheStoredAttemptsDo) {
   EXPECT_EQ(readings_, 1);
 }
 
-TEST_F(AdviceBookTest, CommittedAttemptsAreAddedToTheirArm) {
+TEST_F(AdviceCacheTest, CommittedAttemptsAreAddedToTheirArm) {
   advise();
   run_later();
   for (int i = 0; i < 12; ++i) {
-    book_.add(cost(SamplingMode::Guided, 2000));
-    book_.add(cost(SamplingMode::Control, 1000, i < 6 ? Outcome::Solved : Outcome::Timeout));
-    book_.add(cost(SamplingMode::Uniform, 5));
+    advice_.add(cost(SamplingMode::Guided, 2000));
+    advice_.add(cost(SamplingMode::Control, 1000, i < 6 ? Outcome::Solved : Outcome::Timeout));
+    advice_.add(cost(SamplingMode::Uniform, 5));
   }
   const Advice advice = advise();
   EXPECT_EQ(*advice.guided, (ModeEvidence{12, 12, 2000}));
@@ -94,18 +94,18 @@ TEST_F(AdviceBookTest, CommittedAttemptsAreAddedToTheirArm) {
   EXPECT_EQ(readings_, 1);
 }
 
-TEST_F(AdviceBookTest, RecentAttemptsGoOnFromTheStoredOnes) {
+TEST_F(AdviceCacheTest, RecentAttemptsGoOnFromTheStoredOnes) {
   stored_.recent = {{{SamplingMode::Control, true, 700, 0}, "birrt", kDistribution}};
   advise();
   run_later();
-  book_.add(cost(SamplingMode::Guided, 300, Outcome::Timeout));
-  book_.add(cost(SamplingMode::Uniform, 5));
-  book_.add(cost(SamplingMode::Guided, 1, Outcome::Failed));  // a start in collision, say
+  advice_.add(cost(SamplingMode::Guided, 300, Outcome::Timeout));
+  advice_.add(cost(SamplingMode::Uniform, 5));
+  advice_.add(cost(SamplingMode::Guided, 1, Outcome::Failed));  // a start in collision, say
   EXPECT_EQ(advise().recent, (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 700, 1},
                                                          {SamplingMode::Guided, false, 300, 0}}));
 }
 
-TEST_F(AdviceBookTest, DistributionsThatAttemptsNameAreLookedUpBehindTheirBack) {
+TEST_F(AdviceCacheTest, DistributionsThatAttemptsNameAreLookedUpBehindTheirBack) {
   const Digest newer = test::id_from<Digest>(2);
   int look_ups = 0;
   find_context_ = [&](const Digest&) -> std::optional<Context> {
@@ -117,32 +117,32 @@ TEST_F(AdviceBookTest, DistributionsThatAttemptsNameAreLookedUpBehindTheirBack) 
   run_later();
   AttemptCost attempt = cost(SamplingMode::Guided, 300);
   attempt.distribution_id = newer;
-  book_.add(attempt);
+  advice_.add(attempt);
   EXPECT_EQ(look_ups, 0) << "nobody waits for the store";
   EXPECT_EQ(advise().recent.back().age, kAgeOfUnknown) << "of an unknown context until then";
   run_later();
-  book_.add(attempt);  // the first look-up failed
+  advice_.add(attempt);  // the first look-up failed
   const std::uint64_t before = version();
   run_later();
   EXPECT_GT(version(), before);
   EXPECT_EQ(advise().recent.back().age, 0U);
-  book_.add(attempt);
+  advice_.add(attempt);
   run_later();
   EXPECT_EQ(look_ups, 2);
 }
 
-TEST_F(AdviceBookTest, WhatNobodyAskedForIsNotKept) {
-  book_.add(cost(SamplingMode::Guided, 2000));
+TEST_F(AdviceCacheTest, WhatNobodyAskedForIsNotKept) {
+  advice_.add(cost(SamplingMode::Guided, 2000));
   EXPECT_EQ(version(), 0U);
   EXPECT_FALSE(advise().guided);
 }
 
-TEST_F(AdviceBookTest, SumsThatWereOvertakenAreReadAgain) {
+TEST_F(AdviceCacheTest, SumsThatWereOvertakenAreReadAgain) {
   advise();
   on_read_ = [this] {
     if (readings_ == 1) {  // committed before the sums were read, told before they were taken over
       stored_.guided.attempts = 1;
-      book_.add(cost(SamplingMode::Guided, 2000));
+      advice_.add(cost(SamplingMode::Guided, 2000));
     }
   };
   run_later();
@@ -150,14 +150,14 @@ TEST_F(AdviceBookTest, SumsThatWereOvertakenAreReadAgain) {
   EXPECT_EQ(advise().guided->attempts, 1U) << "counted once";
 }
 
-TEST_F(AdviceBookTest, ReadingEndsAlsoIfItIsAlwaysOvertaken) {
+TEST_F(AdviceCacheTest, ReadingEndsAlsoIfItIsAlwaysOvertaken) {
   advise();
-  on_read_ = [this] { book_.add(cost(SamplingMode::Guided, 2000)); };
+  on_read_ = [this] { advice_.add(cost(SamplingMode::Guided, 2000)); };
   run_later();
   EXPECT_EQ(version(), 1U);
 }
 
-TEST_F(AdviceBookTest, AfterAFailureTheNextQuestionReadsAgain) {
+TEST_F(AdviceCacheTest, AfterAFailureTheNextQuestionReadsAgain) {
   on_read_ = [this] {
     if (readings_ == 1)
       throw Failure(ErrorCode::Storage, "disk");
@@ -170,7 +170,7 @@ TEST_F(AdviceBookTest, AfterAFailureTheNextQuestionReadsAgain) {
   EXPECT_EQ(version(), 1U);
 }
 
-TEST_F(AdviceBookTest, WithoutRoomTheNextQuestionTriesAgain) {
+TEST_F(AdviceCacheTest, WithoutRoomTheNextQuestionTriesAgain) {
   has_room_ = false;
   EXPECT_EQ(advise().recommended_share, kProfileShare);
   has_room_ = true;
@@ -179,7 +179,7 @@ TEST_F(AdviceBookTest, WithoutRoomTheNextQuestionTriesAgain) {
   EXPECT_EQ(version(), 1U);
 }
 
-TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
+TEST_F(AdviceCacheTest, ThreadsMayAddAndAskAtOnce) {
   advise();
   run_later();
   constexpr int kThreads = 4, kAttempts = 500;
@@ -187,8 +187,8 @@ TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
   for (int i = 0; i < kThreads; ++i)
     threads.emplace_back([this] {
       for (int j = 0; j < kAttempts; ++j) {
-        book_.add(cost(SamplingMode::Guided, 10));
-        book_.advise("shelf", {}, kContext, kProfileShare);
+        advice_.add(cost(SamplingMode::Guided, 10));
+        advice_.advise("shelf", {}, kContext, kProfileShare);
       }
     });
   for (std::thread& thread : threads)
@@ -196,17 +196,17 @@ TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
   EXPECT_EQ(advise().guided->attempts, static_cast<std::uint64_t>(kThreads * kAttempts));
 }
 
-TEST_F(AdviceBookTest, TellsTheWorthOfGuidanceAsItIsAdvisedNow) {
-  EXPECT_TRUE(book_.worths(10).pairs.empty());
+TEST_F(AdviceCacheTest, TellsTheWorthOfGuidanceAsItIsAdvisedNow) {
+  EXPECT_TRUE(advice_.worths(10).pairs.empty());
   advise();
-  EXPECT_TRUE(book_.worths(10).pairs.empty()) << "nothing is known yet";
+  EXPECT_TRUE(advice_.worths(10).pairs.empty()) << "nothing is known yet";
   run_later();
   for (int i = 0; i < 20; ++i) {
-    book_.add(cost(SamplingMode::Guided, 1000));
-    book_.add(cost(SamplingMode::Control, 100));
+    advice_.add(cost(SamplingMode::Guided, 1000));
+    advice_.add(cost(SamplingMode::Control, 100));
     run_later();
   }
-  const GuidanceWorths worths = book_.worths(10);
+  const GuidanceWorths worths = advice_.worths(10);
   ASSERT_EQ(worths.pairs.size(), 1U);
   EXPECT_EQ(worths.left_out, 0U);
   EXPECT_EQ(worths.pairs[0].task, "shelf");
@@ -215,38 +215,38 @@ TEST_F(AdviceBookTest, TellsTheWorthOfGuidanceAsItIsAdvisedNow) {
   EXPECT_LT(worths.pairs[0].advice.recommended_share, kProfileShare);
 }
 
-TEST_F(AdviceBookTest, NothingIsToldOfARobotThatIsRemovedAlsoWhileItsAttemptsAreRead) {
+TEST_F(AdviceCacheTest, NothingIsToldOfARobotThatIsRemovedAlsoWhileItsAttemptsAreRead) {
   advise();
   run_later();
-  ASSERT_EQ(book_.worths(10).pairs.size(), 1U);
-  book_.forget(test::id_from<Digest>(7));
-  ASSERT_EQ(book_.worths(10).pairs.size(), 1U) << "another robot was removed";
-  book_.forget({});
-  EXPECT_TRUE(book_.worths(10).pairs.empty());
+  ASSERT_EQ(advice_.worths(10).pairs.size(), 1U);
+  advice_.forget(test::id_from<Digest>(7));
+  ASSERT_EQ(advice_.worths(10).pairs.size(), 1U) << "another robot was removed";
+  advice_.forget({});
+  EXPECT_TRUE(advice_.worths(10).pairs.empty());
   EXPECT_EQ(version(), 0U);
 
   advise();
-  on_read_ = [this] { book_.forget({}); };
+  on_read_ = [this] { advice_.forget({}); };
   run_later();
-  EXPECT_TRUE(book_.worths(10).pairs.empty());
+  EXPECT_TRUE(advice_.worths(10).pairs.empty());
 
   on_read_ = [] {};
   advise();  // it is registered again
   run_later();
-  EXPECT_EQ(book_.worths(10).pairs.size(), 1U);
+  EXPECT_EQ(advice_.worths(10).pairs.size(), 1U);
 }
 
-TEST_F(AdviceBookTest, TellsOfThePairsWithMostAttemptsAndHowManyOthersThereAre) {
+TEST_F(AdviceCacheTest, TellsOfThePairsWithMostAttemptsAndHowManyOthersThereAre) {
   for (const char* const task : {"c", "a", "b"})
-    book_.advise(task, {}, kContext, kProfileShare);
+    advice_.advise(task, {}, kContext, kProfileShare);
   run_later();
   for (const auto& [task, count] : {std::pair("a", 2), std::pair("b", 1), std::pair("c", 3)})
     for (int i = 0; i < count; ++i) {
       AttemptCost attempt = cost(SamplingMode::Guided, 10);
       attempt.task = task;
-      book_.add(attempt);
+      advice_.add(attempt);
     }
-  const GuidanceWorths worths = book_.worths(2);
+  const GuidanceWorths worths = advice_.worths(2);
   ASSERT_EQ(worths.pairs.size(), 2U);
   EXPECT_EQ(worths.pairs[0].task, "a");
   EXPECT_EQ(worths.pairs[1].task, "c");
@@ -254,4 +254,4 @@ TEST_F(AdviceBookTest, TellsOfThePairsWithMostAttemptsAndHowManyOthersThereAre) 
 }
 
 }  // namespace
-}  // namespace kinship::catalog::advice_book_test
+}  // namespace kinship::catalog::advice_cache_test

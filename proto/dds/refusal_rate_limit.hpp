@@ -9,7 +9,7 @@ namespace kinship::dds {
 /// How many requests of a client that may not ask at all are answered: ten a second, so that who
 /// has a certificate of old cannot have the server work as much as it likes. Not to be shared
 /// between threads.
-class RefusalAllowance {
+class RefusalRateLimit {
  public:
   using Clock = std::chrono::steady_clock;
 

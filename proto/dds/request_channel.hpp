@@ -18,12 +18,12 @@ namespace kinship::dds {
 ///
 /// There is no thread of its own: whichever caller sees replies first hands them out and wakes
 /// the others.
-class RequestLine {
+class RequestChannel {
  public:
   using Clock = std::chrono::steady_clock;
   enum class Outcome { Answered, TimedOut, Cancelled };
 
-  RequestLine(const Participant& participant, const Uuid& client_id, const Topics& topics);
+  RequestChannel(const Participant& participant, const Uuid& client_id, const Topics& topics);
 
   codec::Head next_head() { return {client_id_, ++last_sequence_number_}; }
 
@@ -39,7 +39,7 @@ class RequestLine {
 
  private:
   struct Waiter {
-    explicit Waiter(const RequestLine& line);
+    explicit Waiter(const RequestChannel& line);
     Entity guard;
     Entity waitset;
   };

@@ -1,4 +1,4 @@
-#include "server/runtime/trouble_book.hpp"
+#include "server/runtime/error_counters.hpp"
 
 #include <optional>
 
@@ -7,7 +7,7 @@
 
 namespace kinship::runtime {
 
-void TroubleBook::add(Trouble what, std::string_view detail, std::uint64_t count) {
+void ErrorCounters::add(Trouble what, std::string_view detail, std::uint64_t count) {
   if (count == 0)
     return;
   const auto kind = static_cast<std::size_t>(what);
@@ -31,7 +31,7 @@ void TroubleBook::add(Trouble what, std::string_view detail, std::uint64_t count
     log_(line);
 }
 
-std::vector<TroubleCount> TroubleBook::counts() const {
+std::vector<TroubleCount> ErrorCounters::counts() const {
   std::vector<TroubleCount> counts;
   const std::lock_guard lock(mutex_);
   for (std::size_t kind = 0; kind < entries_.size(); ++kind)

@@ -1,4 +1,4 @@
-#include "proto/dds/senders.hpp"
+#include "proto/dds/matched_writers.hpp"
 
 #include <dds/dds.h>
 
@@ -62,13 +62,13 @@ std::optional<std::string> client_of_partitions(const dds_qos* qos) {
   return name;
 }
 
-Senders::Senders(const Participant& participant)
+MatchedWriters::MatchedWriters(const Participant& participant)
     : has_security_(participant.credentials().has_value()),
       participants_(
           dds_create_reader(participant.get(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
           "reader of participants") {}
 
-Sender* Senders::find(const Entity& reader, std::uint64_t writer) {
+Sender* MatchedWriters::find(const Entity& reader, std::uint64_t writer) {
   if (const auto known = known_.find(writer); known != known_.end())
     return &known->second;
   std::optional<Sender> sender = look_up(reader, writer);
@@ -79,13 +79,13 @@ Sender* Senders::find(const Entity& reader, std::uint64_t writer) {
   return &known_.emplace(writer, *std::move(sender)).first->second;
 }
 
-void Senders::forget_heard() {
+void MatchedWriters::forget_heard() {
   for (auto& [writer, sender] : known_)
     if (sender.hearing == Hearing::Heard)
       sender.hearing = Hearing::Unknown;
 }
 
-std::optional<Sender> Senders::look_up(const Entity& reader, std::uint64_t writer) const {
+std::optional<Sender> MatchedWriters::look_up(const Entity& reader, std::uint64_t writer) const {
   const Endpoint endpoint(dds_get_matched_publication_data(reader.get(), writer));
   if (!endpoint)
     return std::nullopt;
@@ -103,7 +103,7 @@ std::optional<Sender> Senders::look_up(const Entity& reader, std::uint64_t write
                 .participant = endpoint->participant_instance_handle};
 }
 
-bool Senders::is_local(std::uint64_t participant) const {
+bool MatchedWriters::is_local(std::uint64_t participant) const {
   std::array<void*, 1> samples{};
   std::array<dds_sample_info_t, 1> infos{};
   const dds_return_t count =

@@ -31,11 +31,11 @@ struct Sender {
   Hearing hearing = Hearing::Unknown;
 };
 
-/// Finds senders by the writers of samples, and remembers them. For sources of proto/dds only; not
-/// to be shared between threads.
-class Senders {
+/// Finds matched_writers by the writers of samples, and remembers them. For sources of proto/dds
+/// only; not to be shared between threads.
+class MatchedWriters {
  public:
-  explicit Senders(const Participant& participant);
+  explicit MatchedWriters(const Participant& participant);
 
   /// \param reader  which took the sample.
   /// \param writer  its publication handle.

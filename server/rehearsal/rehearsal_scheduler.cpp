@@ -1,4 +1,4 @@
-#include "server/rehearsal/rehearsal_book.hpp"
+#include "server/rehearsal/rehearsal_scheduler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,8 @@ std::uint64_t count_selected(const store::Store& store, const fitting::Distribut
 
 /// The mixture of the paths that are not in one half; nothing if none can be fitted.
 std::optional<Mixture> fit_without(std::size_t half, const fitting::DistributionKey& key,
-                                   const RehearsalBook::Parts& parts, const std::stop_token& stop) {
+                                   const RehearsalScheduler::Parts& parts,
+                                   const std::stop_token& stop) {
   const fitting::FitOutcome outcome = fitting::fit_distribution(
       key,
       {.store = parts.store,
@@ -55,12 +56,12 @@ std::string described(const std::vector<GuideCost>& costs) {
 
 }  // namespace
 
-RehearsalBook::RehearsalBook(const Parts& parts, RehearsalBookOptions options)
+RehearsalScheduler::RehearsalScheduler(const Parts& parts, RehearsalSchedulerOptions options)
     : parts_(parts),
       options_(std::move(options)),
       pool_({.threads = 1, .queue_limit = kMaxQueued, .niceness = kNiceness}) {}
 
-SharedRehearsal RehearsalBook::ask(const RehearsalKey& key) {
+SharedRehearsal RehearsalScheduler::ask(const RehearsalKey& key) {
   const std::lock_guard lock(mutex_);
   if (is_stopping_ || options_.processor_fraction == 0)
     return nullptr;
@@ -69,7 +70,7 @@ SharedRehearsal RehearsalBook::ask(const RehearsalKey& key) {
   return known;
 }
 
-void RehearsalBook::wait(const RehearsalKey& key, TimePoint deadline, const Done& done) {
+void RehearsalScheduler::wait(const RehearsalKey& key, TimePoint deadline, const Done& done) {
   SharedRehearsal known;
   bool waits = false;
   {
@@ -91,7 +92,7 @@ void RehearsalBook::wait(const RehearsalKey& key, TimePoint deadline, const Done
   options_.wake();
 }
 
-RehearsalBook::Entry& RehearsalBook::use(const RehearsalKey& key) {
+RehearsalScheduler::Entry& RehearsalScheduler::use(const RehearsalKey& key) {
   const Digest id = identify(key.distribution);
   Entry& entry = entries_[id];
   entry.key = key;
@@ -104,7 +105,7 @@ RehearsalBook::Entry& RehearsalBook::use(const RehearsalKey& key) {
   return entry;
 }
 
-std::optional<RehearsalBook::TimePoint> RehearsalBook::next_deadline() const {
+std::optional<RehearsalScheduler::TimePoint> RehearsalScheduler::next_deadline() const {
   const std::lock_guard lock(mutex_);
   std::optional<TimePoint> next;
   for (const auto& [id, entry] : entries_)
@@ -113,7 +114,7 @@ std::optional<RehearsalBook::TimePoint> RehearsalBook::next_deadline() const {
   return next;
 }
 
-void RehearsalBook::expire(TimePoint now) {
+void RehearsalScheduler::expire(TimePoint now) {
   WaiterAnswers answers;
   {
     const std::lock_guard lock(mutex_);
@@ -131,25 +132,25 @@ void RehearsalBook::expire(TimePoint now) {
     done(known);
 }
 
-void RehearsalBook::new_experience(std::string_view task) {
+void RehearsalScheduler::new_experience(std::string_view task) {
   const std::lock_guard lock(mutex_);
   versions_.grew(task);
 }
 
-void RehearsalBook::forget(std::string_view task) {
+void RehearsalScheduler::forget(std::string_view task) {
   const std::lock_guard lock(mutex_);
   versions_.lost(task);
   for (auto& [id, entry] : entries_)
     entry.is_lost = entry.is_lost || entry.key.distribution.task == task;
 }
 
-SharedRehearsal RehearsalBook::find(const Digest& distribution) const {
+SharedRehearsal RehearsalScheduler::find(const Digest& distribution) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(distribution);
   return found == entries_.end() ? nullptr : found->second.known;
 }
 
-RehearsalTotals RehearsalBook::totals() const {
+RehearsalTotals RehearsalScheduler::totals() const {
   const std::lock_guard lock(mutex_);
   RehearsalTotals totals = totals_;
   totals.queued = static_cast<std::uint64_t>(
@@ -157,7 +158,7 @@ RehearsalTotals RehearsalBook::totals() const {
   return totals;
 }
 
-void RehearsalBook::work(const Digest& id) {
+void RehearsalScheduler::work(const Digest& id) {
   Entry before;
   std::uint64_t changes = 0;
   {
@@ -191,7 +192,7 @@ void RehearsalBook::work(const Digest& id) {
     done(known);
 }
 
-bool RehearsalBook::is_out_of_date(const RehearsalKey& key, const Entry& entry) {
+bool RehearsalScheduler::is_out_of_date(const RehearsalKey& key, const Entry& entry) {
   constexpr std::uint64_t kLeastGrowth = 10, kPartOfGrowth = 5;
   if (!entry.known || entry.is_lost)
     return true;
@@ -199,7 +200,7 @@ bool RehearsalBook::is_out_of_date(const RehearsalKey& key, const Entry& entry) 
   return now >= entry.paths + std::max(kLeastGrowth, entry.paths / kPartOfGrowth);
 }
 
-Result<Subject> RehearsalBook::subject_of(const RehearsalKey& key) {
+Result<Subject> RehearsalScheduler::subject_of(const RehearsalKey& key) {
   const std::stop_token stop = stop_source_.get_token();
   Subject subject;
   const auto robot = parts_.robots.find(key.distribution.robot);
@@ -227,7 +228,7 @@ Result<Subject> RehearsalBook::subject_of(const RehearsalKey& key) {
   return subject;
 }
 
-void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
+void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   const double begin_s = planning::thread_time_s();
   const std::uint64_t paths = count_selected(parts_.store, key.distribution);
   Rehearsal result;
@@ -272,7 +273,7 @@ void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
   keep(id, std::move(result), paths);
 }
 
-void RehearsalBook::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths) {
+void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths) {
   auto known = std::make_shared<const Rehearsal>(std::move(rehearsal));
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[id];
@@ -285,14 +286,14 @@ void RehearsalBook::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t pa
 }
 
 /// Leaves the processor to others in proportion to what it took, unless somebody waits.
-void RehearsalBook::rest(const Digest& id, double worked_s) {
+void RehearsalScheduler::rest(const Digest& id, double worked_s) {
   const double rest_s = worked_s * (1 / options_.processor_fraction - 1);
   std::unique_lock lock(mutex_);
   urgent_.wait_for(lock, std::chrono::duration<double>(rest_s),
                    [&] { return is_stopping_ || !entries_[id].waiters.empty(); });
 }
 
-void RehearsalBook::let_go(Entry& entry, WaiterAnswers& answers) {
+void RehearsalScheduler::let_go(Entry& entry, WaiterAnswers& answers) {
   for (Waiter& waiter : entry.waiters)
     answers.emplace_back(std::move(waiter.done), entry.known);
   waiters_ -= entry.waiters.size();
@@ -300,7 +301,7 @@ void RehearsalBook::let_go(Entry& entry, WaiterAnswers& answers) {
 }
 
 /// Forgets what was not asked for longest.
-void RehearsalBook::make_room() {
+void RehearsalScheduler::make_room() {
   while (entries_.size() > options_.max_rehearsals) {
     auto oldest = entries_.end();
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
@@ -313,7 +314,7 @@ void RehearsalBook::make_room() {
   }
 }
 
-void RehearsalBook::stop() {
+void RehearsalScheduler::stop() {
   WaiterAnswers waiting;
   {
     const std::lock_guard lock(mutex_);

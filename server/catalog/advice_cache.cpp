@@ -1,4 +1,4 @@
-#include "server/catalog/advice_book.hpp"
+#include "server/catalog/advice_cache.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -54,8 +54,8 @@ AttemptCost cost_of(const Attempt& attempt) {
           attempt.record.distribution_id};
 }
 
-Advice AdviceBook::advise(const std::string& task, const Digest& robot, const Context& context,
-                          double profile_share) {
+Advice AdviceCache::advise(const std::string& task, const Digest& robot, const Context& context,
+                           double profile_share) {
   const Key key(task, robot);
   std::optional<store::AttemptTotals> totals;
   JudgedAttempts judged;
@@ -84,15 +84,15 @@ Advice AdviceBook::advise(const std::string& task, const Digest& robot, const Co
   return advice;
 }
 
-std::uint64_t AdviceBook::version(const std::string& task, const Digest& robot) const {
+std::uint64_t AdviceCache::version(const std::string& task, const Digest& robot) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find({task, robot});
   return found == entries_.end() ? 0 : found->second.version;
 }
 
 /// Those whose attempts were read, in their order.
-std::vector<AdviceBook::Key> AdviceBook::keys_of_most_attempts(std::size_t max,
-                                                               std::size_t& left_out) const {
+std::vector<AdviceCache::Key> AdviceCache::keys_of_most_attempts(std::size_t max,
+                                                                 std::size_t& left_out) const {
   std::vector<std::pair<std::uint64_t, Key>> known;
   {
     const std::lock_guard lock(mutex_);
@@ -111,7 +111,7 @@ std::vector<AdviceBook::Key> AdviceBook::keys_of_most_attempts(std::size_t max,
   return keys;
 }
 
-GuidanceWorths AdviceBook::worths(std::size_t max) const {
+GuidanceWorths AdviceCache::worths(std::size_t max) const {
   GuidanceWorths worths;
   for (const Key& key : keys_of_most_attempts(max, worths.left_out)) {
     store::AttemptTotals totals;
@@ -133,7 +133,7 @@ GuidanceWorths AdviceBook::worths(std::size_t max) const {
   return worths;
 }
 
-void AdviceBook::add(const AttemptCost& cost) {
+void AdviceCache::add(const AttemptCost& cost) {
   if (cost.sampling_mode == SamplingMode::Uniform)
     return;
   const Key key(cost.task, cost.robot);
@@ -152,7 +152,7 @@ void AdviceBook::add(const AttemptCost& cost) {
     later_([this, key, id = *cost.distribution_id] { find_contexts(key, {id}); });
 }
 
-void AdviceBook::read_again(const std::string& task, const Digest& robot) {
+void AdviceCache::read_again(const std::string& task, const Digest& robot) {
   const Key key(task, robot);
   {
     const std::lock_guard lock(mutex_);
@@ -167,17 +167,17 @@ void AdviceBook::read_again(const std::string& task, const Digest& robot) {
   later_([this, key] { read_totals(key); });
 }
 
-void AdviceBook::forget(const Digest& robot) {
+void AdviceCache::forget(const Digest& robot) {
   const std::lock_guard lock(mutex_);
   std::erase_if(entries_, [&robot](const auto& entry) { return entry.first.second == robot; });
 }
 
-bool AdviceBook::knows_context(const Digest& distribution) const {
+bool AdviceCache::knows_context(const Digest& distribution) const {
   const std::lock_guard lock(mutex_);
   return contexts_.contains(distribution);
 }
 
-void AdviceBook::find_contexts(const Key& key, const std::vector<Digest>& distributions) {
+void AdviceCache::find_contexts(const Key& key, const std::vector<Digest>& distributions) {
   for (const Digest& id : distributions) {
     if (knows_context(id))
       continue;
@@ -196,7 +196,7 @@ void AdviceBook::find_contexts(const Key& key, const std::vector<Digest>& distri
   }
 }
 
-void AdviceBook::read_totals(const Key& key) {
+void AdviceCache::read_totals(const Key& key) {
   for (int reading = 1; reading <= kMaxReadings; ++reading) {
     {
       const std::lock_guard lock(mutex_);
@@ -217,7 +217,8 @@ void AdviceBook::read_totals(const Key& key) {
   }
 }
 
-bool AdviceBook::end_reading(const Key& key, const store::AttemptTotals* totals, bool is_last_try) {
+bool AdviceCache::end_reading(const Key& key, const store::AttemptTotals* totals,
+                              bool is_last_try) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(key);
   if (found == entries_.end())  // its robot was removed meanwhile

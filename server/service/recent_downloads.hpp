@@ -15,7 +15,7 @@ namespace kinship::service {
 /// Of which backups the audit log says that a client has them digested or read, since the server
 /// started: it reads them piece by piece, and that is one entry. The last ones are known; of
 /// another there is a second entry. May be shared between threads.
-class KnownDownloads {
+class RecentDownloads {
  public:
   static constexpr std::size_t kKept = 1024;
 

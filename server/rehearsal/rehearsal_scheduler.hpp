@@ -17,7 +17,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/result.hpp"
-#include "server/catalog/experience_book.hpp"
+#include "server/catalog/experience_index.hpp"
 #include "server/catalog/experience_versions.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/fitting/memory_ceiling.hpp"
@@ -32,8 +32,8 @@ namespace kinship::rehearsal {
 /// In memory and on its way to one or many.
 using SharedRehearsal = std::shared_ptr<const Rehearsal>;
 
-/// Who gets how much of what a book rehearses with.
-struct RehearsalBookOptions {
+/// How what rehearsals may use is divided.
+struct RehearsalSchedulerOptions {
   /// Of one processor, in the mean, 0 to 1; 0: nothing is rehearsed. Where somebody waits it takes
   /// what it can get.
   double processor_fraction = 0.1;
@@ -43,7 +43,7 @@ struct RehearsalBookOptions {
   std::size_t max_waiters = 1024;
   /// next_deadline() is earlier than it was. Called from any thread.
   std::function<void()> wake = [] {};
-  /// A line for people, without a line feed. Called on the book's thread.
+  /// A line for people, without a line feed. Called on the scheduler's thread.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
 
@@ -63,25 +63,25 @@ struct RehearsalKey {
 /// own that yields to all others. What is known is kept until the experience has grown by a fifth
 /// and ten paths, or lost one; a server that starts anew knows nothing. May be shared between
 /// threads; no lock is held across the store, a plan or an answer.
-class RehearsalBook {
+class RehearsalScheduler {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
   /// Called once; with nothing if nothing is known by then.
   using Done = std::function<void(const SharedRehearsal&)>;
 
-  /// What the book works with; outlives it.
+  /// What rehearsals work with; all of it outlives the scheduler.
   struct Parts {
     const store::Store& store;
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
-    catalog::ExperienceBook& experience;
+    catalog::ExperienceIndex& experience;
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
   };
 
-  RehearsalBook(const Parts& parts, RehearsalBookOptions options);
-  ~RehearsalBook() { stop(); }
-  RehearsalBook(const RehearsalBook&) = delete;
-  RehearsalBook& operator=(const RehearsalBook&) = delete;
+  RehearsalScheduler(const Parts& parts, RehearsalSchedulerOptions options);
+  ~RehearsalScheduler() { stop(); }
+  RehearsalScheduler(const RehearsalScheduler&) = delete;
+  RehearsalScheduler& operator=(const RehearsalScheduler&) = delete;
 
   /// What is known; null: nothing is. Begins to rehearse if that may be out of date.
   SharedRehearsal ask(const RehearsalKey& key);
@@ -127,7 +127,7 @@ class RehearsalBook {
   void let_go(Entry& entry, WaiterAnswers& answers);
   void make_room();
 
-  // On the book's thread, without the lock.
+  // On its own thread, without the lock.
   void work(const Digest& id);
   bool is_out_of_date(const RehearsalKey& key, const Entry& entry);
   void rehearse(const Digest& id, const RehearsalKey& key);
@@ -136,7 +136,7 @@ class RehearsalBook {
   void rest(const Digest& id, double worked_s);
 
   const Parts parts_;
-  const RehearsalBookOptions options_;
+  const RehearsalSchedulerOptions options_;
   const std::stop_source stop_source_;
 
   mutable std::mutex mutex_;            // guards what follows, but for the pool

@@ -25,8 +25,8 @@ namespace kinship::quotas {
 /// share the quotas of one client, so that who invents identities wins nothing by it and costs no
 /// memory. May be shared between threads.
 ///
-/// The empty client is the server itself: it has no quotas and is not in the book.
-class ClientBook {
+/// The empty client is the server itself: it has no quotas and is not counted.
+class ClientQuotas {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
@@ -35,7 +35,7 @@ class ClientBook {
   static constexpr std::chrono::seconds kIdle{60};  ///< then a client may make room
 
   /// \param clock  outlives it.
-  ClientBook(const runtime::Clock& clock, const ClientRates& rates);
+  ClientQuotas(const runtime::Clock& clock, const ClientRates& rates);
 
   /// Whether a request may come in; then it is counted.
   /// \param bytes, attempts  that it has.
@@ -51,7 +51,7 @@ class ClientBook {
   /// Something else said that a client has enough.
   void count_refusal(const std::string& client, Quota quota);
 
-  /// Everybody in the book, who took most in the last minute first; then who was seen last. What
+  /// All that are counted, who took most in the last minute first; then who was seen last. What
   /// they have at a time (on_way, waiting, leases, fits) is left at 0.
   std::vector<ClientUse> list() const;
 

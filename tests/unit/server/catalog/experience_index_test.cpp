@@ -1,4 +1,4 @@
-#include "server/catalog/experience_book.hpp"
+#include "server/catalog/experience_index.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,11 @@ class Books : public fitting::FitDistribution {
   static ExperienceKey key(std::uint32_t bytes = kDefaultExperienceBytes) {
     return {"shelf", {}, 0, bytes};
   }
-  static std::future<SharedChoice> ask(ExperienceBook& book, const ExperienceKey& key) {
+  static std::future<SharedChoice> ask(ExperienceIndex& experience_index,
+                                       const ExperienceKey& key) {
     const auto promise = std::make_shared<std::promise<SharedChoice>>();
-    book.ask(key, [promise](const SharedChoice& choice) { promise->set_value(choice); });
+    experience_index.ask(key,
+                         [promise](const SharedChoice& choice) { promise->set_value(choice); });
     return promise->get_future();
   }
   static bool has(const SharedChoice& choice, const Uuid& path) {
@@ -30,7 +32,7 @@ class Books : public fitting::FitDistribution {
 TEST_F(Books, WhoAsksAfterARetirementGetsWhatWasReadAfterIt) {
   const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 3, 1);
   report(attempts);
-  ExperienceBook* asked = nullptr;
+  ExperienceIndex* asked = nullptr;
   std::future<SharedChoice> later;
   store::TroubledStore store(*store_, [&] {
     if (later.valid())
@@ -39,39 +41,41 @@ TEST_F(Books, WhoAsksAfterARetirementGetsWhatWasReadAfterIt) {
     asked->forget("shelf");
     later = ask(*asked, key());
   });
-  ExperienceBook book(store, registry_);
-  asked = &book;
-  const SharedChoice before = ask(book, key()).get();
+  ExperienceIndex experience_index(store, registry_);
+  asked = &experience_index;
+  const SharedChoice before = ask(experience_index, key()).get();
   ASSERT_TRUE(before);
   EXPECT_TRUE(has(before, attempts[1].report_uuid));
   EXPECT_EQ(later.get()->paths.size(), 2U);
-  ASSERT_TRUE(book.find(key()));
-  EXPECT_EQ(book.find(key())->paths.size(), 2U);
+  ASSERT_TRUE(experience_index.find(key()));
+  EXPECT_EQ(experience_index.find(key())->paths.size(), 2U);
 }
 
 TEST_F(Books, HoldOneChoiceForAllWhoAsk) {
   report(fleet::solved(teacher_, "shelf", 3, 1));
-  ExperienceBook book(*store_, registry_, {.max_choices = 2, .max_waiters = 10});
-  EXPECT_FALSE(book.find(key()));
-  const SharedChoice choice = ask(book, key()).get();
-  EXPECT_EQ(ask(book, key()).get(), choice);
-  EXPECT_EQ(book.find(key()), choice);
-  EXPECT_NE(ask(book, key(5000)).get(), choice);
-  EXPECT_TRUE(ask(book, key(6000)).get());
-  EXPECT_FALSE(book.find(key())) << "of three the one that was not asked for longest is gone";
-  EXPECT_TRUE(book.find(key(5000)));
+  ExperienceIndex experience_index(*store_, registry_, {.max_choices = 2, .max_waiters = 10});
+  EXPECT_FALSE(experience_index.find(key()));
+  const SharedChoice choice = ask(experience_index, key()).get();
+  EXPECT_EQ(ask(experience_index, key()).get(), choice);
+  EXPECT_EQ(experience_index.find(key()), choice);
+  EXPECT_NE(ask(experience_index, key(5000)).get(), choice);
+  EXPECT_TRUE(ask(experience_index, key(6000)).get());
+  EXPECT_FALSE(experience_index.find(key()))
+      << "of three the one that was not asked for longest is gone";
+  EXPECT_TRUE(experience_index.find(key(5000)));
 }
 
 TEST_F(Books, HoldNoMoreBytesThanPathsMayTake) {
   report(fleet::solved(teacher_, "shelf", 3, 1));
   constexpr std::size_t kOfAChoice = 3 * kExperiencePoses * sizeof(Eigen::Isometry3d);
   for (const std::size_t choices : {1U, 2U}) {
-    ExperienceBook book(*store_, registry_, {.paths = {.bytes = choices * kOfAChoice * 5 / 4}});
-    EXPECT_TRUE(ask(book, key()).get());
-    EXPECT_TRUE(ask(book, key(5000)).get());
-    EXPECT_EQ(book.find(key()) != nullptr, choices == 2);
-    EXPECT_TRUE(book.find(key(5000)));
-    EXPECT_GT(book.bytes_of_paths(), kOfAChoice);
+    ExperienceIndex experience_index(*store_, registry_,
+                                     {.paths = {.bytes = choices * kOfAChoice * 5 / 4}});
+    EXPECT_TRUE(ask(experience_index, key()).get());
+    EXPECT_TRUE(ask(experience_index, key(5000)).get());
+    EXPECT_EQ(experience_index.find(key()) != nullptr, choices == 2);
+    EXPECT_TRUE(experience_index.find(key(5000)));
+    EXPECT_GT(experience_index.bytes_of_paths(), kOfAChoice);
   }
 }
 
@@ -84,17 +88,17 @@ TEST_F(Books, AnswerWhoWaitsWhenTheyStop) {
     begun.set_value();
     end.get_future().wait();
   });
-  ExperienceBook book(store, registry_);
+  ExperienceIndex experience_index(store, registry_);
   bool is_answered = false;
-  book.ask(key(), [&](const SharedChoice& choice) {
+  experience_index.ask(key(), [&](const SharedChoice& choice) {
     EXPECT_FALSE(choice);
     is_answered = true;
     end.set_value();  // the thread that stop() waits for
   });
   begun.get_future().wait();
-  book.stop();
+  experience_index.stop();
   EXPECT_TRUE(is_answered);
-  EXPECT_FALSE(ask(book, key()).get());
+  EXPECT_FALSE(ask(experience_index, key()).get());
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-#include "server/service/audit_allowance.hpp"
+#include "server/service/audit_rate_limit.hpp"
 
 #include <iterator>
 #include <utility>
 
 namespace kinship::service {
 
-std::optional<std::uint64_t> AuditAllowance::take(const std::string& client) {
+std::optional<std::uint64_t> AuditRateLimit::take(const std::string& client) {
   const std::lock_guard lock(mutex_);
   const auto now = clock_.now();
   Entry& entry = entry_of(client, now);
@@ -17,7 +17,7 @@ std::optional<std::uint64_t> AuditAllowance::take(const std::string& client) {
   return std::exchange(entry.left_out, 0);
 }
 
-AuditAllowance::Entry& AuditAllowance::entry_of(const std::string& client,
+AuditRateLimit::Entry& AuditRateLimit::entry_of(const std::string& client,
                                                 quotas::TokenBucket::TimePoint now) {
   const auto found = entries_.find(client);
   if (found != entries_.end())

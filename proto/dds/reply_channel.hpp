@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "proto/dds/client_writers.hpp"
-#include "proto/dds/hearers.hpp"
+#include "proto/dds/matched_readers.hpp"
+#include "proto/dds/matched_writers.hpp"
 #include "proto/dds/participant.hpp"
-#include "proto/dds/senders.hpp"
 #include "proto/dds/wait_loop.hpp"
 #include "proto/dds/wire.hpp"
 
@@ -20,7 +20,7 @@ namespace kinship::dds {
 /// The part of a Replier that does not depend on the conversation: the request reader, a reply
 /// writer per partition (with security per client), and which requests are being answered. For
 /// sources of proto/dds only. May be shared between threads.
-class ReplyLine {
+class ReplyChannel {
  public:
   /// Which request is answered, and to whom.
   struct Place {
@@ -30,7 +30,7 @@ class ReplyLine {
   };
 
   /// \param loop  on whose thread clients are noticed, with security.
-  ReplyLine(const Participant& participant, WaitLoop& loop, const Topics& topics);
+  ReplyChannel(const Participant& participant, WaitLoop& loop, const Topics& topics);
 
   const Entity& reader() const noexcept { return reader_; }
   const std::string& name() const noexcept { return name_; }
@@ -42,7 +42,9 @@ class ReplyLine {
   /// Whether a reply would reach a reader of the sender's participant by now.
   bool reaches(const Sender& sender, const codec::Head& head);
 
-  const Entity& hearer_came() const noexcept { return hearers_.guard(); }  ///< a guard condition
+  const Entity& hearer_came() const noexcept {
+    return matched_readers_.guard();
+  }  ///< a guard condition
 
   bool is_being_answered(const Place& place) const;
   bool begin(const Place& place);  ///< false: it is being answered already
@@ -61,9 +63,9 @@ class ReplyLine {
   Entity reply_topic_;
   Entity subscriber_;
   Entity reader_;
-  Senders senders_;
-  std::uint64_t departures_ = 0;  // that senders_ knows of
-  Hearers hearers_;
+  MatchedWriters matched_writers_;
+  std::uint64_t departures_ = 0;  // that matched_writers_ knows of
+  MatchedReaders matched_readers_;
   std::optional<ClientWriters> client_writers_;  // with security
   std::vector<Entity> publishers_;               // without: one per partition
   std::vector<Entity> writers_;                  // one per partition

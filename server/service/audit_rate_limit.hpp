@@ -15,14 +15,14 @@ namespace kinship::service {
 /// How many entries of what was not done each client may have in the audit log: so many at once,
 /// and one a second from then on. Whoever is refused may ask for ever, and nothing is ever taken
 /// out of the log; nor may one client's refusals hide another's. May be shared between threads.
-class AuditAllowance {
+class AuditRateLimit {
  public:
   static constexpr std::uint64_t kAtOnce = 100;
   /// That are told apart. While none of them has all of its allowance back, newcomers share one.
   static constexpr std::size_t kClients = 256;
 
   /// \param clock  outlives it.
-  explicit AuditAllowance(const runtime::Clock& clock) : clock_(clock) {}
+  explicit AuditRateLimit(const runtime::Clock& clock) : clock_(clock) {}
 
   /// Takes one. \return how many of the client's were left out since its last one; nothing if this
   /// one is left out, too.

@@ -52,7 +52,7 @@ struct GuidanceWorths {
 ///
 /// Distributions that attempts name are looked up in the background, once; until then they are of
 /// an unknown context.
-class AdviceBook {
+class AdviceCache {
  public:
   /// Reads the sums from the store; may throw.
   using Read = std::function<store::AttemptTotals(const Digest& robot, const std::string& task)>;
@@ -61,10 +61,10 @@ class AdviceBook {
   /// Has a function called soon on another thread. \return false if there is no room for it.
   using Later = std::function<bool(std::function<void()>)>;
 
-  AdviceBook(Read read, FindContext find_context, Later later)
+  AdviceCache(Read read, FindContext find_context, Later later)
       : read_(std::move(read)), find_context_(std::move(find_context)), later_(std::move(later)) {}
-  AdviceBook(const AdviceBook&) = delete;
-  AdviceBook& operator=(const AdviceBook&) = delete;
+  AdviceCache(const AdviceCache&) = delete;
+  AdviceCache& operator=(const AdviceCache&) = delete;
 
   /// The advice of now (advice_rule.hpp) for guidance of a context. The first time, and as long as
   /// the store has not answered: `profile_share`, and the sums are read.

@@ -52,14 +52,14 @@ inline constexpr std::array<std::string_view, 15> kTroubleNames = {"report refus
 /// Counts troubles by kind and logs the first of each burst: an event that many clients repeat
 /// every second is one line, and a number. Bounded by the number of kinds. May be shared between
 /// threads; the log is called without the lock.
-class TroubleBook {
+class ErrorCounters {
  public:
   /// A burst ends when a kind was quiet for so long.
   static constexpr std::chrono::seconds kQuiet{60};
 
   /// \param clock  outlives it.
   /// \param log    a line for people.
-  TroubleBook(const Clock& clock, std::function<void(std::string_view)> log)
+  ErrorCounters(const Clock& clock, std::function<void(std::string_view)> log)
       : clock_(clock), log_(std::move(log)) {}
 
   /// \param detail  of the last one, in words; cut to kMaxMessageBytes.

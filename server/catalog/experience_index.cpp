@@ -1,4 +1,4 @@
-#include "server/catalog/experience_book.hpp"
+#include "server/catalog/experience_index.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -20,18 +20,18 @@ std::size_t size_of(const SharedChoice& choice) {
 
 }  // namespace
 
-ExperienceBook::ExperienceBook(const store::Store& store, runtime::RobotRegistry& robots,
-                               const Limits& limits)
+ExperienceIndex::ExperienceIndex(const store::Store& store, runtime::RobotRegistry& robots,
+                                 const Limits& limits)
     : limits_(limits),
       memory_(store, robots, limits.paths),
       pool_({.threads = 1, .queue_limit = kMaxQueuedChoices, .niceness = 0}) {}
 
-SharedChoice ExperienceBook::find(const ExperienceKey& key) {
+SharedChoice ExperienceIndex::find(const ExperienceKey& key) {
   const std::lock_guard lock(mutex_);
   return find_current(key);
 }
 
-SharedChoice ExperienceBook::find_current(const ExperienceKey& key) {
+SharedChoice ExperienceIndex::find_current(const ExperienceKey& key) {
   const auto found = entries_.find(key);
   if (found == entries_.end() || !found->second.choice ||
       found->second.chosen_at != versions_.of(key.task).changes)
@@ -40,7 +40,7 @@ SharedChoice ExperienceBook::find_current(const ExperienceKey& key) {
   return found->second.choice;
 }
 
-void ExperienceBook::ask(const ExperienceKey& key, Done done) {
+void ExperienceIndex::ask(const ExperienceKey& key, Done done) {
   SharedChoice choice;
   {
     const std::lock_guard lock(mutex_);
@@ -61,22 +61,22 @@ void ExperienceBook::ask(const ExperienceKey& key, Done done) {
   done(choice);
 }
 
-bool ExperienceBook::submit(const ExperienceKey& key) {
+bool ExperienceIndex::submit(const ExperienceKey& key) {
   return pool_.submit(runtime::WorkerPool::Priority::Interactive,
                       {.run = [this, key] { choose(key); }, .abandon = {}});
 }
 
-void ExperienceBook::new_experience(std::string_view task) {
+void ExperienceIndex::new_experience(std::string_view task) {
   const std::lock_guard lock(mutex_);
   versions_.grew(task);
 }
 
-void ExperienceBook::forget(std::string_view task) {
+void ExperienceIndex::forget(std::string_view task) {
   const std::lock_guard lock(mutex_);
   versions_.lost(task);
 }
 
-void ExperienceBook::choose(const ExperienceKey& key) {
+void ExperienceIndex::choose(const ExperienceKey& key) {
   std::uint64_t chosen_at = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -97,9 +97,9 @@ void ExperienceBook::choose(const ExperienceKey& key) {
 }
 
 /// Keeps the choice. Who asked before it was begun gets it, who asked later waits for another.
-ExperienceBook::ChoiceAnswers ExperienceBook::complete(const ExperienceKey& key,
-                                                       const SharedChoice& choice,
-                                                       std::uint64_t chosen_at) {
+ExperienceIndex::ChoiceAnswers ExperienceIndex::complete(const ExperienceKey& key,
+                                                         const SharedChoice& choice,
+                                                         std::uint64_t chosen_at) {
   ChoiceAnswers answers;
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[key];
@@ -116,8 +116,8 @@ ExperienceBook::ChoiceAnswers ExperienceBook::complete(const ExperienceKey& key,
 }
 
 /// Answers for those who asked at that state of the experience or before.
-void ExperienceBook::let_go(Entry& entry, std::uint64_t chosen_at, const SharedChoice& choice,
-                            ChoiceAnswers& answers) {
+void ExperienceIndex::let_go(Entry& entry, std::uint64_t chosen_at, const SharedChoice& choice,
+                             ChoiceAnswers& answers) {
   const auto later =
       std::stable_partition(entry.waiters.begin(), entry.waiters.end(),
                             [&](const Waiter& waiter) { return waiter.asked_at <= chosen_at; });
@@ -128,7 +128,7 @@ void ExperienceBook::let_go(Entry& entry, std::uint64_t chosen_at, const SharedC
 }
 
 /// Forgets choices that were not asked for longest.
-void ExperienceBook::make_room() {
+void ExperienceIndex::make_room() {
   std::size_t bytes = 0;
   for (const auto& [key, entry] : entries_)
     bytes += size_of(entry.choice);
@@ -146,7 +146,7 @@ void ExperienceBook::make_room() {
   }
 }
 
-void ExperienceBook::stop() {
+void ExperienceIndex::stop() {
   ChoiceAnswers waiting;
   {
     const std::lock_guard lock(mutex_);

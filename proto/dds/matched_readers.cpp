@@ -1,4 +1,4 @@
-#include "proto/dds/hearers.hpp"
+#include "proto/dds/matched_readers.hpp"
 
 #include <dds/dds.h>
 
@@ -11,11 +11,11 @@
 
 namespace kinship::dds {
 
-Hearers::Hearers(const Participant& participant)
+MatchedReaders::MatchedReaders(const Participant& participant)
     : guard_(dds_create_guardcondition(participant.get()), "guard condition") {}
 
-Entity Hearers::make_writer(const Entity& publisher, Handle topic, const dds_qos* qos,
-                            std::string_view what) {
+Entity MatchedReaders::make_writer(const Entity& publisher, Handle topic, const dds_qos* qos,
+                                   std::string_view what) {
   const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(
       dds_create_listener(this), &dds_delete_listener);
   // Called one match after the other, on a thread of Cyclone DDS.
@@ -23,9 +23,9 @@ Entity Hearers::make_writer(const Entity& publisher, Handle topic, const dds_qos
       listener.get(), [](dds_entity_t writer, dds_publication_matched_status_t status, void* self) {
         const Reader reader{writer, status.last_subscription_handle};
         if (status.current_count_change < 0)
-          static_cast<Hearers*>(self)->go(reader);
+          static_cast<MatchedReaders*>(self)->go(reader);
         else
-          static_cast<Hearers*>(self)->come(reader);
+          static_cast<MatchedReaders*>(self)->come(reader);
       });
   Entity writer(dds_create_writer(publisher.get(), topic, qos, listener.get()), what);
   // Of those that it matched while it was made the listener could be told nothing.
@@ -38,12 +38,12 @@ Entity Hearers::make_writer(const Entity& publisher, Handle topic, const dds_qos
   return writer;
 }
 
-bool Hearers::has(const Entity& writer, std::uint64_t participant) const {
+bool MatchedReaders::has(const Entity& writer, std::uint64_t participant) const {
   const std::lock_guard lock(mutex_);
-  return hearers_.contains({writer.get(), participant});
+  return participants_.contains({writer.get(), participant});
 }
 
-void Hearers::come(const Reader& reader) {
+void MatchedReaders::come(const Reader& reader) {
   const Endpoint endpoint(dds_get_matched_subscription_data(reader.first, reader.second));
   if (!endpoint)
     return;  // gone again
@@ -51,21 +51,22 @@ void Hearers::come(const Reader& reader) {
   try {
     const std::lock_guard lock(mutex_);
     if (readers_.try_emplace(reader, participant).second)
-      hearers_.emplace(reader.first, participant);
+      participants_.emplace(reader.first, participant);
   } catch (const std::exception&) {  // out of memory: replies are asked for again
     return;
   }
   dds_set_guardcondition(guard_.get(), true);
 }
 
-void Hearers::go(const Reader& reader) {
+void MatchedReaders::go(const Reader& reader) {
   {
     const std::lock_guard lock(mutex_);
     const auto known = readers_.find(reader);
     if (known == readers_.end())
       return;
-    if (const auto hearer = hearers_.find({reader.first, known->second}); hearer != hearers_.end())
-      hearers_.erase(hearer);
+    if (const auto hearer = participants_.find({reader.first, known->second});
+        hearer != participants_.end())
+      participants_.erase(hearer);
     readers_.erase(known);
   }
   ++departures_;

@@ -39,7 +39,7 @@ using SharedChoice = std::shared_ptr<const fitting::ExperienceChoice>;
 /// The experience of tasks, chosen on a thread of its own, one choice at a time, so that nobody
 /// waits for a fit; kept until the experience changes. May be shared between threads; no lock is
 /// held across the store or an answer.
-class ExperienceBook {
+class ExperienceIndex {
  public:
   struct Limits {
     /// In memory. All of them together take no more bytes than paths may, but the newest stays.
@@ -51,16 +51,16 @@ class ExperienceBook {
   using Done = std::function<void(const SharedChoice&)>;
 
   /// \param store, robots  outlive it.
-  ExperienceBook(const store::Store& store, runtime::RobotRegistry& robots)
-      : ExperienceBook(store, robots, Limits{}) {}
-  ExperienceBook(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits);
-  ~ExperienceBook() { stop(); }
-  ExperienceBook(const ExperienceBook&) = delete;
-  ExperienceBook& operator=(const ExperienceBook&) = delete;
+  ExperienceIndex(const store::Store& store, runtime::RobotRegistry& robots)
+      : ExperienceIndex(store, robots, Limits{}) {}
+  ExperienceIndex(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits);
+  ~ExperienceIndex() { stop(); }
+  ExperienceIndex(const ExperienceIndex&) = delete;
+  ExperienceIndex& operator=(const ExperienceIndex&) = delete;
 
   /// What is in memory and up to date; null: nothing is.
   SharedChoice find(const ExperienceKey& key);
-  /// `done` is called on this thread if it is in memory, else on the book's own or in stop(); it
+  /// `done` is called on this thread if it is in memory, else on its own or in stop(); it
   /// must not block. What it gets has all that was reported and lacks all that was retired before.
   void ask(const ExperienceKey& key, Done done);
 
@@ -95,7 +95,7 @@ class ExperienceBook {
               ChoiceAnswers& answers);
   void make_room();
 
-  // On the book's thread, without the lock.
+  // On its own thread, without the lock.
   void choose(const ExperienceKey& key);
   ChoiceAnswers complete(const ExperienceKey& key, const SharedChoice& choice,
                          std::uint64_t chosen_at);

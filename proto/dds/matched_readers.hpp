@@ -15,15 +15,14 @@ struct dds_qos;
 
 namespace kinship::dds {
 
-/// Who can hear us: the participants with a reader that one of our writers has matched. A sample of
-/// a volatile writer never reaches a reader that it has not matched yet, and a client's reader and
-/// writer are discovered in either order. For sources of proto/dds only; may be shared between
-/// threads.
-class Hearers {
+/// The participants with a reader that one of our writers has matched. A sample of a volatile
+/// writer never reaches a reader that it has not matched yet, and a client's reader and writer are
+/// discovered in either order. For sources of proto/dds only; may be shared between threads.
+class MatchedReaders {
  public:
-  explicit Hearers(const Participant& participant);
-  Hearers(const Hearers&) = delete;
-  Hearers& operator=(const Hearers&) = delete;
+  explicit MatchedReaders(const Participant& participant);
+  MatchedReaders(const MatchedReaders&) = delete;
+  MatchedReaders& operator=(const MatchedReaders&) = delete;
 
   /// A writer whose readers are noticed; it must not outlive this.
   /// \throws Failure(Internal) if it cannot be made.
@@ -47,7 +46,7 @@ class Hearers {
   std::atomic<std::uint64_t> departures_ = 0;
   mutable std::mutex mutex_;  // guards what follows
   std::map<Reader, std::uint64_t> readers_;
-  std::multiset<Hearer> hearers_;
+  std::multiset<Hearer> participants_;
 };
 
 }  // namespace kinship::dds
