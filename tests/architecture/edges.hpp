@@ -50,6 +50,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string manual = "proto/manual";
   const std::string security = "proto/security";
   const std::string tables = "proto/tables";
+  const std::string files = "proto/files";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
@@ -68,7 +69,6 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string rehearsal = "server/rehearsal";
   const std::string sites = "server/sites";
   const std::string service = "server/service";
-  const std::string files = "client/files";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
@@ -93,6 +93,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {manual, {{types}, {"CLI11"}}},
       {security, {{types}, {"libcrypto", "toml"}}},
       {tables, {{types}, {}}},
+      {files, {{types}, {}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
@@ -120,7 +121,6 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{service, access, quotas, metrics, security, dds, codec, json, manual, tables, types,
          store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
-      {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
