@@ -102,7 +102,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
-      {store, {{types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
+      {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
       {runtime, {{store, inverse, geometry, kinematics, types}, {"Eigen"}}},

@@ -13,7 +13,6 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/files/lock_file.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -105,7 +104,7 @@ class SqliteSide : public Side {
       // What a power cut takes of the last seconds is copied again.
       database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
     });
-    sync_directory_of(file_);
+    files::sync_folder_of(file_);
   }
 
   const std::string& name() const override { return name_; }
@@ -306,7 +305,7 @@ class SqliteSide : public Side {
     unlink((name_ + ".witness").c_str());
     if (unlink(name_.c_str()) != 0)
       refuse_store(file_, "cannot be removed");
-    sync_directory_of(file_);
+    files::sync_folder_of(file_);
   }
 
  private:
@@ -338,7 +337,7 @@ class SqliteSide : public Side {
   /// Whole or not at all: who goes on after a full disk finds no half of a schema.
   void make_empty_store() const {
     naming_store([&] {
-      NewFile file(file_);
+      files::NewFile file(file_, kNewDatabase);
       checkpoint(*open_migrated(file.part(), embedded_migrations()), CheckpointKind::Whole);
       file.publish();
     });

@@ -3,7 +3,16 @@
 #include <filesystem>
 #include <string>
 
+#include "proto/files/new_file.hpp"
+
 namespace kinship::store {
+
+/// The files that SQLite keeps beside a database.
+inline constexpr const char* kCompanions[] = {"-wal", "-shm", "-journal"};
+
+/// A database that is written as a file of another name until it is complete, for its owner alone.
+inline constexpr files::NewFileOptions kNewDatabase{
+    .magic = std::string_view("SQLite format 3", 16), .sidecars = kCompanions};
 
 /// Where the store is, as one absolute name: links are followed, so that one file has one lock.
 /// Parents are made for the owner alone; nothing else is written.

@@ -11,7 +11,6 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/files/lock_file.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
@@ -92,7 +91,7 @@ std::uint64_t backup_store(const fs::path& file, const fs::path& copy, const Pro
     ReadStore store(locate_present(file));
     if (known_schema(store.database(), file, embedded_migrations()) == 0)
       throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
-    NewFile target(copy);
+    files::NewFile target(copy, kNewDatabase);
     copy_database(store.database(), target.part(), progress);
     target.publish();
     return fs::file_size(copy);
