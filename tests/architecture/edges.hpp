@@ -91,7 +91,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, security, codec, idl}, {"Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
-      {security, {{types}, {"libcrypto", "toml"}}},
+      {security, {{files, types}, {"libcrypto", "toml"}}},
       {tables, {{types}, {}}},
       {files, {{types}, {}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
