@@ -13,6 +13,7 @@
 
 #include "client/link/durable_file.hpp"
 #include "client/link/outbox_files.hpp"
+#include "proto/files/new_file.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/types/failure.hpp"
@@ -194,7 +195,7 @@ void Outbox::age(std::chrono::milliseconds sending) {
   for (const fs::path& folder :
        {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})
     for_each_entry(folder, [](const fs::directory_entry& entry) {
-      if (is_temporary(entry.path()))
+      if (files::is_part(entry.path()))
         remove_older_than(entry, kKeepTemporary);
     });
 }

@@ -125,7 +125,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
        {{ompl, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
-      {link, {{dds, security, codec, kinematics, json, types}, {"Eigen"}}},
+      {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
