@@ -12,7 +12,6 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
-#include "server/store/sqlite/files/lock_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -95,7 +94,7 @@ class SqliteSide : public Side {
   }
 
   void open_target() {
-    lock_.emplace(file_);
+    lock_ = lock_store(file_);
     if (!fs::exists(file_))
       make_empty_store();
     naming_store([&] {
@@ -205,7 +204,7 @@ class SqliteSide : public Side {
     if (lock_)
       return {};
     try {
-      lock_.emplace(file_);
+      lock_ = lock_store(file_);
     } catch (const Failure& failure) {
       if (failure.code() != ErrorCode::Unavailable)
         throw;
@@ -372,7 +371,7 @@ class SqliteSide : public Side {
   const fs::path file_;
   const std::string name_;
   const bool is_target_;
-  std::optional<LockFile> lock_;
+  std::optional<files::LockFile> lock_;
   std::unique_ptr<Database> database_;
 };
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "proto/files/lock_file.hpp"
 #include "proto/files/new_file.hpp"
 
 namespace kinship::store {
@@ -27,6 +28,12 @@ void require_writable(const std::filesystem::path& file, const std::filesystem::
 
 /// \throws Failure(Storage) that says of the store what is in the way.
 [[noreturn]] void refuse_store(const std::filesystem::path& file, const std::string& why);
+
+/// Takes the store's lock, the file FILE.lock: one process writes one store.
+/// \throws Failure(Unavailable) that names the process that has it, Failure(Storage) if there can
+/// be
+///         no lock.
+files::LockFile lock_store(const std::filesystem::path& located);
 
 /// Makes an empty file that only its owner may read and write, unless there is one.
 /// \throws Failure(Storage) if it cannot be made.
