@@ -270,26 +270,6 @@ TEST_F(OutboxTest, SolidsAroundMeshesAreKeptUntilAnotherUrdfComes) {
   EXPECT_TRUE(outbox.robot(robot)->mesh_solids.solids.empty());
 }
 
-TEST_F(OutboxTest, OneHolderOfTheSenderLockAtATime) {
-  auto lock = SenderLock::try_acquire(folder.path());
-  ASSERT_TRUE(lock);
-  EXPECT_FALSE(SenderLock::try_acquire(folder.path()));
-  lock.reset();
-  EXPECT_TRUE(SenderLock::try_acquire(folder.path()));
-}
-
-TEST_F(OutboxTest, SenderLockEndsWithItsProcess) {
-  const pid_t child = fork();
-  if (child == 0) {
-    const auto lock = SenderLock::try_acquire(folder.path());
-    _exit(lock ? 0 : 1);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_TRUE(SenderLock::try_acquire(folder.path()));
-}
-
 TEST_F(OutboxTest, MissingFolderIsReportedByName) {
   fs::remove_all(folder.path() / "pending");
   try {
