@@ -5,8 +5,8 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
-#include "client/files/output_file.hpp"
 #include "client/link/admin_rows.hpp"
+#include "proto/files/output_file.hpp"
 
 namespace kinship::cli {
 namespace {

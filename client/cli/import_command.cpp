@@ -11,8 +11,8 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
-#include "client/files/lines.hpp"
 #include "client/link/robot_names.hpp"
+#include "proto/files/lines.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/types/limits.hpp"
 

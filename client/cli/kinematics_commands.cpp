@@ -11,7 +11,7 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
-#include "client/files/lines.hpp"
+#include "proto/files/lines.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "robots/collision/collision_world.hpp"

@@ -7,8 +7,8 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/offline_robot.hpp"
-#include "client/files/output_file.hpp"
 #include "client/moveit/conversion.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/json/problem_json.hpp"
 
 namespace kinship::cli {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iosfwd>
 
-#include "client/files/output_file.hpp"
+#include "proto/files/output_file.hpp"
 
 namespace kinship::cli {
 

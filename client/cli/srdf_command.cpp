@@ -10,7 +10,7 @@
 #include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
 #include "client/cli/terminal.hpp"
-#include "client/files/output_file.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "robots/collision/pair_sampling.hpp"
 #include "robots/geometry/srdf.hpp"

@@ -6,7 +6,7 @@
 #include "client/experiments/commands.hpp"
 #include "client/experiments/page_options.hpp"
 #include "client/experiments/study_options.hpp"
-#include "client/files/output_file.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/manual/manual.hpp"
 #include "proto/manual/suggestion.hpp"
 #include "proto/types/exit_code.hpp"

@@ -5,7 +5,7 @@
 
 #include "client/arguments/command_options.hpp"
 #include "client/experiments/commands.hpp"
-#include "client/files/output_file.hpp"
+#include "proto/files/output_file.hpp"
 
 namespace kinship::experiments {
 namespace {

@@ -1,21 +1,19 @@
 #include "client/link/backup_download.hpp"
 
 #include <fcntl.h>
-#include <stdio.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "client/link/admin_rows.hpp"
+#include "proto/files/file.hpp"
 #include "proto/types/base64.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"
@@ -29,82 +27,18 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kBetweenAttempts{500};
 
-/// What has arrived so far, for one process at a time.
-class PartFile {
- public:
-  explicit PartFile(fs::path file) : file_(std::move(file)), part_(file_.string() + ".part") {
-    constexpr mode_t kOwnerOnly = 0600;  // it holds all that the server knows
-    descriptor_ = open(part_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kOwnerOnly);
-    if (descriptor_ < 0)
-      fail("cannot be opened");
+Digest digest_of(const files::File& part) {
+  std::vector<std::uint8_t> bytes(std::size_t{1} << 20U);
+  Sha256 sha256;
+  std::uint64_t place = 0;
+  while (true) {
+    const std::size_t read = part.read(reinterpret_cast<char*>(bytes.data()), bytes.size(), place);
+    if (read == 0)
+      return sha256.finish();
+    sha256.add(std::span(bytes).first(read));
+    place += read;
   }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-  ~PartFile() { close(descriptor_); }
-
-  bool lock() const { return flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
-
-  std::uint64_t size() const {
-    struct stat status {};
-    if (fstat(descriptor_, &status) != 0)
-      fail("cannot be read");
-    return static_cast<std::uint64_t>(status.st_size);
-  }
-  void clear() const {
-    if (ftruncate(descriptor_, 0) != 0)
-      fail("cannot be written");
-  }
-  void write(const std::vector<std::uint8_t>& bytes, std::uint64_t begin) const {
-    for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t written = pwrite(descriptor_, bytes.data() + done, bytes.size() - done,
-                                     static_cast<off_t>(begin + done));
-      if (written < 0 && errno != EINTR)
-        fail("cannot be written");
-      done += written > 0 ? static_cast<std::size_t>(written) : 0;
-    }
-  }
-  Digest digest() const {
-    constexpr std::size_t kStep = std::size_t{1} << 20U;
-    std::vector<std::uint8_t> bytes(kStep);
-    Sha256 sha256;
-    for (off_t place = 0;;) {
-      const ssize_t read = pread(descriptor_, bytes.data(), bytes.size(), place);
-      if (read < 0 && errno != EINTR)
-        fail("cannot be read");
-      if (read == 0)
-        return sha256.finish();
-      if (read < 0)
-        continue;
-      sha256.add(std::span<const std::uint8_t>(bytes.data(), static_cast<std::size_t>(read)));
-      place += read;
-    }
-  }
-
-  /// Gives the file its name. \return false if that is taken.
-  bool publish() const {
-    if (fsync(descriptor_) != 0)
-      fail("cannot be written");
-    int error = renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, file_.c_str(), RENAME_NOREPLACE) == 0
-                    ? 0
-                    : errno;
-    if (error == EINVAL || error == ENOSYS)  // not every file system can do that
-      error = ::link(part_.c_str(), file_.c_str()) == 0 && unlink(part_.c_str()) == 0 ? 0 : errno;
-    errno = error;
-    if (error != 0 && error != EEXIST)
-      fail("cannot be named '" + file_.string() + "'");
-    return error == 0;
-  }
-  void remove() const { unlink(part_.c_str()); }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Failure(ErrorCode::Storage, "file '" + part_.string() + "': " + what + ": " +
-                                          std::generic_category().message(errno));
-  }
-
-  fs::path file_, part_;
-  int descriptor_ = -1;
-};
+}
 
 /// What the server found when it read the backup through.
 struct Whole {
@@ -117,24 +51,25 @@ class Downloader {
   Downloader(Client& server, const BackupDownload& download)
       : server_(server), download_(download), give_up_(Clock::now() + download.patience) {}
 
-  Result<DownloadedBackup> run(const PartFile& part) {
+  /// \param part  what has arrived so far; empty afterwards if it is not what the server has.
+  Result<DownloadedBackup> run(const files::File& part) {
     const Result<Whole> whole = ask([&] { return find_whole(); });
     if (!whole)
       return whole.error();
     std::uint64_t resumed = part.size();
     for (int i = 0; i < 2; ++i) {
       if (resumed > whole->bytes || i > 0) {  // of another backup of that name
-        part.clear();
+        part.resize(0);
         resumed = 0;
       }
       if (const auto error = fetch(part, resumed, whole->bytes))
         return *error;
-      if (part.digest() == whole->sha256)
+      if (digest_of(part) == whole->sha256)
         return DownloadedBackup{whole->bytes, resumed, whole->sha256};
       if (resumed == 0)
         break;
     }
-    part.remove();
+    part.resize(0);
     return Error{ErrorCode::Internal,
                  "backup '" + download_.name + "': what came is not what the server has (SHA-256)"};
   }
@@ -198,14 +133,14 @@ class Downloader {
     return whole;
   }
 
-  std::optional<Error> fetch(const PartFile& part, std::uint64_t begin, std::uint64_t end) {
+  std::optional<Error> fetch(const files::File& part, std::uint64_t begin, std::uint64_t end) {
     while (begin < end) {
       const Result<std::vector<std::uint8_t>> bytes = ask([&] { return read(begin); });
       if (!bytes)
         return bytes.error();
       if (bytes->empty())
         return Error{ErrorCode::Internal, "backup '" + download_.name + "': became shorter"};
-      part.write(*bytes, begin);
+      part.write({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, begin);
       begin += bytes->size();
       if (download_.on_progress)
         download_.on_progress(begin, end);
@@ -252,17 +187,25 @@ Result<DownloadedBackup> download_backup(Client& server, const BackupDownload& d
   std::error_code error;
   if (fs::exists(fs::symlink_status(download.file, error)))
     return taken("is there already");
-  const PartFile part(download.file);
-  if (!part.lock())
+  constexpr mode_t kOwnerOnly = 0600;  // it holds all that the server knows
+  const std::string name = download.file.string() + ".part";
+  const files::File part(name, O_RDWR | O_CREAT | O_NOFOLLOW, kOwnerOnly);
+  if (!part.try_lock())
     return taken("another process is fetching it");
   Result<DownloadedBackup> downloaded = Downloader(server, download).run(part);
   if (!downloaded) {
     if (part.size() == 0)
-      part.remove();
+      fs::remove(name, error);
     return downloaded.error();
   }
-  if (!part.publish())
-    return taken("is there already; what came is in '" + download.file.string() + ".part'");
+  part.sync();
+  const int reason = files::rename_new(name, download.file);
+  if (reason == EEXIST)
+    return taken("is there already; what came is in '" + name + "'");
+  if (reason != 0)
+    throw Failure(ErrorCode::Storage, "file '" + name + "': cannot be named '" +
+                                          download.file.string() +
+                                          "': " + std::generic_category().message(reason));
   return downloaded;
 }
 

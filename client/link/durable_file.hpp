@@ -4,6 +4,10 @@
 #include <string>
 #include <string_view>
 
+namespace kinship::files {
+class FileError;
+}
+
 /// Files that are whole, and mostly there after a power cut once a function has returned.
 namespace kinship::link {
 
@@ -16,10 +20,10 @@ inline constexpr std::string_view kOutboxOptions =
 /// \throws Failure(Storage), always: the file, the reason, and what to name instead of a place that
 ///         cannot be written.
 [[noreturn]] void fail_on(const std::filesystem::path& path, std::string_view what);
+[[noreturn]] void fail_on(const files::FileError& error);
 
-/// Writes a whole file: temporary file beside it, fsync, rename, fsync of the folder. Whoever reads
-/// `path` sees the old content, or none, or all of the new one. Files of one process have times of
-/// writing in the order in which they were written.
+/// Writes a whole file durably (files::NewFile). Files of one process have times of writing in the
+/// order in which they were written.
 /// \throws Failure(Storage) naming the file and what the system said.
 void write_durably(const std::filesystem::path& path, std::string_view content);
 
@@ -32,8 +36,5 @@ void make_folder_durably(const std::filesystem::path& folder);
 
 /// \throws Failure(Storage) if it cannot be read, Failure(TooLarge) above `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t limit);
-
-/// Name of the temporary files of write_durably(); they begin with a dot.
-bool is_temporary(const std::filesystem::path& path);
 
 }  // namespace kinship::link

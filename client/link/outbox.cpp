@@ -1,11 +1,6 @@
 #include "client/link/outbox.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <system_error>
@@ -13,6 +8,7 @@
 
 #include "client/link/durable_file.hpp"
 #include "client/link/outbox_files.hpp"
+#include "proto/files/new_file.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/types/failure.hpp"
@@ -194,33 +190,9 @@ void Outbox::age(std::chrono::milliseconds sending) {
   for (const fs::path& folder :
        {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})
     for_each_entry(folder, [](const fs::directory_entry& entry) {
-      if (is_temporary(entry.path()))
+      if (files::is_part(entry.path()))
         remove_older_than(entry, kKeepTemporary);
     });
-}
-
-std::optional<SenderLock> SenderLock::try_acquire(const fs::path& folder) {
-  const fs::path path = folder / "sender.lock";
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor < 0)
-    fail_on(path, "cannot open");
-  SenderLock lock(descriptor);
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
-    return std::nullopt;
-  return lock;
-}
-
-SenderLock::SenderLock(SenderLock&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-SenderLock& SenderLock::operator=(SenderLock&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
-SenderLock::~SenderLock() {
-  if (descriptor_ >= 0)
-    ::close(descriptor_);  // releases the lock
 }
 
 fs::path default_outbox_folder(std::uint32_t domain, std::string_view server) {

@@ -23,8 +23,8 @@ namespace kinship::link {
 /// `pending/` until the server's receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good.
 /// Beside them `robots/`: what to register their robots with.
 ///
-/// Processes may share one: anybody adds, whoever holds the SenderLock moves. Methods throw
-/// Failure(Storage) naming the file. May be shared between threads.
+/// Processes may share one: anybody adds, the holder of the sender lock (ReportSender) moves.
+/// Methods throw Failure(Storage) naming the file. May be shared between threads.
 class Outbox {
  public:
   /// Makes the folders if they are missing, durably.
@@ -69,25 +69,6 @@ class Outbox {
 
   std::filesystem::path folder_;
   SentReports sent_;
-};
-
-/// The right to send from an outbox; given to one holder on this machine at a time.
-class SenderLock {
- public:
-  /// \return empty if somebody else has it.
-  /// \throws Failure(Storage) if the lock file cannot be opened.
-  static std::optional<SenderLock> try_acquire(const std::filesystem::path& folder);
-
-  SenderLock(SenderLock&& other) noexcept;
-  SenderLock& operator=(SenderLock&& other) noexcept;
-  SenderLock(const SenderLock&) = delete;
-  SenderLock& operator=(const SenderLock&) = delete;
-  ~SenderLock();
-
- private:
-  explicit SenderLock(int descriptor) : descriptor_(descriptor) {}
-
-  int descriptor_;  // -1: moved from
 };
 
 /// The outbox for one server: $XDG_STATE_HOME/kinship/outbox/domain-<domain>@<server>, by default

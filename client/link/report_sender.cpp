@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "client/link/durable_file.hpp"
+#include "proto/files/lock_file.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::link {
@@ -22,6 +24,16 @@ constexpr std::chrono::milliseconds kPoll = 50ms;  // for what another process s
 
 bool is_final(ReceiptStatus status) {
   return status != ReceiptStatus::TryAgain && status != ReceiptStatus::UnknownRobot;
+}
+
+/// The right to send from an outbox; empty if another owner on this machine has it.
+/// \throws Failure(Storage) if the lock file cannot be opened.
+std::optional<files::LockFile> try_to_become_sender(const std::filesystem::path& outbox) {
+  try {
+    return files::LockFile::try_acquire(outbox / "sender.lock", 0644);
+  } catch (const files::FileError& error) {
+    fail_on(error);
+  }
 }
 
 }  // namespace
@@ -81,7 +93,7 @@ void ReportSender::wait_until_empty(std::chrono::steady_clock::time_point deadli
 }
 
 void ReportSender::run() {
-  std::optional<SenderLock> lock;
+  std::optional<files::LockFile> lock;
   while (!is_stopped()) {
     {
       const std::lock_guard guard(mutex_);
@@ -105,9 +117,9 @@ void ReportSender::run() {
 }
 
 /// One round. \return how long to pause.
-std::chrono::milliseconds ReportSender::work(std::optional<SenderLock>& lock) {
+std::chrono::milliseconds ReportSender::work(std::optional<files::LockFile>& lock) {
   if (!lock) {
-    lock = SenderLock::try_acquire(outbox_.folder());
+    lock = try_to_become_sender(outbox_.folder());
     if (!lock)
       return kLockRetry;
   }

@@ -16,6 +16,10 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 
+namespace kinship::files {
+class LockFile;
+}
+
 namespace kinship::link {
 
 /// Sends what is pending in an outbox, on a thread of its own, until each report has its receipt.
@@ -60,7 +64,7 @@ class ReportSender {
 
  private:
   void run();
-  std::chrono::milliseconds work(std::optional<SenderLock>& lock);
+  std::chrono::milliseconds work(std::optional<files::LockFile>& lock);
   void age_now_and_then(bool is_end);
   bool send_all_pending();
   bool greet();

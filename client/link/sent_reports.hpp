@@ -14,7 +14,7 @@ namespace kinship::link {
 /// `sent_before/` is deleted and `sent/` takes its place: each report is kept for seven days at
 /// least, unless there are so many. Only time counts in which somebody sends, measured by a clock
 /// that nobody sets: robots start in 1970 and hear the time later. Methods throw Failure(Storage)
-/// naming the file; all but the constructor are for the holder of the SenderLock.
+/// naming the file; all but the constructor are for the holder of the sender lock.
 class SentReports {
  public:
   /// \param outbox  the folder of the outbox.

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <iostream>
 
-#include "client/files/lines.hpp"
-#include "client/files/output_file.hpp"
 #include "client/planner/plan_options.hpp"
 #include "client/planner/plan_run.hpp"
+#include "proto/files/lines.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/types/failure.hpp"
 
 namespace {

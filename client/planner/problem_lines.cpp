@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "client/files/lines.hpp"
+#include "proto/files/lines.hpp"
 #include "proto/json/problem_json.hpp"
 
 namespace kinship::planner {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "client/files/lines.hpp"
-#include "client/files/output_file.hpp"
 #include "client/python/bindings.hpp"
 #include "client/python/robot_names.hpp"
+#include "proto/files/lines.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/json/experience_line.hpp"
 
 namespace kinship::python {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "client/files/lines.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
+#include "proto/files/lines.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/problem.hpp"

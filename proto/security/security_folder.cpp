@@ -10,9 +10,9 @@
 #include <system_error>
 #include <utility>
 
+#include "proto/files/lock_file.hpp"
 #include "proto/security/access_role.hpp"
 #include "proto/security/certificate_name.hpp"
-#include "proto/security/folder_lock.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/security/private_files.hpp"
 #include "proto/types/names.hpp"
@@ -134,6 +134,17 @@ void require_owner(const std::filesystem::path& folder) {
                                            std::to_string(status.st_uid) + "' kinshipd secure ...");
 }
 
+/// Waits until no other process changes the folder; none does as long as the lock lives.
+/// \throws Failure(Storage) if the folder's file `lock` cannot be had.
+files::LockFile lock_folder(const std::filesystem::path& folder) {
+  try {
+    return files::LockFile::acquire(folder / "lock");
+  } catch (const files::FileError& error) {
+    throw Failure(ErrorCode::Storage,
+                  error.file().string() + ": cannot be locked: " + error.reason_text());
+  }
+}
+
 /// \throws Failure(NotFound) if it is no security folder.
 AuthorityFolder open_authority(const std::filesystem::path& folder,
                                const std::filesystem::path& key) {
@@ -204,7 +215,7 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
     throw_if(check_task_pattern(pattern));
   for (const std::string& label : client.robots)
     throw_if(check_label(label));
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   if (std::filesystem::exists(record_file(client.name)))
     throw Failure(ErrorCode::Conflict, "client '" + client.name + "': exists already (" +
                                            record_file(client.name).string() +
@@ -226,7 +237,7 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
 ClientRecord SecurityFolder::renew(const std::string& name, std::chrono::days days,
                                    const std::filesystem::path& out,
                                    std::chrono::sys_seconds now) const {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   ClientRecord record = record_of(name);
   if (record.revoked)
     throw Failure(ErrorCode::Conflict, "client '" + name + "': revoked at " +
@@ -239,7 +250,7 @@ ClientRecord SecurityFolder::renew(const std::string& name, std::chrono::days da
 }
 
 ClientRecord SecurityFolder::revoke(const std::string& name, std::chrono::sys_seconds now) const {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   ClientRecord record = record_of(name);
   if (!record.revoked) {
     record.revoked = now;
@@ -249,7 +260,7 @@ ClientRecord SecurityFolder::revoke(const std::string& name, std::chrono::sys_se
 }
 
 ClientRecord SecurityFolder::revoke_former(const std::string& name) const {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   ClientRecord record = record_of(name);
   if (record.generation == 1)
     throw Failure(ErrorCode::Conflict,
@@ -293,20 +304,20 @@ std::filesystem::path SecurityFolder::replace_server(std::chrono::days days,
 
 std::filesystem::path SecurityFolder::renew_server(std::chrono::days days,
                                                    std::chrono::sys_seconds now) const {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   return replace_server(days, now);
 }
 
 std::filesystem::path SecurityFolder::renew_authority(std::chrono::days server_days,
                                                       std::chrono::sys_seconds now) {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   authority_.add_second(now);
   return replace_server(server_days, now);
 }
 
 std::filesystem::path SecurityFolder::replace_authority(std::chrono::days server_days,
                                                         std::chrono::sys_seconds now) {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   authority_.replace(now);
   return replace_server(server_days, now);
 }
@@ -323,7 +334,7 @@ std::vector<std::string> SecurityFolder::clients_that_trust_retired(
 
 std::filesystem::path SecurityFolder::retire_authority(std::chrono::days server_days,
                                                        std::chrono::sys_seconds now) {
-  const FolderLock lock(folder_);
+  const files::LockFile lock = lock_folder(folder_);
   static_cast<void>(authority_.for_clients());  // its key has to be there, before anything changes
   const std::filesystem::path key = authority_.retire_previous();
   replace_server(server_days, now);

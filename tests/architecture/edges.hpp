@@ -50,6 +50,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string manual = "proto/manual";
   const std::string security = "proto/security";
   const std::string tables = "proto/tables";
+  const std::string files = "proto/files";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
@@ -68,7 +69,6 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string rehearsal = "server/rehearsal";
   const std::string sites = "server/sites";
   const std::string service = "server/service";
-  const std::string files = "client/files";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
@@ -91,8 +91,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, security, codec, idl}, {"Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
-      {security, {{types}, {"libcrypto", "toml"}}},
+      {security, {{files, types}, {"libcrypto", "toml"}}},
       {tables, {{types}, {}}},
+      {files, {{types}, {}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
@@ -101,7 +102,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
-      {store, {{types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
+      {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
       {runtime, {{store, inverse, geometry, kinematics, types}, {"Eigen"}}},
@@ -120,12 +121,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{service, access, quotas, metrics, security, dds, codec, json, manual, tables, types,
          store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
-      {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
        {{ompl, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
-      {link, {{dds, security, codec, kinematics, json, types}, {"Eigen"}}},
+      {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "client/experiments/result_file.hpp"
-#include "client/files/lines.hpp"
+#include "proto/files/lines.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"

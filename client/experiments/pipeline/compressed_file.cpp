@@ -6,8 +6,8 @@
 #include <iostream>
 #include <iterator>
 
-#include "client/files/lines.hpp"
-#include "client/files/output_file.hpp"
+#include "proto/files/lines.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {

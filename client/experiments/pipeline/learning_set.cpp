@@ -10,10 +10,10 @@
 
 #include "client/experiments/pipeline/compressed_file.hpp"
 #include "client/experiments/pipeline/parallel_for.hpp"
-#include "client/files/lines.hpp"
-#include "client/files/output_file.hpp"
 #include "client/guided/attempt_record.hpp"
 #include "client/guided/scene_record.hpp"
+#include "proto/files/lines.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"

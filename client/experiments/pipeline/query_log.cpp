@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "client/experiments/pipeline/compressed_file.hpp"
-#include "client/files/lines.hpp"
-#include "client/files/output_file.hpp"
+#include "proto/files/lines.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {

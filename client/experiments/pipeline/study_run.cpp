@@ -15,7 +15,7 @@
 #include "client/experiments/pipeline/study_description.hpp"
 #include "client/experiments/pipeline/study_session.hpp"
 #include "client/experiments/studies/instance_draws.hpp"
-#include "client/files/output_file.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/enum_text.hpp"

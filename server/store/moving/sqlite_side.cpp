@@ -12,8 +12,6 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
-#include "server/store/sqlite/files/lock_file.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -96,7 +94,7 @@ class SqliteSide : public Side {
   }
 
   void open_target() {
-    lock_.emplace(file_);
+    lock_ = lock_store(file_);
     if (!fs::exists(file_))
       make_empty_store();
     naming_store([&] {
@@ -105,7 +103,7 @@ class SqliteSide : public Side {
       // What a power cut takes of the last seconds is copied again.
       database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
     });
-    sync_directory_of(file_);
+    files::sync_folder_of(file_);
   }
 
   const std::string& name() const override { return name_; }
@@ -206,7 +204,7 @@ class SqliteSide : public Side {
     if (lock_)
       return {};
     try {
-      lock_.emplace(file_);
+      lock_ = lock_store(file_);
     } catch (const Failure& failure) {
       if (failure.code() != ErrorCode::Unavailable)
         throw;
@@ -306,7 +304,7 @@ class SqliteSide : public Side {
     unlink((name_ + ".witness").c_str());
     if (unlink(name_.c_str()) != 0)
       refuse_store(file_, "cannot be removed");
-    sync_directory_of(file_);
+    files::sync_folder_of(file_);
   }
 
  private:
@@ -338,7 +336,7 @@ class SqliteSide : public Side {
   /// Whole or not at all: who goes on after a full disk finds no half of a schema.
   void make_empty_store() const {
     naming_store([&] {
-      NewFile file(file_);
+      files::NewFile file(file_, kNewDatabase);
       checkpoint(*open_migrated(file.part(), embedded_migrations()), CheckpointKind::Whole);
       file.publish();
     });
@@ -373,7 +371,7 @@ class SqliteSide : public Side {
   const fs::path file_;
   const std::string name_;
   const bool is_target_;
-  std::optional<LockFile> lock_;
+  std::optional<files::LockFile> lock_;
   std::unique_ptr<Database> database_;
 };
 

@@ -18,7 +18,6 @@
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/files/disk_space.hpp"
 #include "server/store/sqlite/files/library_version.hpp"
-#include "server/store/sqlite/files/lock_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -57,7 +56,7 @@ class SqliteStore : public Store {
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
       : options_(options),
         file_(locate_servable(file)),
-        lock_(file_),
+        lock_(lock_store(file_)),
         history_(file_),
         readers_(file_),
         space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
@@ -457,7 +456,7 @@ class SqliteStore : public Store {
 
   const SqliteOptions options_;
   const std::filesystem::path file_;
-  const LockFile lock_;
+  const files::LockFile lock_;
   History history_;
   mutable ReaderPool readers_;
   mutable DiskSpace space_;

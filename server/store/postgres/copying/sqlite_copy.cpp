@@ -9,7 +9,7 @@
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 
@@ -193,8 +193,8 @@ bool fill(Connection& source, Database& target, const std::filesystem::path& fil
 Result<bool> copy_to_sqlite(Connection& connection, const std::filesystem::path& file,
                             const std::function<bool(double)>& progress) {
   try {
-    NewFile target(file);
-    const NewFile rows(file.string() + ".rows");
+    files::NewFile target(file, kNewDatabase);
+    const files::NewFile rows(file.string() + ".rows", kNewDatabase);
     {
       const std::unique_ptr<Database> database =
           open_migrated(rows.part(), store::embedded_migrations(), Keep::Nothing);

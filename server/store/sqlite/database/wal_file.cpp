@@ -2,14 +2,13 @@
 
 #include <fcntl.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <string>
-#include <vector>
+#include <string_view>
 
+#include "proto/files/file.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 
 namespace kinship::store {
@@ -17,54 +16,25 @@ namespace {
 
 constexpr std::size_t kBytesOfAStep = std::size_t{1} << 20U;
 
-/// \return 0, or errno.
-int write_all(int descriptor, const std::uint8_t* bytes, std::size_t size, off_t at) {
-  while (size > 0) {
-    const ssize_t written = pwrite(descriptor, bytes, size, at);
-    if (written < 0 && errno == EINTR)
-      continue;
-    if (written <= 0)
-      return written < 0 ? errno : EIO;
-    bytes += written;
-    size -= static_cast<std::size_t>(written);
-    at += written;
-  }
-  return 0;
-}
-
-/// \return 0, or errno.
-int write_again(int descriptor) {
-  std::vector<std::uint8_t> bytes(kBytesOfAStep);
-  off_t at = 0;
-  while (true) {
-    const ssize_t size = pread(descriptor, bytes.data(), bytes.size(), at);
-    if (size < 0 && errno == EINTR)
-      continue;
-    if (size < 0)
-      return errno;
-    if (size == 0)
-      break;
-    if (const int error = write_all(descriptor, bytes.data(), static_cast<std::size_t>(size), at);
-        error != 0)
-      return error;
-    at += size;
-  }
-  return at == 0 || fsync(descriptor) == 0 ? 0 : errno;
-}
-
 }  // namespace
 
 void make_wal_durable(const std::filesystem::path& file) {
-  const std::string wal = file.string() + "-wal";
-  const int descriptor = open(wal.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-  if (descriptor < 0 && errno == ENOENT)
-    return;
-  const int error = descriptor < 0 ? errno : write_again(descriptor);
-  if (descriptor >= 0)
-    close(descriptor);  // SQLite's locks are on other files
-  if (error != 0)
-    throw Failure(ErrorCode::Storage,
-                  "'" + wal + "' cannot be made durable: " + std::strerror(error));
+  const std::string name = file.string() + "-wal";
+  try {
+    const files::File wal(name, O_RDWR | O_NOFOLLOW);  // SQLite's locks are on other files
+    std::string bytes(kBytesOfAStep, '\0');
+    std::uint64_t place = 0;
+    while (const std::size_t size = wal.read(bytes.data(), bytes.size(), place)) {
+      wal.write(std::string_view(bytes).substr(0, size), place);
+      place += size;
+    }
+    if (place > 0)
+      wal.sync();
+  } catch (const files::FileError& error) {
+    if (error.reason() != ENOENT)
+      throw Failure(ErrorCode::Storage,
+                    "'" + name + "' cannot be made durable: " + error.reason_text());
+  }
 }
 
 bool checkpoint(Database& database, CheckpointKind kind) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/files/file_system.hpp"
@@ -102,6 +103,21 @@ fs::path locate_store(const fs::path& file) {
   if (!fs::exists(located.string() + ".lock", error))
     check_header(located);
   return located;
+}
+
+files::LockFile lock_store(const fs::path& located) {
+  const std::string name = located.string() + ".lock";
+  try {
+    if (auto lock = files::LockFile::try_acquire(name))
+      return *std::move(lock);
+  } catch (const files::FileError& error) {
+    throw Failure(
+        ErrorCode::Storage,
+        "lock file '" + name + "': " + explain_file_error(error.reason(), located.parent_path()));
+  }
+  throw Failure(ErrorCode::Unavailable, "store '" + located.string() +
+                                            "' is open in another server, process " +
+                                            files::LockFile::holder(name));
 }
 
 void make_for_owner(const fs::path& file) {

@@ -3,7 +3,17 @@
 #include <filesystem>
 #include <string>
 
+#include "proto/files/lock_file.hpp"
+#include "proto/files/new_file.hpp"
+
 namespace kinship::store {
+
+/// The files that SQLite keeps beside a database.
+inline constexpr const char* kCompanions[] = {"-wal", "-shm", "-journal"};
+
+/// A database that is written as a file of another name until it is complete, for its owner alone.
+inline constexpr files::NewFileOptions kNewDatabase{
+    .magic = std::string_view("SQLite format 3", 16), .sidecars = kCompanions};
 
 /// Where the store is, as one absolute name: links are followed, so that one file has one lock.
 /// Parents are made for the owner alone; nothing else is written.
@@ -18,6 +28,12 @@ void require_writable(const std::filesystem::path& file, const std::filesystem::
 
 /// \throws Failure(Storage) that says of the store what is in the way.
 [[noreturn]] void refuse_store(const std::filesystem::path& file, const std::string& why);
+
+/// Takes the store's lock, the file FILE.lock: one process writes one store.
+/// \throws Failure(Unavailable) that names the process that has it, Failure(Storage) if there can
+/// be
+///         no lock.
+files::LockFile lock_store(const std::filesystem::path& located);
 
 /// Makes an empty file that only its owner may read and write, unless there is one.
 /// \throws Failure(Storage) if it cannot be made.

@@ -4,7 +4,6 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/database/writer.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
@@ -45,7 +44,7 @@ std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
   require_not_moving(*database, file);
   configure_writer(*database);
-  sync_directory_of(file);  // SQLite drops errors of that
+  files::sync_folder_of(file);  // SQLite drops errors of that
   return database;
 }
 
@@ -67,7 +66,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
   set_aside(batch, find_damaged_paths(*database, kNewestRowsChecked));
   batch.raise_generations();
   probe.commit();
-  sync_directory_of(file);
+  files::sync_folder_of(file);
   return database;
 }
 

@@ -9,7 +9,6 @@
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/values/audit_texts.hpp"
@@ -90,15 +89,11 @@ void apply(Database& database, const std::filesystem::path& file, const Migratio
 
 /// Copies a database to backup_of_version().
 void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version) {
-  const std::filesystem::path backup = backup_of_version(file, version);
-  const std::filesystem::path partial = backup.string() + ".partial";
-  for (const std::string companion : {"", "-wal", "-shm", "-journal"})
-    std::filesystem::remove(partial.string() + companion);
-  make_for_owner(partial);
-  copy_database(database, partial, [](double) {});
-  sync_file(partial);
-  std::filesystem::rename(partial, backup);
-  sync_directory_of(backup);
+  files::NewFileOptions options = kNewDatabase;
+  options.may_replace = true;
+  files::NewFile backup(backup_of_version(file, version), options);
+  copy_database(database, backup.part(), [](double) {});
+  backup.publish();
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
-#include "server/store/sqlite/files/lock_file.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
@@ -56,7 +54,7 @@ class ReadStore {
  public:
   explicit ReadStore(const fs::path& located)
       : file_(located),
-        lock_(located),
+        lock_(lock_store(located)),
         had_wal_(fs::exists(located.string() + "-wal")),
         database_(open_reader(without_journal(located))) {}
   ReadStore(const ReadStore&) = delete;
@@ -72,7 +70,7 @@ class ReadStore {
 
  private:
   fs::path file_;
-  LockFile lock_;
+  files::LockFile lock_;
   bool had_wal_;
   std::unique_ptr<Database> database_;
 };
@@ -92,7 +90,7 @@ std::uint64_t backup_store(const fs::path& file, const fs::path& copy, const Pro
     ReadStore store(locate_present(file));
     if (known_schema(store.database(), file, embedded_migrations()) == 0)
       throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
-    NewFile target(copy);
+    files::NewFile target(copy, kNewDatabase);
     copy_database(store.database(), target.part(), progress);
     target.publish();
     return fs::file_size(copy);
@@ -105,7 +103,7 @@ Restored restore_store(const fs::path& backup, const fs::path& file, const Progr
     throw Failure(ErrorCode::NotFound, "backup '" + backup.string() + "': there is no such file");
   return naming(file, [&] {
     const fs::path located = locate_store(file);
-    const LockFile lock(located);
+    const files::LockFile lock = lock_store(located);
     if (fs::equivalent(backup, located, error))
       throw Failure(ErrorCode::InvalidInput,
                     "backup '" + backup.string() + "': is the store that it shall replace");
@@ -121,7 +119,7 @@ Repaired repair_store(const fs::path& file, const Progress& progress) {
       static_cast<void>(locate_present(file));  // which says so
     // The lock first: beside one a damaged header is not judged.
     const fs::path located = fs::weakly_canonical(fs::absolute(file));
-    const LockFile lock(located);
+    const files::LockFile lock = lock_store(located);
     static_cast<void>(locate_present(file));
     // The old store is its own backup here: what is read of it takes its place.
     Restoration restoration(located, located);
@@ -134,7 +132,7 @@ Repaired repair_store(const fs::path& file, const Progress& progress) {
 Migrated migrate_store(const fs::path& file) {
   return naming(file, [&] {
     const fs::path located = locate_present(file);
-    const LockFile lock(located);
+    const files::LockFile lock = lock_store(located);
     Migrated migrated;
     make_wal_durable(located);
     const std::int64_t from = [&] {

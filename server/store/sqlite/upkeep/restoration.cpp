@@ -16,7 +16,6 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -100,7 +99,7 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
       keep_audit_of_old(database);
       note_maintenance(database, "restore", backup_, "", "epoch " + epoch_.text());
     }
-    sync_file(copy_);
+    files::sync_file(copy_);
   } catch (const SqliteError& error) {
     throw Failure(ErrorCode::Storage, named + error.what());
   }
@@ -144,7 +143,7 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     repaired.check = check_database(
         *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
   }
-  sync_file(copy_);
+  files::sync_file(copy_);
   return repaired;
 }
 
@@ -160,9 +159,9 @@ Restored Restoration::replace() {
     exchange(restored.replaced);
   } else {
     set_companions_aside(file_.string() + ".replaced-" + stamp());
-    require(rename_new(copy_, file_), file_, "cannot be named");
+    require(files::rename_new(copy_, file_), file_, "cannot be named");
   }
-  sync_directory_of(file_);
+  files::sync_folder_of(file_);
   return restored;
 }
 
@@ -188,7 +187,7 @@ void Restoration::set_companions_aside(const fs::path& replaced) const {
   for (const std::string companion : kCompanions) {
     const fs::path from = file_.string() + companion;
     if (fs::exists(from))
-      require(rename_new(from, replaced.string() + "." + companion.substr(1)), from,
+      require(files::rename_new(from, replaced.string() + "." + companion.substr(1)), from,
               "cannot be set aside");
   }
 }
@@ -198,7 +197,7 @@ fs::path Restoration::name_copy() const {
   constexpr int kTries = 100;
   for (int number = 1; number <= kTries; ++number) {
     const fs::path name = number == 1 ? wanted : wanted + "-" + std::to_string(number);
-    const int error = rename_new(copy_, name);
+    const int error = files::rename_new(copy_, name);
     if (error == 0)
       return name;
     if (error != EEXIST)
@@ -213,7 +212,7 @@ void Restoration::exchange(const fs::path& replaced) const {
   if (errno != EINVAL && errno != ENOSYS)
     fail(file_, "cannot be replaced", errno);
   // A file system without exchange: the old store has two names for a moment.
-  require(rename_new(replaced, copy_), copy_, "cannot be named");
+  require(files::rename_new(replaced, copy_), copy_, "cannot be named");
   if (link(file_.c_str(), replaced.c_str()) != 0)
     fail(replaced, "cannot be named", errno);
   if (std::rename(copy_.c_str(), file_.c_str()) != 0)

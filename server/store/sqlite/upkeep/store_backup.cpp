@@ -8,7 +8,7 @@
 
 #include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
-#include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
 
 namespace kinship::store {
 namespace {
@@ -87,7 +87,8 @@ class Steps {
 };
 
 /// \return false if `progress` ended it.
-bool copy(Writer& writer, const NewFile& target, const std::function<bool(double)>& progress) {
+bool copy(Writer& writer, const files::NewFile& target,
+          const std::function<bool(double)>& progress) {
   Steps steps(writer, target.part());
   int synced = 0;
   while (!steps.done()) {
@@ -106,7 +107,7 @@ bool copy(Writer& writer, const NewFile& target, const std::function<bool(double
 Result<bool> back_up(Writer& writer, const std::filesystem::path& file,
                      const std::function<bool(double)>& progress) {
   try {
-    NewFile target(file);
+    files::NewFile target(file, kNewDatabase);
     if (!copy(writer, target, progress))
       return false;
     make_plain(target.part());

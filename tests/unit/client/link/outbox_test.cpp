@@ -1,12 +1,10 @@
 #include "client/link/outbox.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <fstream>
 
 #include "client/link/durable_file.hpp"
@@ -88,8 +86,8 @@ TEST_F(OutboxTest, ProcessKilledWhileItWritesLeavesOnlyWholeReports) {
 }
 
 TEST_F(OutboxTest, LeftOverTemporaryFilesAreIgnoredAndPurgedAfterADay) {
-  const fs::path fresh = folder.path() / "pending" / ".a.json.1.tmp";
-  const fs::path old = folder.path() / "pending" / ".b.json.2.tmp";
+  const fs::path fresh = folder.path() / "pending" / "a.json.kinship-0123abcd.part";
+  const fs::path old = folder.path() / "pending" / "b.json.kinship-4567cdef.part";
   write_text(fresh, "{");
   write_text(old, "{");
   age(old, std::chrono::hours(25));
@@ -270,45 +268,6 @@ TEST_F(OutboxTest, SolidsAroundMeshesAreKeptUntilAnotherUrdfComes) {
   description.urdf += " ";
   outbox.keep_robot(robot, description);
   EXPECT_TRUE(outbox.robot(robot)->mesh_solids.solids.empty());
-}
-
-TEST_F(OutboxTest, OneHolderOfTheSenderLockAtATime) {
-  auto lock = SenderLock::try_acquire(folder.path());
-  ASSERT_TRUE(lock);
-  EXPECT_FALSE(SenderLock::try_acquire(folder.path()));
-  lock.reset();
-  EXPECT_TRUE(SenderLock::try_acquire(folder.path()));
-}
-
-TEST_F(OutboxTest, SenderLockEndsWithItsProcess) {
-  const pid_t child = fork();
-  if (child == 0) {
-    const auto lock = SenderLock::try_acquire(folder.path());
-    _exit(lock ? 0 : 1);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_TRUE(SenderLock::try_acquire(folder.path()));
-}
-
-TEST_F(OutboxTest, DiskErrorIsReportedAndLeavesNothingBehind) {
-  const pid_t child = fork();
-  if (child == 0) {  // a limit on file sizes: write fails as it does on a full disk
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{100, 100};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    try {
-      outbox.add(values.attempt());
-    } catch (const Failure& failure) {
-      _exit(failure.code() == ErrorCode::Storage ? 3 : 4);
-    }
-    _exit(5);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 3);
-  EXPECT_EQ(files_in(folder.path() / "pending"), 0U);
 }
 
 TEST_F(OutboxTest, MissingFolderIsReportedByName) {

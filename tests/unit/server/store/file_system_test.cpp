@@ -13,9 +13,10 @@
 namespace kinship::store::file_system_test {
 namespace {
 
-std::string refusal_of(const std::filesystem::path& file) {
+template <typename Use = decltype(locate_store)>
+std::string refusal_of(const std::filesystem::path& file, Use& use = locate_store) {
   try {
-    locate_store(file);
+    static_cast<void>(use(file));
   } catch (const Failure& failure) {
     return failure.what();
   }
@@ -58,6 +59,16 @@ TEST(FileSystem, AnAddressIsNoStore) {
             "store ':memory:': would be lost with the process; a store is a file");
   const test::TemporaryDirectory directory;
   EXPECT_EQ(refusal_of(directory / "a:b" / "http://x"), "no refusal");  // an odd name is a name
+}
+
+TEST(FileSystem, OneProcessHasAStoreAtATime) {
+  const test::TemporaryDirectory directory;
+  const files::LockFile lock = lock_store(directory / "s.db");
+  EXPECT_EQ(refusal_of(directory / "s.db", lock_store),
+            "store '" + (directory / "s.db").string() + "' is open in another server, process " +
+                std::to_string(getpid()));
+  EXPECT_NE(refusal_of("/proc/kinship/s.db", lock_store).find("file '/proc/kinship/s.db.lock': "),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "client/files/output_file.hpp"
+#include "proto/files/output_file.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "client/files/lines.hpp"
+#include "proto/files/lines.hpp"
 
 #include <cerrno>
 #include <exception>
