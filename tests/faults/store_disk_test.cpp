@@ -1,39 +1,16 @@
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <cstdlib>
 
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/full_disk.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 /// A disk that stops taking writes and takes them again later.
 namespace kinship::store::store_disk_test {
 namespace {
-
-/// While it lives, this process cannot write to any file beyond a size (EFBIG).
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    previous_handler_ = signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &previous_);
-    rlimit limit = previous_;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &previous_);
-    signal(SIGXFSZ, previous_handler_);
-  }
-
- private:
-  rlimit previous_{};
-  void (*previous_handler_)(int) = nullptr;
-};
 
 // Room for the shared-memory file of SQLite, none for another frame of the WAL.
 constexpr rlim_t kNoRoom = 40'000;
@@ -73,7 +50,7 @@ TEST_F(StoreDisk, AnswersTryAgainWhileItCannotWriteAndStoresAfterwards) {
   StoreStatus status;
   std::size_t readable = 0;
   {
-    const FileSizeLimit full(kNoRoom);
+    const test::FullDisk full(kNoRoom);
     during = report(1000);
     status = store_->status();
     readable = store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 1000}).size();
@@ -93,7 +70,7 @@ TEST_F(StoreDisk, AnswersTryAgainWhileItCannotWriteAndStoresAfterwards) {
 TEST_F(StoreDisk, WhoWaitsForAResultIsToldOfTheFailure) {
   std::string said;
   {
-    const FileSizeLimit full(kNoRoom);
+    const test::FullDisk full(kNoRoom);
     try {
       store_->put_distribution(test::make_distribution(robot_.digest, "shelf", 1));
     } catch (const Failure& failure) {
@@ -109,7 +86,7 @@ TEST_F(StoreDisk, SurvivesARowOfFailures) {
   for (std::uint64_t round = 0; round < 5; ++round) {
     ReceiptStatus during{};
     {
-      const FileSizeLimit full(kNoRoom);
+      const test::FullDisk full(kNoRoom);
       during = report(1000 + round).status;
     }
     EXPECT_EQ(during, ReceiptStatus::TryAgain);
@@ -149,7 +126,7 @@ TEST(StoreDiskOfALargeStore, GoesOnWithinASecondOnceTheDiskDoes) {
   const Attempt next = test::make_attempt(robot.digest, "shelf", 1'000'000);
   ReceiptStatus status{};
   {
-    const FileSizeLimit full(kNoRoom);
+    const test::FullDisk full(kNoRoom);
     status = test::report(*store, {next}).at(0).status;
   }
   EXPECT_EQ(status, ReceiptStatus::TryAgain);
@@ -185,7 +162,7 @@ TEST(StoreBackupDisk, ABackupThatFindsNoRoomLeavesNothingAndTheStoreGoesOn) {
   std::string said;
   ReceiptStatus during{};
   {
-    const FileSizeLimit full(1'000'000);  // less than the copy, more than a WAL of few reports
+    const test::FullDisk full(1'000'000);  // less than the copy, more than a WAL of few reports
     try {
       static_cast<void>(store->backup(copy, go_on));
     } catch (const Failure& failure) {

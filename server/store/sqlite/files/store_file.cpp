@@ -4,9 +4,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -55,17 +53,14 @@ void refuse_address(const fs::path& file) {
 }
 
 void check_header(const fs::path& file) {
-  constexpr std::string_view kHeader("SQLite format 3\0", 16);
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0)
-    refuse_store(file, std::strerror(errno));
-  std::array<char, kHeader.size()> start{};
-  const ssize_t size = read(descriptor, start.data(), start.size());
-  const int reason = errno;
-  close(descriptor);
-  if (size < 0)
-    refuse_store(file, std::strerror(reason));
-  if (size > 0 && std::string_view(start.data(), static_cast<std::size_t>(size)) != kHeader)
+  const std::string_view magic = kNewDatabase.magic;
+  std::string begin(magic.size(), '\0');
+  try {
+    begin.resize(files::File(file, O_RDONLY).read(begin.data(), begin.size(), 0));
+  } catch (const files::FileError& error) {
+    refuse_store(file, error.reason_text());
+  }
+  if (!begin.empty() && begin != magic)
     refuse_store(
         file,
         "is no SQLite database; if it was a store: 'kinshipd repair' writes anew what can be "
@@ -121,12 +116,12 @@ files::LockFile lock_store(const fs::path& located) {
 }
 
 void make_for_owner(const fs::path& file) {
-  constexpr mode_t kOwnerOnly = 0600;
-  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
-  if (descriptor >= 0)
-    close(descriptor);
-  else if (errno != EEXIST)
-    refuse_store(file, std::strerror(errno));
+  try {
+    const files::File made(file, O_RDWR | O_CREAT | O_EXCL, 0600);
+  } catch (const files::FileError& error) {
+    if (error.reason() != EEXIST)
+      refuse_store(file, error.reason_text());
+  }
 }
 
 void require_writable(const fs::path& file, const fs::path& located) {

@@ -37,21 +37,19 @@ std::string text_of(const WitnessFile::Testimony& testimony) {
 }  // namespace
 
 WitnessFile::WitnessFile(const std::filesystem::path& store_file) {
-  constexpr mode_t kOwnerOnly = 0600;
-  descriptor_ = open(witness_name(store_file).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerOnly);
-}
-
-WitnessFile::~WitnessFile() {
-  if (descriptor_ >= 0)
-    close(descriptor_);
+  try {
+    file_.emplace(witness_name(store_file), O_RDWR | O_CREAT, 0600);
+  } catch (const files::FileError&) {  // no failure: see there
+  }
 }
 
 std::optional<WitnessFile::Testimony> WitnessFile::read() const {
-  std::array<char, 256> bytes{};
-  const ssize_t size = descriptor_ < 0 ? -1 : pread(descriptor_, bytes.data(), bytes.size(), 0);
-  if (size <= 0)
+  std::string text(256, '\0');
+  try {
+    text.resize(file_ ? file_->read(text.data(), text.size(), 0) : 0);
+  } catch (const files::FileError&) {
     return std::nullopt;
-  const std::string text(bytes.data(), static_cast<std::size_t>(size));
+  }
   std::istringstream stream(text);
   std::string epoch, run;
   Testimony testimony;
@@ -67,10 +65,11 @@ std::optional<WitnessFile::Testimony> WitnessFile::read() const {
 }
 
 void WitnessFile::write(const Testimony& testimony) const {
-  if (descriptor_ < 0)
-    return;
-  const std::string text = text_of(testimony);
-  static_cast<void>(pwrite(descriptor_, text.data(), text.size(), 0) == 0);
+  try {
+    if (file_)
+      file_->write(text_of(testimony), 0);
+  } catch (const files::FileError&) {
+  }
 }
 
 void WitnessFile::remove(const std::filesystem::path& store_file) {

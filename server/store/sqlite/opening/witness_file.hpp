@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "proto/files/file.hpp"
 #include "server/store/sqlite/opening/run_log.hpp"
 
 namespace kinship::store {
@@ -18,9 +19,6 @@ class WitnessFile {
   };
 
   explicit WitnessFile(const std::filesystem::path& store_file);
-  WitnessFile(const WitnessFile&) = delete;
-  WitnessFile& operator=(const WitnessFile&) = delete;
-  ~WitnessFile();
 
   std::optional<Testimony> read() const;  ///< empty if there is none, or it is damaged
   void write(const Testimony& testimony) const;
@@ -29,7 +27,7 @@ class WitnessFile {
   static void remove(const std::filesystem::path& store_file);
 
  private:
-  int descriptor_;  // negative: there is none
+  std::optional<files::File> file_;
 };
 
 }  // namespace kinship::store

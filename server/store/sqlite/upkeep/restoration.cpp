@@ -6,12 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <utility>
 
+#include "proto/types/time_text.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
@@ -23,6 +22,7 @@
 #include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 #include "server/store/sqlite/upkeep/store_repair.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {
@@ -35,13 +35,11 @@ void remove_with_companions(const fs::path& file) {
   unlink(file.c_str());
 }
 
+/// As time_text(), without signs that not every file system takes in a name.
 std::string stamp() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  const std::size_t size = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
-  return {text.data(), size};
+  std::string text = time_text(now_ms());
+  std::erase_if(text, [](char c) { return c == '-' || c == ':'; });
+  return text;
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::string& doing, int error) {

@@ -66,6 +66,13 @@ TEST_F(DurableFolder, FoldersThatAreThereAreLeftAlone) {
   EXPECT_FALSE(is_synced(folder));
 }
 
+TEST_F(DurableFolder, ItIsSyncedWhenItGetsADurableFile) {
+  write_whole(folder / "mark", "text");
+  EXPECT_FALSE(is_synced(folder));
+  write_durably(folder / "report", "text");
+  EXPECT_TRUE(is_synced(folder));
+}
+
 std::string said_of(int reason) {
   try {
     errno = reason;

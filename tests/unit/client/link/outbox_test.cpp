@@ -1,8 +1,6 @@
 #include "client/link/outbox.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -48,41 +46,6 @@ TEST_F(OutboxTest, KeepsAnAttemptForTheNextProcess) {
   const Outbox next(folder.path());
   ASSERT_EQ(next.pending(), std::vector{attempt.report_uuid});
   EXPECT_EQ(json::to_json(next.read(attempt.report_uuid).value_or_throw()), json::to_json(attempt));
-}
-
-TEST_F(OutboxTest, ReportSurvivesItsProcess) {
-  const Attempt attempt = values.attempt();
-  const pid_t child = fork();
-  if (child == 0) {
-    outbox.add(attempt);
-    _exit(0);  // no destructors, no flush
-  }
-  waitpid(child, nullptr, 0);
-  EXPECT_TRUE(outbox.read(attempt.report_uuid));
-}
-
-TEST_F(OutboxTest, ProcessKilledWhileItWritesLeavesOnlyWholeReports) {
-  for (int round = 0; round < 5; ++round) {
-    int ready[2];
-    ASSERT_EQ(pipe(ready), 0);
-    const pid_t child = fork();
-    if (child == 0)
-      while (true) {
-        outbox.add(values.attempt(500));
-        if (write(ready[1], "x", 1) != 1)
-          _exit(1);
-      }
-    char count = 0;
-    for (int i = 0; i < 3; ++i)
-      ASSERT_EQ(read(ready[0], &count, 1), 1);
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    close(ready[0]);
-    close(ready[1]);
-  }
-  EXPECT_GE(outbox.pending_count(), 15U);
-  for (const Uuid& uuid : outbox.pending())
-    EXPECT_TRUE(outbox.read(uuid)) << uuid.text();
 }
 
 TEST_F(OutboxTest, LeftOverTemporaryFilesAreIgnoredAndPurgedAfterADay) {

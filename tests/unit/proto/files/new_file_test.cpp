@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -16,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/full_disk.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace {
@@ -57,27 +57,6 @@ namespace fs = std::filesystem;
 constexpr const char* kSidecars[] = {"-wal", "-journal"};
 constexpr NewFileOptions kExclusive{.magic = std::string_view("MAGIC\0", 6), .sidecars = kSidecars};
 constexpr NewFileOptions kReplacing{.may_replace = true};
-
-/// As if the disk were full behind some bytes of a file.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 class NewFiles : public testing::Test {
  protected:
@@ -171,7 +150,7 @@ TEST_F(NewFiles, ReplaceNothingUnlessTheyMay) {
 TEST_F(NewFiles, AFullDiskLeavesNothingOfThem) {
   put("copy.db", "old");
   {
-    const FullDisk full(10);
+    const test::FullDisk full(10);
     const std::string text(100, 'x');
     const Error error = error_of([&] { write_file(directory_ / "other", text, {}); });
     EXPECT_EQ(error.code, ErrorCode::Storage);
