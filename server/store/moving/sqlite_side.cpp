@@ -18,7 +18,7 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/rows/audit_rows.hpp"
+#include "server/store/tables/audit.hpp"
 
 namespace kinship::store::moving {
 namespace {

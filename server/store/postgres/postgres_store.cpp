@@ -18,7 +18,6 @@
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/presence.hpp"
 #include "server/store/postgres/report_writer.hpp"
-#include "server/store/postgres/rows/audit_rows.hpp"
 #include "server/store/postgres/rows/distribution_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
@@ -31,6 +30,7 @@
 #include "server/store/postgres/rows/scene_rows.hpp"
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
+#include "server/store/tables/audit.hpp"
 
 namespace kinship::store::postgres {
 namespace {

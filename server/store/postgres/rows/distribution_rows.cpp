@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "server/store/postgres/rows/task_rows.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/crc32c.hpp"
@@ -163,6 +165,17 @@ DistributionRead select_distribution(Connection& connection, const Digest& id) {
     return {std::nullopt, true};
   distribution->revision = count_of(row, 0);
   return {std::move(distribution), false};
+}
+
+bool evict_audited(Connection& connection, const Digest& id, const AuditEntry* audit) {
+  std::string before;
+  if (audit != nullptr)
+    if (const auto known = select_distribution(connection, id).distribution)
+      before = describe_distribution(*known);
+  const bool was_there = delete_distribution(connection, id);
+  if (was_there)
+    note_act(connection, audit, AuditOutcome::Done, std::move(before), "gone");
+  return was_there;
 }
 
 }  // namespace kinship::store::postgres

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "proto/types/audit.hpp"
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
 
@@ -41,5 +42,8 @@ DistributionRead select_distribution(Connection& connection, const Digest& id);
 /// Deletes a distribution; its revision is kept, so that the next one counts on. In a transaction
 /// of the caller's. \return whether it was there.
 bool delete_distribution(Connection& connection, const Digest& id);
+
+/// The same with an entry of the audit log; none if it was not there, or without `audit`.
+bool evict_audited(Connection& connection, const Digest& id, const AuditEntry* audit);
 
 }  // namespace kinship::store::postgres

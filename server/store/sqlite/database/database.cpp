@@ -43,6 +43,24 @@ Database::Database(const std::filesystem::path& file, Access access) {
 
 Database::~Database() = default;
 
+const Dialect& Database::dialect() const noexcept {
+  static constexpr Dialect kDialect = {};
+  return kDialect;
+}
+
+Row& Database::run(std::string_view sql, std::span<const Parameter> parameters) {
+  CachedStatement statement = cached(sql);
+  int index = 0;
+  for (const Parameter& parameter : parameters)
+    statement->bind(++index, parameter);
+  return *statement.release();
+}
+
+bool Database::is_damage(const Failure& failure) const noexcept {
+  const auto* const error = dynamic_cast<const SqliteError*>(&failure);
+  return error != nullptr && error->is_damage();
+}
+
 void Database::execute(const std::string& script) {
   if (sqlite3_exec(connection_.get(), script.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
     throw_sqlite_error(*connection_, script);

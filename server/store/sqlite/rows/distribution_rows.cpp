@@ -10,6 +10,8 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/crc32c.hpp"
@@ -224,6 +226,17 @@ DistributionRead read_distribution(Database& database, std::int64_t row) {
       throw;
     return {std::nullopt, true};
   }
+}
+
+bool evict_audited(Database& database, const Digest& id, const AuditEntry* audit) {
+  std::string before;
+  if (audit != nullptr)
+    if (const auto known = select_distribution(database, id).distribution)
+      before = describe_distribution(*known);
+  const bool was_there = delete_distribution(database, id);
+  if (was_there)
+    note_act(database, audit, AuditOutcome::Done, std::move(before), "gone");
+  return was_there;
 }
 
 }  // namespace kinship::store

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "proto/types/audit.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
 
@@ -38,5 +39,8 @@ DistributionRead read_distribution(Database& database, std::int64_t row);
 /// Deletes a distribution; its revision is kept, so that the next one counts on.
 /// \return whether it was there.
 bool delete_distribution(Database& database, const Digest& id);
+
+/// The same with an entry of the audit log; none if it was not there, or without `audit`.
+bool evict_audited(Database& database, const Digest& id, const AuditEntry* audit);
 
 }  // namespace kinship::store
