@@ -31,6 +31,7 @@
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/settings.hpp"
 
 namespace kinship::store::postgres {
 namespace {

@@ -30,7 +30,6 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
-#include "server/store/sqlite/rows/note_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
@@ -42,6 +41,7 @@
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/settings.hpp"
 
 namespace kinship::store {
 namespace {
