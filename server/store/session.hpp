@@ -108,7 +108,11 @@ class Rows {
 
 /// SQL that the engines say differently; each empty where an engine has no such thing.
 struct Dialect {
-  std::string_view mark_changed;  ///< of an UPDATE: when the row was changed, for other servers
+  // For other servers of the same database:
+  std::string_view lock_robots;      ///< keeps them from changing robots
+  std::string_view for_update;       ///< of a SELECT: locks the rows
+  std::string_view mark_changed;     ///< of an UPDATE: when the row was changed
+  std::string_view note_gone_robot;  ///< before the robot $1 is deleted
 };
 
 /// A connection to a database, used by one thread at a time. Statements are prepared once for each

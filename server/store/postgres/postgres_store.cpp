@@ -26,11 +26,11 @@
 #include "server/store/postgres/rows/path_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/postgres/rows/robot_removal.hpp"
-#include "server/store/postgres/rows/robot_rows.hpp"
 #include "server/store/postgres/rows/scene_rows.hpp"
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
 
 namespace kinship::store::postgres {

@@ -126,7 +126,15 @@ Connection::Deadline Connection::deadline() const {
 }
 
 const Dialect& Connection::dialect() const noexcept {
-  static constexpr Dialect kDialect = {.mark_changed = ", changed_in = pg_current_xact_id()"};
+  static constexpr Dialect kDialect = {
+      // Robots are registered, renamed and removed one at a time; reports, which lock rows FOR KEY
+      // SHARE, go on with the other robots.
+      .lock_robots = "LOCK TABLE robot IN SHARE ROW EXCLUSIVE MODE",
+      .for_update = " FOR UPDATE",
+      .mark_changed = ", changed_in = pg_current_xact_id()",
+      .note_gone_robot =
+          "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
+          " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in"};
   return kDialect;
 }
 

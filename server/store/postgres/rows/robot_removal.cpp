@@ -7,8 +7,8 @@
 #include "server/store/postgres/rows/distribution_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
-#include "server/store/postgres/rows/robot_rows.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -81,17 +81,6 @@ Result<bool> continue_removal(Connection& connection, const Digest& robot, Remov
   complete_removal(removed, *record, std::move(rest), is_deleted);
   note_act(connection, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
   return true;
-}
-
-Result<bool> rename_audited(Connection& connection, const Digest& robot, const std::string& label,
-                            const AuditEntry* audit) {
-  static_cast<void>(lock_robot(connection, robot));
-  const std::optional<RobotRecord> before = select_robot(connection, robot);
-  Result<bool> renamed = relabel_robot(connection, robot, label);
-  if (renamed && before)
-    note_act(connection, audit, AuditOutcome::Done, "'" + before->description.label + "'",
-             "'" + label + "' (" + robot.short_hex() + ")");
-  return renamed;
 }
 
 }  // namespace kinship::store::postgres

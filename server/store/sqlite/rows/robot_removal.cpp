@@ -8,8 +8,8 @@
 #include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
-#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -97,17 +97,6 @@ Result<bool> continue_removal(Batch& batch, const Digest& robot, RemovedRobot& r
   complete_removal(removed, *record, std::move(rest), is_deleted);
   note_act(database, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
   return true;
-}
-
-Result<bool> rename_audited(Database& database, const Digest& robot, const std::string& label,
-                            const AuditEntry* audit) {
-  const std::optional<RobotRecord> before =
-      audit == nullptr ? std::nullopt : select_robot(database, robot);
-  Result<bool> renamed = relabel_robot(database, robot, label);
-  if (renamed && before)
-    note_act(database, audit, AuditOutcome::Done, "'" + before->description.label + "'",
-             "'" + label + "' (" + robot.short_hex() + ")");
-  return renamed;
 }
 
 }  // namespace kinship::store

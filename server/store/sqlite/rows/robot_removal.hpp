@@ -17,8 +17,4 @@ namespace kinship::store {
 Result<bool> continue_removal(Batch& batch, const Digest& robot, RemovedRobot& removed,
                               const AuditEntry* audit);
 
-/// As Store::rename_robot() says, with its entry.
-Result<bool> rename_audited(Database& database, const Digest& robot, const std::string& label,
-                            const AuditEntry* audit);
-
 }  // namespace kinship::store
