@@ -113,6 +113,9 @@ struct Dialect {
   std::string_view for_update;       ///< of a SELECT: locks the rows
   std::string_view mark_changed;     ///< of an UPDATE: when the row was changed
   std::string_view note_gone_robot;  ///< before the robot $1 is deleted
+  // For damage that SQLite meets:
+  std::string_view is_quarantined_distribution;  ///< an expression on table distribution
+  std::string_view quarantine_distribution;      ///< of row $1, at time $2
 };
 
 /// A connection to a database, used by one thread at a time. Statements are prepared once for each
@@ -145,6 +148,13 @@ class Session {
     return found;
   }
 
+  /// Runs a statement that writes; one that meets a damaged page is undone alone.
+  /// \return whether it is done.
+  template <typename... Values>
+  bool try_change(std::string_view sql, const Values&... values) {
+    return try_run(sql, std::array<Parameter, sizeof...(Values)>{Parameter(values)...});
+  }
+
   /// \return what `read` gives; an empty value if it met a damaged page.
   template <typename Read>
   std::invoke_result_t<Read> unless_damaged(Read read) const {
@@ -160,6 +170,10 @@ class Session {
  private:
   /// Binds the parameters; Row::next() runs it.
   virtual Row& run(std::string_view sql, std::span<const Parameter> parameters) = 0;
+  virtual bool try_run(std::string_view sql, std::span<const Parameter> parameters) {
+    query_with(sql, parameters);
+    return true;
+  }
   /// Whether a page, or what stands on it, is damaged, and others are fine.
   virtual bool is_damage(const Failure& /*failure*/) const noexcept { return false; }
 };

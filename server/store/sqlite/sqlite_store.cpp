@@ -26,7 +26,6 @@
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/report_room.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
-#include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
@@ -40,6 +39,7 @@
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
 

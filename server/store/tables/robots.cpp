@@ -75,14 +75,6 @@ std::optional<RobotRecord> read_robot(Session& session, std::int64_t id) {
   return completed(select_stored_robot(session, id));
 }
 
-/// The id of a robot that is not removed. From indexes.
-std::optional<std::int64_t> find_registered(Session& session, const Digest& robot) {
-  return session.find_integer(
-      "SELECT id FROM robot WHERE digest = $1"
-      " AND NOT EXISTS (SELECT 1 FROM robot AS removed WHERE removed.label = $2)",
-      robot, removed_label(robot));
-}
-
 Failure damaged_row(const Digest& robot) {
   return {ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged"};
 }
@@ -147,13 +139,16 @@ std::optional<std::int64_t> geometry_revision_of(Session& session, std::int64_t 
 
 }  // namespace
 
+std::optional<std::int64_t> find_registered(Session& session, const Digest& robot) {
+  return session.find_integer(
+      "SELECT id FROM robot WHERE digest = $1"
+      " AND NOT EXISTS (SELECT 1 FROM robot AS removed WHERE removed.label = $2)",
+      robot, removed_label(robot));
+}
+
 bool is_registered(Session& session, const Digest& robot) {
   const std::optional<std::int64_t> id = find_registered(session, robot);
   return id && read_robot(session, *id);
-}
-
-bool is_removed(Session& session, const Digest& robot) {
-  return !session.query("SELECT label FROM robot WHERE label = $1", removed_label(robot)).empty();
 }
 
 std::optional<std::int64_t> lock_robot(Session& session, const Digest& robot) {

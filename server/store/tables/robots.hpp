@@ -18,8 +18,8 @@ namespace kinship::store {
 /// Whether a robot is registered, and its row whole.
 bool is_registered(Session& session, const Digest& robot);
 
-/// From the index of labels.
-bool is_removed(Session& session, const Digest& robot);
+/// The id of a robot that is not removed, its row may be damaged. From indexes.
+std::optional<std::int64_t> find_registered(Session& session, const Digest& robot);
 
 /// Writes a damaged or removed robot's row anew, under its id, so that its paths stay.
 /// \return Known if the digest is there, undamaged; Conflict if another robot has the label.

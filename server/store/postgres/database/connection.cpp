@@ -134,7 +134,8 @@ const Dialect& Connection::dialect() const noexcept {
       .mark_changed = ", changed_in = pg_current_xact_id()",
       .note_gone_robot =
           "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
-          " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in"};
+          " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
+      .is_quarantined_distribution = "FALSE"};
   return kDialect;
 }
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
-#include "server/store/postgres/rows/distribution_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"

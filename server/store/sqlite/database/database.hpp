@@ -48,6 +48,7 @@ class Database : public Session {
 
  private:
   Row& run(std::string_view sql, std::span<const Parameter> parameters) override;
+  bool try_run(std::string_view sql, std::span<const Parameter> parameters) override;
   bool is_damage(const Failure& failure) const noexcept override;
 
   struct Close {

@@ -10,7 +10,6 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
-#include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/pages.hpp"
 #include "server/store/values/robot_columns.hpp"

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
