@@ -161,4 +161,9 @@ inline const std::set<std::string> kStoreForValues = {"server/store/store.hpp",
 inline const std::set<std::string> kStoreForRules = {"server/store/store.hpp",
                                                      "server/store/values/", "server/store/rules/"};
 
+/// The same for server/store/tables, which knows engines as `Session`.
+inline const std::set<std::string> kStoreForTables = {
+    "server/store/store.hpp", "server/store/session.hpp", "server/store/values/",
+    "server/store/rules/", "server/store/tables/"};
+
 }  // namespace kinship::architecture

@@ -129,9 +129,10 @@ void expect_no_engine(const std::string& room, const std::set<std::string>& allo
   }
 }
 
-TEST(Architecture, ValuesAndRulesOfTheStoreKnowNoEngine) {
+TEST(Architecture, ValuesRulesAndTablesOfTheStoreKnowNoEngine) {
   expect_no_engine("server/store/values/", kStoreForValues);
   expect_no_engine("server/store/rules/", kStoreForRules);
+  expect_no_engine("server/store/tables/", kStoreForTables);
 }
 
 TEST(Architecture, FilesStayReadable) {

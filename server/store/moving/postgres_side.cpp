@@ -9,7 +9,7 @@
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/opening/primary.hpp"
-#include "server/store/postgres/rows/audit_rows.hpp"
+#include "server/store/tables/audit.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/move_marks.hpp"
 
@@ -215,7 +215,7 @@ class PostgresSide : public Side {
     put_setting(kArrival, std::nullopt);
   }
 
-  void add_audit(const AuditEntry& entry) override { postgres::insert_audit(*connection_, entry); }
+  void add_audit(const AuditEntry& entry) override { insert_audit(*connection_, entry); }
 
   /// Our tables, and with them that this is one of ours: a move begins anew with the schema.
   void remove_all() override {

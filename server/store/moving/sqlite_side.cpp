@@ -16,7 +16,8 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/rows/audit_rows.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/tables/settings.hpp"
 
 namespace kinship::store::moving {
 namespace {
@@ -183,21 +184,10 @@ class SqliteSide : public Side {
     return rows;
   }
 
-  std::string setting(std::string_view key) override {
-    const auto query = database_->cached("SELECT value FROM setting WHERE key = ?");
-    return query->bind(1, key).step() ? std::string(query->column_text(0)) : "";
-  }
+  std::string setting(std::string_view key) override { return read_setting(*database_, key); }
 
   void put_setting(std::string_view key, const std::optional<std::string>& value) override {
-    if (value)
-      database_
-          ->cached(
-              "INSERT INTO setting VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value ="
-              " excluded.value")
-          ->bind_all(key, std::string_view(*value))
-          .run();
-    else
-      database_->cached("DELETE FROM setting WHERE key = ?")->bind(1, key).run();
+    write_setting(*database_, key, value);
   }
 
   std::string served_by() override {

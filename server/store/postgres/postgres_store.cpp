@@ -18,8 +18,6 @@
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/presence.hpp"
 #include "server/store/postgres/report_writer.hpp"
-#include "server/store/postgres/rows/audit_rows.hpp"
-#include "server/store/postgres/rows/distribution_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
 #include "server/store/postgres/rows/fit_lease_rows.hpp"
@@ -27,10 +25,13 @@
 #include "server/store/postgres/rows/path_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/postgres/rows/robot_removal.hpp"
-#include "server/store/postgres/rows/robot_rows.hpp"
 #include "server/store/postgres/rows/scene_rows.hpp"
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/robots.hpp"
+#include "server/store/tables/settings.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -310,7 +311,7 @@ class PostgresStore : public Store {
   }
 
   void note_use(const Digest& id) const override {
-    write_later([id](Connection& connection) { postgres::note_use(connection, id); });
+    write_later([id](Connection& connection) { store::note_use(connection, id); });
   }
 
   bool evict_distribution(const Digest& id, const AuditEntry* audit) override {

@@ -25,22 +25,22 @@
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/report_room.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
-#include "server/store/sqlite/rows/audit_rows.hpp"
-#include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
-#include "server/store/sqlite/rows/note_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/robot_removal.hpp"
-#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/sqlite/rows/shared_rows.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/robots.hpp"
+#include "server/store/tables/settings.hpp"
 
 namespace kinship::store {
 namespace {
@@ -141,7 +141,7 @@ class SqliteStore : public Store {
       RemovedRobot next;
       const Result<bool> is_out = write([&](Batch& batch) {
         next = removed;
-        return remove_audited(batch, robot, next, audit);
+        return continue_removal(batch, robot, next, audit);
       });
       if (!is_out)
         return is_out.error();
@@ -251,19 +251,18 @@ class SqliteStore : public Store {
   }
 
   Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
-    return write([&](Batch& batch) { return retire_audited(batch, report_uuid, audit); });
+    return write([&](Batch& batch) { return store::retire_path(batch, report_uuid, audit); });
   }
 
   Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
                                 const AuditEntry* audit) override {
     const Result<TaskReset> reset =
-        write([&](Batch& batch) { return begin_reset_audited(batch.database(), task, audit); });
+        write([&](Batch& batch) { return begin_reset(batch.database(), task, audit); });
     if (!reset)
       return reset.error();
     Retirement retired;
     retired.task = task;
-    while (
-        write([&](Batch& batch) { return continue_reset_audited(batch, *reset, retired, audit); }))
+    while (write([&](Batch& batch) { return continue_reset(batch, *reset, retired, audit); }))
       if (stop.stop_requested())
         return stopped_after(retired.paths, "task '" + retired.task + "'");
     return retired;

@@ -43,6 +43,28 @@ std::string begin_of(std::string_view sql) {
   return std::string(sql.substr(0, kShown));
 }
 
+/// The rows of an answer, one after the other; on the heap, owned by itself.
+class AnswerRow final : public store::Row {
+ public:
+  explicit AnswerRow(Rows rows) : rows_(std::move(rows)) {}
+  bool next() override { return ++row_ < rows_.size(); }
+  std::int64_t column_integer(int column) const override {
+    return rows_[row_].column_integer(column);
+  }
+  double column_real(int column) const override { return rows_[row_].column_real(column); }
+  std::string_view column_text(int column) const override {
+    return rows_[row_].column_text(column);
+  }
+  Bytes column_blob(int column) const override { return rows_[row_].column_blob(column); }
+  bool column_is_null(int column) const override { return rows_[row_].column_is_null(column); }
+
+ private:
+  void release() noexcept override { delete this; }
+
+  Rows rows_;
+  int row_ = -1;
+};
+
 }  // namespace
 
 Connection::Connection(const ConnectionString& where, const ConnectionOptions& options)
@@ -101,6 +123,27 @@ void Connection::abandon() noexcept { connection_.reset(); }
 
 Connection::Deadline Connection::deadline() const {
   return std::chrono::steady_clock::now() + options_.patience;
+}
+
+const Dialect& Connection::dialect() const noexcept {
+  static constexpr Dialect kDialect = {
+      // Robots are registered, renamed and removed one at a time; reports, which lock rows FOR KEY
+      // SHARE, go on with the other robots.
+      .lock_robots = "LOCK TABLE robot IN SHARE ROW EXCLUSIVE MODE",
+      .for_update = " FOR UPDATE",
+      .mark_changed = ", changed_in = pg_current_xact_id()",
+      .note_gone_robot =
+          "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
+          " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
+      .is_quarantined_distribution = "FALSE"};
+  return kDialect;
+}
+
+store::Row& Connection::run(std::string_view sql, std::span<const Parameter> parameters) {
+  Request request{sql};
+  for (const Parameter& parameter : parameters)
+    request.parameters.add(parameter);
+  return *std::make_unique<AnswerRow>(run_one(request)).release();
 }
 
 Rows Connection::run_one(const Request& request) {

@@ -15,6 +15,7 @@
 #include "server/store/postgres/database/parameters.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/rows.hpp"
+#include "server/store/session.hpp"
 
 struct pg_conn;
 
@@ -38,13 +39,13 @@ struct ConnectionOptions {
 /// A connection to PostgreSQL: the owner of one PGconn. Used by one thread at a time. Statements
 /// are prepared when they are first run. Every method throws PostgresError, whose message names no
 /// password; after one of kind Lost the connection is of no use any more.
-class Connection {
+class Connection : public Session {
  public:
   /// Waits a few seconds at most for each host.
   explicit Connection(const ConnectionString& where, const ConnectionOptions& options = {});
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  ~Connection();
+  ~Connection() override;
+
+  const Dialect& dialect() const noexcept override;
 
   /// Runs one statement with its parameters.
   template <typename... Values>
@@ -92,6 +93,7 @@ class Connection {
     bool is_preparation = false;
   };
 
+  store::Row& run(std::string_view sql, std::span<const Parameter> parameters) override;
   Rows run_one(const Request& request);
   bool keeps_statements() const noexcept {
     return options_.is_pooled == nullptr || !*options_.is_pooled;

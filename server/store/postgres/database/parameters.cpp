@@ -91,6 +91,11 @@ Parameters& Parameters::add(Bytes value) {
   return *this;
 }
 
+Parameters& Parameters::add(const Parameter& value) {
+  std::visit([this](const auto& each) { add(each); }, value.value());
+  return value.is_null() ? make_null() : *this;
+}
+
 template <typename Values, typename PutElement>
 Parameters& Parameters::add_array(unsigned type, unsigned element, const Values& values,
                                   PutElement put_element) {

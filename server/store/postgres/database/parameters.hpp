@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/store/values/bytes.hpp"
+#include "server/store/session.hpp"
 
 namespace kinship::store::postgres {
 
@@ -38,6 +38,8 @@ class Parameters {
     add(Value{});
     return make_null();
   }
+
+  Parameters& add(const Parameter& value);
 
   Parameters& add(const std::vector<std::int64_t>& values);
   Parameters& add(const std::vector<double>& values);

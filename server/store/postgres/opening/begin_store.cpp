@@ -3,6 +3,7 @@
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/rows/fit_lease_rows.hpp"
+#include "server/store/tables/settings.hpp"
 #include "server/store/values/move_marks.hpp"
 
 namespace kinship::store::postgres {
@@ -11,10 +12,8 @@ namespace {
 
 void enter(Connection& connection, const Uuid& server) {
   note_alive(connection, server);
-  std::string moving_from, moved_to;
-  for (const Row row : connection.query("SELECT key, value FROM setting WHERE key IN ($1, $2)",
-                                        kMovingFrom, kMovedTo))
-    (row.column_text(0) == kMovingFrom ? moving_from : moved_to) = row.column_text(1);
+  const std::string moving_from = read_setting(connection, kMovingFrom);
+  const std::string moved_to = read_setting(connection, kMovedTo);
   if (moving_from.empty() && moved_to.empty())
     return;
   note_gone(connection, server);

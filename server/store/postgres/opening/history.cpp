@@ -7,6 +7,7 @@
 #include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/primary.hpp"
+#include "server/store/tables/settings.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/history_seal.hpp"
@@ -20,24 +21,12 @@ constexpr std::string_view kForgottenRun = "forgotten_run";
 constexpr std::string_view kTimeline = "timeline";
 constexpr std::int64_t kMoreThanWereLost = 1'000'000;
 
-std::string setting(Connection& connection, std::string_view name) {
-  const Rows rows = connection.query("SELECT value FROM setting WHERE key = $1", name);
-  return rows.empty() ? "" : std::string(rows.front().column_text(0));
-}
-
-void set(Connection& connection, std::string_view name, std::string_view value) {
-  connection.query(
-      "INSERT INTO setting VALUES ($1, $2)"
-      " ON CONFLICT (key) DO UPDATE SET value = excluded.value",
-      name, value);
-}
-
 /// What another server wrote before counts.
 Digest ensure_key(Connection& connection) {
-  if (const std::optional<Digest> key = Digest::from_hex(setting(connection, kKey)))
+  if (const std::optional<Digest> key = Digest::from_hex(read_setting(connection, kKey)))
     return *key;
   const Digest key = random_key();
-  set(connection, kKey, key.hex());
+  write_setting(connection, kKey, key.hex());
   return key;
 }
 
@@ -116,7 +105,7 @@ void forget_old_runs(Connection& connection) {
       " OFFSET $1 LIMIT 1) RETURNING run) SELECT run FROM gone ORDER BY run DESC LIMIT 1",
       kKeptRuns);
   if (!rows.empty())
-    set(connection, kForgottenRun, id_of<Uuid>(rows.front().column_blob(0)).text());
+    write_setting(connection, kForgottenRun, id_of<Uuid>(rows.front().column_blob(0)).text());
 }
 
 }  // namespace
@@ -133,7 +122,7 @@ std::string identity_of(Connection& connection) {
 ///         epoch because of it.
 std::string History::find_loss(Connection& connection, const State& before,
                                const Uuid& newest) const {
-  const std::string stored = setting(connection, kIdentity);
+  const std::string stored = read_setting(connection, kIdentity);
   if (const std::string identity = identity_of(connection); !stored.empty() && stored != identity)
     return "the database is a copy (cluster and database " + identity + ", was " + stored + ")";
   if (before.epoch == Uuid{})
@@ -168,13 +157,13 @@ void History::begin_run(Connection& connection) {
     next.epoch = begin_epoch(connection, "the store was made");
   else
     next.epoch = loss.empty() ? newest.epoch : begin_epoch(connection, loss);
-  set(connection, kIdentity, identity_of(connection));
+  write_setting(connection, kIdentity, identity_of(connection));
   const std::string timeline = std::to_string(timeline_of(connection));
   // What a standby had not got when it was promoted may be of servers that nobody can ask.
-  if (const std::string before = setting(connection, kTimeline);
+  if (const std::string before = read_setting(connection, kTimeline);
       !before.empty() && before != timeline)
     skip_lost_ids(connection);
-  set(connection, kTimeline, timeline);
+  write_setting(connection, kTimeline, timeline);
   next.key = ensure_key(connection);
   next.run = timed_uuid();
   next.position = 1;  // vouches for all that was there before
@@ -259,7 +248,7 @@ std::optional<HistoryPoint> History::find_doubtful(const HistoryMark& mark) cons
 bool History::is_gone(Connection& connection, const HistoryPoint& point) const {
   const std::optional<std::uint64_t> position = position_of(connection, point.run);
   if (!position) {
-    const std::optional<Uuid> forgotten = Uuid::parse(setting(connection, kForgottenRun));
+    const std::optional<Uuid> forgotten = Uuid::parse(read_setting(connection, kForgottenRun));
     return !forgotten || *forgotten < point.run;
   }
   constexpr std::size_t kMostSeen = 65'536;

@@ -6,7 +6,7 @@
 #include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
-#include "server/store/postgres/rows/audit_rows.hpp"
+#include "server/store/tables/audit.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/schema_texts.hpp"

@@ -155,18 +155,4 @@ Page<DistributionSummary> page_of_distributions(Connection& connection, const Pa
       [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });
 }
 
-Page<AuditEntry> page_of_audit(Connection& connection, std::string_view name,
-                               std::string_view cursor, std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
-  if (!name.empty())
-    parameters.add(name);
-  return page_of<AuditEntry>(
-      connection.query("SELECT " + std::string(kAuditColumns) + "FROM audit WHERE id < $1 " +
-                           (name.empty() ? "" : "AND name = $3 ") + "ORDER BY id DESC LIMIT $2",
-                       parameters),
-      rows, read_audit_entry<Row>,
-      [](const Row& row) { return std::to_string(row.column_integer(0)); });
-}
-
 }  // namespace kinship::store::postgres

@@ -31,8 +31,4 @@ Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter
 Page<DistributionSummary> page_of_distributions(Connection& connection, const PairFilter& filter,
                                                 std::string_view cursor, std::size_t limit);
 
-/// The newest first. \param name  of this name alone; empty: all.
-Page<AuditEntry> page_of_audit(Connection& connection, std::string_view name,
-                               std::string_view cursor, std::size_t limit);
-
 }  // namespace kinship::store::postgres

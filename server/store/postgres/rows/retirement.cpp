@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "server/store/postgres/rows/audit_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/tables/audit.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -64,16 +64,6 @@ Digest digest_of_robot(Connection& connection, std::int64_t robot_id) {
   return rows.empty() ? Digest() : id_of<Digest>(rows.front().column_blob(0));
 }
 
-std::int64_t count_paths_of(Connection& connection, std::string_view task) {
-  return connection
-      .query(
-          "SELECT coalesce(sum(paths), 0)::bigint FROM experience"
-          " WHERE task_id = (SELECT id FROM task WHERE name = $1)",
-          task)
-      .front()
-      .column_integer(0);
-}
-
 void add_robot(Retirement& retired, const Digest& robot) {
   const auto place = std::ranges::lower_bound(retired.robots, robot);
   if (place == retired.robots.end() || *place != robot)
@@ -81,12 +71,6 @@ void add_robot(Retirement& retired, const Digest& robot) {
 }
 
 }  // namespace
-
-void note_act(Connection& connection, const AuditEntry* audit, AuditOutcome outcome,
-              std::string before, std::string after) {
-  if (audit != nullptr)
-    insert_audit(connection, entry_of_act(*audit, outcome, std::move(before), std::move(after)));
-}
 
 Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
                                const AuditEntry* audit) {

@@ -41,8 +41,4 @@ inline constexpr std::int64_t kPathsOfAStep = 500;
 std::int64_t retire_some(Connection& connection, const ExperienceKey& key, std::int64_t last_id,
                          std::int64_t limit);
 
-/// Adds an entry with what was before and is after; none without `audit`.
-void note_act(Connection& connection, const AuditEntry* audit, AuditOutcome outcome,
-              std::string before, std::string after = {});
-
 }  // namespace kinship::store::postgres

@@ -4,10 +4,11 @@
 #include <string>
 #include <utility>
 
-#include "server/store/postgres/rows/distribution_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
-#include "server/store/postgres/rows/robot_rows.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -31,16 +32,6 @@ RobotRest select_rest(Connection& connection, std::int64_t robot_id) {
     rest.tasks.emplace(row.column_text(1));
   }
   return rest;
-}
-
-std::string describe(Connection& connection, std::int64_t robot_id, const RobotRecord& robot) {
-  const Rows sums = connection.query(
-      "SELECT coalesce(sum(paths), 0)::bigint,"
-      " coalesce(sum(attempts), 0)::bigint FROM experience"
-      " WHERE robot_id = $1",
-      robot_id);
-  return describe_robot(robot.description.label, robot.digest, sums.front().column_integer(0),
-                        sums.front().column_integer(1));
 }
 
 /// \return whether none is left.
@@ -71,7 +62,7 @@ Result<bool> continue_removal(Connection& connection, const Digest& robot, Remov
   if (!record)
     return Error{ErrorCode::NotFound, "robot " + robot.short_hex() + " is not registered"};
   const bool is_first = removed.removal.paths == 0;
-  const std::string before = audit == nullptr ? "" : describe(connection, *id, *record);
+  const std::string before = audit == nullptr ? "" : describe_robot(connection, robot);
   if (!retire_step(connection, *id, removed)) {
     if (is_first)
       note_act(connection, audit, AuditOutcome::Begun, before);
@@ -90,17 +81,6 @@ Result<bool> continue_removal(Connection& connection, const Digest& robot, Remov
   complete_removal(removed, *record, std::move(rest), is_deleted);
   note_act(connection, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
   return true;
-}
-
-Result<bool> rename_audited(Connection& connection, const Digest& robot, const std::string& label,
-                            const AuditEntry* audit) {
-  static_cast<void>(lock_robot(connection, robot));
-  const std::optional<RobotRecord> before = select_robot(connection, robot);
-  Result<bool> renamed = relabel_robot(connection, robot, label);
-  if (renamed && before)
-    note_act(connection, audit, AuditOutcome::Done, "'" + before->description.label + "'",
-             "'" + label + "' (" + robot.short_hex() + ")");
-  return renamed;
 }
 
 }  // namespace kinship::store::postgres

@@ -15,8 +15,4 @@ namespace kinship::store::postgres {
 Result<bool> continue_removal(Connection& connection, const Digest& robot, RemovedRobot& removed,
                               const AuditEntry* audit);
 
-/// As Store::rename_robot() says, with its entry.
-Result<bool> rename_audited(Connection& connection, const Digest& robot, const std::string& label,
-                            const AuditEntry* audit);
-
 }  // namespace kinship::store::postgres

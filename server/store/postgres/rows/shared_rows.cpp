@@ -195,9 +195,6 @@ void wait_for_arrivals(Connection& connection, std::span<const Uuid> reports) {
     connection.query("SELECT pg_advisory_xact_lock(20261126) IS NULL");
 }
 
-/// Settings of the store have no colon in their names.
-constexpr std::string_view kNotePrefix = "note:";
-
 }  // namespace
 
 Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view task,
@@ -319,29 +316,6 @@ std::vector<Retirement> retire_reports(Connection& connection, std::span<const U
     by_task.push_back(std::move(retirement));
   }
   return by_task;
-}
-
-std::map<std::string, std::string> select_notes(Connection& connection, std::string_view prefix) {
-  std::map<std::string, std::string> notes;
-  const Rows rows = connection.query("SELECT key, value FROM setting WHERE starts_with(key, $1)",
-                                     std::string(kNotePrefix) + std::string(prefix));
-  for (const Row row : rows)
-    notes.emplace(row.column_text(0).substr(kNotePrefix.size()), row.column_text(1));
-  return notes;
-}
-
-void write_notes(Connection& connection,
-                 const std::map<std::string, std::optional<std::string>>& notes) {
-  for (const auto& [name, text] : notes) {
-    const std::string key = std::string(kNotePrefix) + name;
-    if (text)
-      connection.query(
-          "INSERT INTO setting (key, value) VALUES ($1, $2)"
-          " ON CONFLICT (key) DO UPDATE SET value = excluded.value",
-          key, *text);
-    else
-      connection.query("DELETE FROM setting WHERE key = $1", key);
-  }
 }
 
 }  // namespace kinship::store::postgres

@@ -42,9 +42,4 @@ inline constexpr std::string_view kBeforeReports =
 /// In a writing transaction. Locks rows of `experience` in the order of the key.
 std::vector<Retirement> retire_reports(Connection& connection, std::span<const Uuid> reports);
 
-std::map<std::string, std::string> select_notes(Connection& connection, std::string_view prefix);
-/// In a writing transaction.
-void write_notes(Connection& connection,
-                 const std::map<std::string, std::optional<std::string>>& notes);
-
 }  // namespace kinship::store::postgres

@@ -5,6 +5,7 @@
 #include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
 
 namespace kinship::store {
 namespace {
@@ -42,6 +43,38 @@ Database::Database(const std::filesystem::path& file, Access access) {
 }
 
 Database::~Database() = default;
+
+const Dialect& Database::dialect() const noexcept {
+  static constexpr Dialect kDialect = {
+      .is_quarantined_distribution =
+          "EXISTS (SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)",
+      .quarantine_distribution =
+          "INSERT INTO set_aside (kind, id, noticed_ms, reason) VALUES (4, $1, $2, 'checksum')"
+          " ON CONFLICT (kind, id) DO NOTHING"};
+  return kDialect;
+}
+
+Row& Database::run(std::string_view sql, std::span<const Parameter> parameters) {
+  CachedStatement statement = cached(sql);
+  int index = 0;
+  for (const Parameter& parameter : parameters)
+    statement->bind(++index, parameter);
+  return *statement.release();
+}
+
+bool Database::try_run(std::string_view sql, std::span<const Parameter> parameters) {
+  return unless_damaged([&] {
+    Savepoint part(*this);
+    query_with(sql, parameters);
+    part.keep();
+    return true;
+  });
+}
+
+bool Database::is_damage(const Failure& failure) const noexcept {
+  const auto* const error = dynamic_cast<const SqliteError*>(&failure);
+  return error != nullptr && error->is_damage();
+}
 
 void Database::execute(const std::string& script) {
   if (sqlite3_exec(connection_.get(), script.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)

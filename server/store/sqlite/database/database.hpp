@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,13 +19,13 @@ class OnlineBackup;
 
 /// A connection to an SQLite file: the owner of one sqlite3. Used by one thread at a time (it is
 /// opened without SQLite's own mutex). Every method throws SqliteError.
-class Database {
+class Database : public Session {
  public:
   /// \param access  Create: makes the file if it is missing.
   Database(const std::filesystem::path& file, Access access);
-  Database(const Database&) = delete;
-  Database& operator=(const Database&) = delete;
-  ~Database();
+  ~Database() override;
+
+  const Dialect& dialect() const noexcept override;
 
   void execute(const std::string& script);     ///< runs statements without parameters, drops rows
   std::int64_t integer(std::string_view sql);  ///< the first column of the first row; 0 if none
@@ -46,6 +47,10 @@ class Database {
   std::unique_ptr<OnlineBackup>& backup() noexcept { return backup_; }
 
  private:
+  Row& run(std::string_view sql, std::span<const Parameter> parameters) override;
+  bool try_run(std::string_view sql, std::span<const Parameter> parameters) override;
+  bool is_damage(const Failure& failure) const noexcept override;
+
   struct Close {
     void operator()(sqlite3* connection) const noexcept;
   };

@@ -2,6 +2,10 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <variant>
+
 #include "server/store/sqlite/database/sqlite_error.hpp"
 
 namespace kinship::store {
@@ -16,6 +20,21 @@ Statement::Statement(sqlite3& connection, std::string_view sql) : connection_(&c
                          SQLITE_PREPARE_PERSISTENT, &statement, nullptr) != SQLITE_OK)
     throw_sqlite_error(connection, sql);
   statement_.reset(statement);
+  for (int place = 1; place <= sqlite3_bind_parameter_count(statement); ++place)
+    if (const char* const name = sqlite3_bind_parameter_name(statement, place);
+        name != nullptr && name[0] == '$') {
+      const auto number = static_cast<std::size_t>(std::strtoul(name + 1, nullptr, 10));
+      places_.resize(std::max(places_.size(), number + 1));
+      places_[number] = place;
+    }
+}
+
+/// 0, which SQLite refuses, for a number that the statement does not have.
+int Statement::place_of(int index) const noexcept {
+  const auto number = static_cast<std::size_t>(index);
+  if (places_.empty())
+    return index;
+  return number < places_.size() ? places_[number] : 0;
 }
 
 void Statement::check(int code) {
@@ -24,37 +43,44 @@ void Statement::check(int code) {
 }
 
 Statement& Statement::bind(int index, std::int64_t value) {
-  check(sqlite3_bind_int64(statement_.get(), index, value));
+  check(sqlite3_bind_int64(statement_.get(), place_of(index), value));
   return *this;
 }
 
 Statement& Statement::bind(int index, double value) {
-  check(sqlite3_bind_double(statement_.get(), index, value));
+  check(sqlite3_bind_double(statement_.get(), place_of(index), value));
   return *this;
 }
 
 Statement& Statement::bind(int index, std::string_view value) {
   // A null pointer would bind NULL, and the data of an empty view may be one.
   const char* const text = value.empty() ? "" : value.data();
-  check(sqlite3_bind_text64(statement_.get(), index, text, value.size(), SQLITE_TRANSIENT,
+  check(sqlite3_bind_text64(statement_.get(), place_of(index), text, value.size(), SQLITE_TRANSIENT,
                             SQLITE_UTF8));
   return *this;
 }
 
 Statement& Statement::bind(int index, Bytes value) {
-  check(value.empty() ? sqlite3_bind_zeroblob(statement_.get(), index, 0)
-                      : sqlite3_bind_blob64(statement_.get(), index, value.data(), value.size(),
-                                            SQLITE_TRANSIENT));
+  check(value.empty() ? sqlite3_bind_zeroblob(statement_.get(), place_of(index), 0)
+                      : sqlite3_bind_blob64(statement_.get(), place_of(index), value.data(),
+                                            value.size(), SQLITE_TRANSIENT));
   return *this;
 }
 
 Statement& Statement::bind(int index, std::nullopt_t) {
-  check(sqlite3_bind_null(statement_.get(), index));
+  check(sqlite3_bind_null(statement_.get(), place_of(index)));
+  return *this;
+}
+
+Statement& Statement::bind(int index, const Parameter& value) {
+  if (value.is_null())
+    return bind(index, std::nullopt);
+  std::visit([&](const auto& each) { bind(index, each); }, value.value());
   return *this;
 }
 
 Statement& Statement::bind_column(int index, const Statement& row, int column) {
-  check(sqlite3_bind_value(statement_.get(), index,
+  check(sqlite3_bind_value(statement_.get(), place_of(index),
                            sqlite3_column_value(row.statement_.get(), column)));
   return *this;
 }

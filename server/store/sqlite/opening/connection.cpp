@@ -7,6 +7,7 @@
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/tables/settings.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/move_marks.hpp"
 
@@ -28,11 +29,8 @@ void configure_writer(Database& database) {
 
 /// Not half a store, nor one that is elsewhere now.
 void require_not_moving(Database& database, const std::filesystem::path& file) {
-  const auto setting = [&](std::string_view key) {
-    Statement query(database.connection(), "SELECT value FROM setting WHERE key = ?");
-    return query.bind(1, key).step() ? std::string(query.column_text(0)) : "";
-  };
-  refuse_moving_store("store '" + file.string() + "'", setting(kMovingFrom), setting(kMovedTo));
+  refuse_moving_store("store '" + file.string() + "'", read_setting(database, kMovingFrom),
+                      read_setting(database, kMovedTo));
 }
 
 }  // namespace
@@ -57,11 +55,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
     throw Failure(ErrorCode::Storage, "another program reads the store and keeps its WAL");
   check_schema(*database, file, embedded_migrations());
   Transaction probe(*database, Transaction::Kind::Write);
-  Statement(database->connection(),
-            "INSERT INTO setting VALUES ('reopened_ms', ?) "
-            "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
-      .bind(1, std::to_string(now_ms()))
-      .run();
+  write_setting(*database, "reopened_ms", std::to_string(now_ms()));
   Batch batch(*database);
   set_aside(batch, find_damaged_paths(*database, kNewestRowsChecked));
   batch.raise_generations();

@@ -5,6 +5,7 @@
 
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/file_identity.hpp"
+#include "server/store/tables/settings.hpp"
 
 namespace kinship::store {
 namespace {
@@ -14,30 +15,16 @@ constexpr std::string_view kRuns = "runs";
 constexpr std::string_view kKey = "history_key";
 constexpr std::string_view kIdentity = "file_identity";
 
-std::string setting(Database& database, std::string_view name) {
-  const auto query = database.cached("SELECT value FROM setting WHERE key = ?");
-  return query->bind(1, name).step() ? std::string(query->column_text(0)) : "";
-}
-
-void set(Database& database, std::string_view name, std::string_view value) {
-  database
-      .cached(
-          "INSERT INTO setting VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = "
-          "excluded.value")
-      ->bind_all(name, value)
-      .run();
-}
-
 Digest ensure_key(Database& database) {
-  if (const std::optional<Digest> key = Digest::from_hex(setting(database, kKey)))
+  if (const std::optional<Digest> key = Digest::from_hex(read_setting(database, kKey)))
     return *key;
   const Digest key = random_key();
-  set(database, kKey, key.hex());
+  write_setting(database, kKey, key.hex());
   return key;
 }
 
 Uuid ensure_epoch(Database& database, const std::filesystem::path& file) {
-  const std::string text = setting(database, kEpoch);
+  const std::string text = read_setting(database, kEpoch);
   if (text.empty())
     return write_new_epoch(database, file);
   const std::optional<Uuid> epoch = Uuid::parse(text);
@@ -50,9 +37,9 @@ Uuid ensure_epoch(Database& database, const std::filesystem::path& file) {
 
 Uuid write_new_epoch(Database& database, const std::filesystem::path& file) {
   const Uuid epoch = Uuid::random();
-  set(database, kEpoch, epoch.text());
-  set(database, kIdentity, identity_of(file));
-  set(database, kRuns, RunLog(epoch).text());
+  write_setting(database, kEpoch, epoch.text());
+  write_setting(database, kIdentity, identity_of(file));
+  write_setting(database, kRuns, RunLog(epoch).text());
   return epoch;
 }
 
@@ -92,13 +79,13 @@ void History::begin_run(Database& database) {
     next = state_;
   }
   Transaction transaction(database, Transaction::Kind::Write);
-  const bool is_new = setting(database, kEpoch).empty();
+  const bool is_new = read_setting(database, kEpoch).empty();
   const Uuid epoch = ensure_epoch(database, file_);
   next.key = ensure_key(database);
-  std::optional<RunLog> log = RunLog::parse(setting(database, kRuns));
+  std::optional<RunLog> log = RunLog::parse(read_setting(database, kRuns));
   if (!log || log->epoch() != epoch)
     log = RunLog(epoch);
-  const std::string stored_identity = setting(database, kIdentity);
+  const std::string stored_identity = read_setting(database, kIdentity);
   const std::uint64_t position = position_of(database);
   const std::string trouble = is_new ? "" : find_rollback(next, *log, position, stored_identity);
   if (!trouble.empty()) {
@@ -109,7 +96,7 @@ void History::begin_run(Database& database) {
   is_run_written_ = log->is_empty();  // the first one is named before it has written anything
   log->begin(Uuid::random(), position);
   if (is_run_written_)
-    set(database, kRuns, log->text());
+    write_setting(database, kRuns, log->text());
   transaction.commit();
   next.log = std::move(*log);
   next.position = position;
@@ -128,7 +115,7 @@ void History::write_run(Database& database) {
     const std::lock_guard lock(mutex_);
     text = state_.log.text();
   }
-  set(database, kRuns, text);
+  write_setting(database, kRuns, text);
 }
 
 void History::committed(std::uint64_t position) {
@@ -195,7 +182,7 @@ void History::Renewal::apply(Batch& batch) {
   position_ = position_of(database);
   log_.emplace(write_new_epoch(database, history_.file_));
   log_->begin(Uuid::random(), position_);
-  set(database, kRuns, log_->text());
+  write_setting(database, kRuns, log_->text());
 }
 
 void History::Renewal::finish(const Error* error) {

@@ -10,7 +10,7 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
-#include "server/store/sqlite/rows/audit_rows.hpp"
+#include "server/store/tables/audit.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/schema_texts.hpp"

@@ -9,15 +9,6 @@
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
-std::int64_t ensure_task(Database& database, std::string_view task) {
-  {
-    const auto query = database.cached("SELECT id FROM task WHERE name = ?");
-    if (query->bind(1, task).step())
-      return query->column_integer(0);
-  }
-  database.cached("INSERT INTO task (name) VALUES (?)")->bind(1, task).run();
-  return database.last_insert_id();
-}
 
 std::int64_t insert_attempt(Database& database, const NewAttempt& added,
                             std::optional<std::int64_t> scene_id, std::int64_t now_ms) {

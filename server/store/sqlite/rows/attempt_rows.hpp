@@ -10,9 +10,6 @@
 
 namespace kinship::store {
 
-/// The task's internal id; makes the task if it is missing.
-std::int64_t ensure_task(Database& database, std::string_view task);
-
 /// \return the id of the new row.
 std::int64_t insert_attempt(Database& database, const NewAttempt& added,
                             std::optional<std::int64_t> scene_id, std::int64_t now_ms);

@@ -9,7 +9,6 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/pages.hpp"
@@ -132,20 +131,6 @@ std::optional<PathSummary> select_path_summary(Database& database, std::int64_t 
 }
 
 }  // namespace
-
-Page<AuditEntry> page_of_audit(Database& database, std::string_view name, std::string_view cursor,
-                               std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  const auto query = database.cached(
-      "SELECT " + std::string(kAuditColumns) + "FROM audit WHERE id < ?1 " +
-      std::string(name.empty() ? "" : "AND name = ?3 ") + "ORDER BY id DESC LIMIT ?2");
-  query->bind_all(parse_falling_cursor(cursor), rows + 1);
-  if (!name.empty())
-    query->bind(3, name);
-  return read_page<AuditEntry>(*query, rows, read_audit_entry<Statement>, [](const Statement& row) {
-    return std::to_string(row.column_integer(0));
-  });
-}
 
 Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);

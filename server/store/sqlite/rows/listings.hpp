@@ -29,10 +29,6 @@ Page<DistributionSummary> page_of_distributions(Database& database,
                                                 std::string_view task, std::string_view cursor,
                                                 std::size_t limit);
 
-/// The newest first. \param name  of this name alone; empty: all.
-Page<AuditEntry> page_of_audit(Database& database, std::string_view name, std::string_view cursor,
-                               std::size_t limit);
-
 /// Fills the counts, the schema version and the size; adds what is set aside to the message.
 void count_rows(Database& database, StoreStatus& status);
 

@@ -7,6 +7,7 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/tasks.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
 

@@ -12,6 +12,8 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 
@@ -92,7 +94,7 @@ std::vector<PathRow> select_rows(Database& database, const TaskReset& reset) {
 
 }  // namespace
 
-Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid) {
+Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid, const AuditEntry* audit) {
   Database& database = batch.database();
   const ReportRows report = find_report(database, report_uuid);
   if (!report.row && report.damaged.empty())
@@ -109,6 +111,7 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid) {
                           : ": this report brought no path")};
   Retirement retired;
   retired.task = attempt.attempt.task;
+  const std::int64_t before = audit == nullptr ? 0 : count_paths_of(database, retired.task);
   const ExperienceKey key{attempt.task_id, attempt.robot_id};
   const std::int64_t id =
       row_in_use(database, AsideKind::Path, *attempt.path_id).value_or(*attempt.path_id);
@@ -116,6 +119,9 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid) {
   if (!(aside && aside->retired) && !is_retired(database, key, id))
     retire(batch, {id, key, attempt.attempt.robot}, retired);
   note_retired_report(database, report_uuid);
+  if (audit != nullptr)
+    note_act(database, audit, AuditOutcome::Done, describe_paths(retired.task, before),
+             in_number(count_paths_of(database, retired.task), "path"));
   return retired;
 }
 
@@ -125,7 +131,7 @@ std::vector<Retirement> retire_reports(Batch& batch, std::span<const Uuid> repor
     if (!note_retired_report(batch.database(), report))
       continue;
     // What is not here, has no path or cannot be read is remembered by its UUID alone.
-    const Result<Retirement> one = retire_path(batch, report);
+    const Result<Retirement> one = retire_path(batch, report, nullptr);
     if (!one || one->paths == 0)
       continue;
     Retirement& of_task = retired[one->task];
@@ -141,18 +147,27 @@ std::vector<Retirement> retire_reports(Batch& batch, std::span<const Uuid> repor
   return by_task;
 }
 
-Result<TaskReset> begin_reset(Database& database, std::string_view task) {
+Result<TaskReset> begin_reset(Database& database, std::string_view task, const AuditEntry* audit) {
   const auto query = database.cached(
       "SELECT id, (SELECT coalesce(max(id), 0) FROM path) FROM task WHERE name = ?");
   if (!query->bind(1, task).step())
     return Error{ErrorCode::NotFound, "task '" + std::string(task) + "': no such task"};
+  if (audit != nullptr)
+    note_act(database, audit, AuditOutcome::Begun,
+             describe_paths(task, count_paths_of(database, task)));
   return TaskReset{query->column_integer(0), query->column_integer(1)};
 }
 
-bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired) {
-  const std::vector<PathRow> paths = select_rows(batch.database(), reset);
+bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired,
+                    const AuditEntry* audit) {
+  Database& database = batch.database();
+  const std::vector<PathRow> paths = select_rows(database, reset);
   for (const PathRow& path : paths)
     retire(batch, path, retired);
+  if (paths.empty() && audit != nullptr)
+    note_act(database, audit, AuditOutcome::Done, {},
+             describe_paths(retired.task, count_paths_of(database, retired.task)) + ", " +
+                 std::to_string(retired.paths) + " retired");
   return !paths.empty();
 }
 

@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
-#include "server/store/sqlite/rows/robot_rows.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/robots.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/robot_rest.hpp"
@@ -69,13 +71,19 @@ bool retire_step(Batch& batch, const Digest& robot, RemovedRobot& removed) {
 
 }  // namespace
 
-Result<bool> continue_removal(Batch& batch, const Digest& robot, RemovedRobot& removed) {
+Result<bool> continue_removal(Batch& batch, const Digest& robot, RemovedRobot& removed,
+                              const AuditEntry* audit) {
   Database& database = batch.database();
   const std::optional<RobotRecord> record = select_robot(database, robot);
   if (!record)
     return Error{ErrorCode::NotFound, "robot " + robot.short_hex() + " is not registered"};
-  if (!retire_step(batch, robot, removed))
+  const bool is_first = removed.removal.paths == 0;
+  const std::string before = audit == nullptr ? "" : describe_robot(database, robot);
+  if (!retire_step(batch, robot, removed)) {
+    if (is_first)
+      note_act(database, audit, AuditOutcome::Begun, before);
     return false;
+  }
   const std::int64_t id = row_of(database, robot);
   RobotRest rest = select_rest(database, id);
   for (const Digest& distribution : rest.distributions)
@@ -87,6 +95,7 @@ Result<bool> continue_removal(Batch& batch, const Digest& robot, RemovedRobot& r
            !relabelled)
     return relabelled.error();
   complete_removal(removed, *record, std::move(rest), is_deleted);
+  note_act(database, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
   return true;
 }
 

@@ -19,9 +19,10 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 #include "server/store/sqlite/upkeep/store_repair.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store {
@@ -63,6 +64,33 @@ std::vector<fs::path> replaced_stores(const fs::path& file) {
   return found;
 }
 
+/// What a restore replaces need not be a store.
+bool has_audit(Database& database) {
+  return database.integer("SELECT count(*) FROM sqlite_master WHERE name = 'audit'") > 0;
+}
+
+/// Adds the entries that the log of `other` has and that of `database` has not, in their order,
+/// with the times that they have. Of what is no store none.
+void copy_missing_audit(Database& database, Database& other) {
+  if (!has_audit(other))
+    return;
+  const std::string columns =
+      "time_ms, name, role, client, is_local, verb, target, outcome, was, became, message";
+  constexpr int kColumns = 11;
+  const auto insert =
+      database.cached("INSERT INTO audit (" + columns +
+                      ") SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11 "
+                      "WHERE NOT EXISTS (SELECT 1 FROM audit WHERE id = ?12 AND (" +
+                      columns + ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11))");
+  Statement rows(other.connection(), "SELECT " + columns + ", id FROM audit ORDER BY id");
+  while (rows.step()) {
+    for (int column = 0; column <= kColumns; ++column)
+      insert->bind_column(column + 1, rows, column);
+    insert->run();
+    insert->reset();
+  }
+}
+
 }  // namespace
 
 Restoration::Restoration(fs::path backup, fs::path file)
@@ -95,7 +123,8 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
                       named + std::to_string(check.problems) +
                           " problems, nothing was restored; the first: " + check.messages.front());
       keep_audit_of_old(database);
-      note_maintenance(database, "restore", backup_, "", "epoch " + epoch_.text());
+      insert_audit(database,
+                   entry_of_maintenance("restore", backup_.string(), "", "epoch " + epoch_.text()));
     }
     files::sync_file(copy_);
   } catch (const SqliteError& error) {
@@ -135,9 +164,10 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     repaired.damaged_pages = salvaged.damaged_pages;
     repaired.lost = std::move(salvaged.lost);
     epoch_ = write_new_epoch(*target, copy_);
-    note_maintenance(*target, "repair", file_, "",
-                     "epoch " + epoch_.text() + ", " + std::to_string(repaired.damaged_pages) +
-                         " damaged pages were left behind");
+    insert_audit(*target, entry_of_maintenance("repair", file_.string(), "",
+                                               "epoch " + epoch_.text() + ", " +
+                                                   std::to_string(repaired.damaged_pages) +
+                                                   " damaged pages were left behind"));
     repaired.check = check_database(
         *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
   }

@@ -11,10 +11,10 @@
 #include "server/store/sqlite/database/page_scan.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 

@@ -48,6 +48,20 @@ TEST_F(DatabaseTest, EmptyTextAndBlobAreNotNull) {
   EXPECT_FALSE(query->column_is_null(0) || query->column_is_null(1));
 }
 
+TEST_F(DatabaseTest, ParametersOfASessionGoByTheirNumbers) {
+  Session& session = database_;
+  EXPECT_EQ(session.find_integer("SELECT $2 - $1 * $2", 3, 5), -10);
+  EXPECT_EQ(session.find_integer("SELECT $1 WHERE $2", 1, false), std::nullopt);
+  session.query("INSERT INTO t (s, i, b) VALUES ($2, $1, $3)", std::int64_t{7}, "seven",
+                std::optional<Bytes>());
+  for (const Row& row : session.query("SELECT i, s, b FROM t")) {
+    EXPECT_EQ(row.column_integer(0), 7);
+    EXPECT_EQ(row.column_text(1), "seven");
+    EXPECT_TRUE(row.column_is_null(2));
+  }
+  EXPECT_THROW(session.query("SELECT $1", 1, 2), SqliteError);
+}
+
 TEST_F(DatabaseTest, TellsARowsErrorFromOneOfTheDatabase) {
   insert(1);
   try {

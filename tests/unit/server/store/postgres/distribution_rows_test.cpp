@@ -1,4 +1,4 @@
-#include "server/store/postgres/rows/distribution_rows.hpp"
+#include "server/store/tables/distributions.hpp"
 
 #include <mutex>
 #include <set>
