@@ -48,9 +48,9 @@ FileError::FileError(fs::path file, Step step, int reason)
 
 std::string FileError::reason_text() const { return std::generic_category().message(reason_); }
 
-File::File(const fs::path& path, int flags, mode_t mode, fs::path named)
+File::File(const fs::path& path, int flags, mode_t mode, const fs::path& named)
     : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, mode)),
-      named_(named.empty() ? path : std::move(named)) {
+      named_(named.empty() ? path : named) {
   if (descriptor_ < 0)
     fail((flags & O_EXCL) != 0 ? Step::Make : Step::Open);
 }

@@ -40,7 +40,7 @@ class File {
   /// \param mode   of a file that is made, as far as the umask lets it.
   /// \param named  in messages, instead of `path`.
   explicit File(const std::filesystem::path& path, int flags, mode_t mode = 0,
-                std::filesystem::path named = {});
+                const std::filesystem::path& named = {});
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
   File(const File&) = delete;

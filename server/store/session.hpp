@@ -56,6 +56,8 @@ class Parameter {
 /// Texts and bytes are valid until the next row.
 class Row {
  public:
+  virtual ~Row() = default;
+
   virtual bool next() = 0;  ///< false: there is none
 
   virtual std::int64_t column_integer(int column) const = 0;  ///< booleans too
@@ -63,9 +65,6 @@ class Row {
   virtual std::string_view column_text(int column) const = 0;
   virtual Bytes column_blob(int column) const = 0;
   virtual bool column_is_null(int column) const = 0;
-
- protected:
-  ~Row() = default;
 
  private:
   friend class Rows;

@@ -13,7 +13,7 @@ inline constexpr const char* kCompanions[] = {"-wal", "-shm", "-journal"};
 
 /// A database that is written as a file of another name until it is complete, for its owner alone.
 inline constexpr files::NewFileOptions kNewDatabase{
-    .magic = std::string_view("SQLite format 3", 16), .sidecars = kCompanions};
+    .magic = std::string_view("SQLite format 3\0", 16), .sidecars = kCompanions};
 
 /// Where the store is, as one absolute name: links are followed, so that one file has one lock.
 /// Parents are made for the owner alone; nothing else is written.

@@ -68,11 +68,13 @@ TEST_F(LockFiles, AnotherProcessHoldsItUntilItIsKilled) {
 }
 
 TEST_F(LockFiles, OneOwnerHasItAtATimeInAProcessToo) {
-  auto lock = LockFile::try_acquire(file_);
-  ASSERT_TRUE(lock);
-  EXPECT_FALSE(LockFile::try_acquire(file_));
-  LockFile moved = *std::move(lock);
-  lock.reset();
+  std::optional<LockFile> moved;
+  {
+    auto lock = LockFile::try_acquire(file_);
+    ASSERT_TRUE(lock);
+    EXPECT_FALSE(LockFile::try_acquire(file_));
+    moved = *std::move(lock);
+  }
   EXPECT_FALSE(LockFile::try_acquire(file_)) << "the lock moves with its object";
   moved = LockFile::acquire(directory_ / "other");
   EXPECT_TRUE(LockFile::try_acquire(file_));
