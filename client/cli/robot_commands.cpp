@@ -194,11 +194,11 @@ void warn_without_transfer(const char* command, const models::RobotArguments& ar
 /// for then all others are.
 void warn_of_touching(const char* command, const collision::RobotSolids& solids,
                       std::ostream& err) {
-  constexpr collision::TouchSamples kSamples{200, 190};
   const kinematics::Chain& chain = solids.parts().chain;
   if (const std::string touching = collision::describe_always_touching(solids); !touching.empty())
     err << command << ": warning: " << touching << '\n';
-  for (const auto& [a, b] : collision::links_always_touching(solids.parts(), kSamples))
+  for (const auto& [a, b] :
+       collision::links_always_touching(solids.parts(), collision::kLinkSamples))
     err << command << ": '" << chain.links()[static_cast<std::size_t>(a)].name << "' and '"
         << chain.links()[static_cast<std::size_t>(b)].name
         << "' touch in nearly every configuration and are checked, so nothing can be planned: "

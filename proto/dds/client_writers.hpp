@@ -75,7 +75,7 @@ class ClientWriters {
   Handle topic_;
   std::string name_;
   Qos qos_;
-  MatchedReaders* matched_readers_;  // null: nobody asks
+  MatchedReaders* matched_readers_;  // null: the writers are made without it
   OnNew on_new_;
   Entity readers_;                 // reader of what DDS knows of readers
   std::set<std::string> unknown_;  // who has a reader and is not let in; of the loop's thread

@@ -15,6 +15,9 @@ struct TouchSamples {
   int least = 0;
 };
 
+/// By these samples a robot's links are left out of its checks where no pairs are named.
+inline constexpr TouchSamples kLinkSamples{.count = 200, .least = 190};
+
 /// The links of a robot that touch wherever it goes: in at least samples.least of samples.count
 /// random configurations within the limits. Seeded: equal input, equal answers.
 /// \param robot  its unchecked pairs of links are left out.

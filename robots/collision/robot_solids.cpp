@@ -5,17 +5,11 @@
 #include "robots/collision/always_touching.hpp"
 
 namespace kinship::collision {
-namespace {
-
-constexpr TouchSamples kTouchSamples{.count = 200, .least = 190};
-
-}  // namespace
-
 RobotSolids::RobotSolids(const kinematics::Chain& chain, const geometry::RobotShapes& shapes) {
   Parts parts{chain, link_bodies(chain, shapes), {}, {}};
   parts.unchecked = unchecked_links(parts.bodies, chain, shapes);
   if (shapes.never_colliding.empty())
-    parts.always_touching = links_always_touching(parts, kTouchSamples);
+    parts.always_touching = links_always_touching(parts, kLinkSamples);
   parts.unchecked.insert(parts.always_touching.begin(), parts.always_touching.end());
   parts_ = std::make_shared<const Parts>(std::move(parts));
 }

@@ -13,7 +13,7 @@ namespace kinship::store {
 /// Empty if there is none.
 std::string read_setting(Session& session, std::string_view key);
 
-/// Makes or changes a setting; nothing deletes it.
+/// Makes or changes a setting; without a value, deletes it.
 void write_setting(Session& session, std::string_view key, const std::optional<std::string>& value);
 
 /// Notes by name, those whose names begin with `prefix`.
