@@ -5,6 +5,7 @@
 #include "robots/collision/always_touching.hpp"
 
 namespace kinship::collision {
+
 RobotSolids::RobotSolids(const kinematics::Chain& chain, const geometry::RobotShapes& shapes) {
   Parts parts{chain, link_bodies(chain, shapes), {}, {}};
   parts.unchecked = unchecked_links(parts.bodies, chain, shapes);
