@@ -6,7 +6,7 @@
 //   overtake N REVISION   the same; when somebody is told of it, its next revision is published at
 //                         once, by another thread, and has been before that goes on
 //   withdraw N
-//   event TEXT
+//   event TEXT   unless it is the one before: then this is a resend
 //   flood COUNT           as many announcements, of ids of their own, and events; answers with the
 //                         number of times that took 90 ms or more
 //   churn COUNT           announces and withdraws as many distributions
@@ -19,6 +19,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "proto/dds/publication.hpp"
 #include "proto/dds/replier.hpp"
@@ -74,8 +75,10 @@ class Server {
     std::uint64_t revision = 0;
     words >> verb;
     if (verb == "event") {
-      std::getline(words >> std::ws, event_.text);
-      events_.publish(event_);
+      std::string text;
+      std::getline(words >> std::ws, text);
+      if (std::exchange(event_.text, text) != text)
+        events_.publish(event_);
       return "done";
     }
     words >> number >> revision;
