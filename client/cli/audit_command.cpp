@@ -51,7 +51,7 @@ int for_each_entry(link::Client& server, const AuditOptions& options, std::ostre
   const auto error = link::for_each_row(
       server, request,
       [&](const std::string& row) {
-        const Result<AuditEntry> entry = json::audit_entry_from_json(row);
+        const Result<AuditEntry> entry = json::row_from_json<AuditEntry>(row);
         if (!entry)
           unreadable = entry.error().message;
         if (entry && selection.takes(*entry))

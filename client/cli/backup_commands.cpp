@@ -9,53 +9,23 @@
 #include "client/link/admin_rows.hpp"
 #include "client/link/backup_download.hpp"
 #include "proto/json/admin_rows_json.hpp"
-#include "proto/tables/table.hpp"
-#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
-
-using tables::Fit;
-using tables::Table;
 
 int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
             std::ostream& err) {
   constexpr const char* kCommand = "backup";
-  AdminRequest request;
-  request.verb = AdminVerb::Backup;
-  request.argument = options.name;
+  const AdminRequest request{.verb = AdminVerb::Backup, .argument = options.name};
   if (options.wait)
     return run_job(server, request, options.waiting, kCommand, err, [&](const Job& job) {
       print(job, options.json, out);
       return kDone;
     });
-  const Result<Job> job = link::job_of(server, request);
+  const Result<Job> job = link::row_of<Job>(server, request);
   if (!job)
     return refuse(kCommand, job.error(), err);
   print(*job, options.json, out);
   return kDone;
-}
-
-int list_backups(link::Client& server, const ListOptions& options, std::ostream& out,
-                 std::ostream& err) {
-  constexpr const char* kCommand = "backup list";
-  if (options.json)
-    return print_rows_as_json(server, AdminVerb::ListBackups, options, kCommand, out, err);
-  Table table({"NAME", "SIZE", "AGE", {"WRITTEN", Fit::Wide}});
-  int broken = kDone;
-  const int code = for_each_row(
-      server, AdminVerb::ListBackups, options, kCommand, err, [&](const std::string& row) {
-        const Result<BackupSummary> backup = json::backup_summary_from_json(row);
-        if (!backup) {
-          broken = refuse(kCommand, backup.error(), err);
-          return false;
-        }
-        table.add_row({backup->name, size_text(backup->bytes),
-                       age_text(backup->modified_ms, now_ms()), time_text(backup->modified_ms)});
-        return true;
-      });
-  if (code == kDone && broken == kDone)
-    table.print(out);
-  return code == kDone ? broken : code;
 }
 
 int download_backup(link::Client& server, const DownloadOptions& options, std::ostream& out,

@@ -5,7 +5,6 @@
 #include <iosfwd>
 #include <string>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/job_commands.hpp"
 #include "client/link/client.hpp"
 
@@ -22,9 +21,6 @@ struct BackupOptions {
 /// `backup`: copies the store into a new file at the server.
 int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
             std::ostream& err);
-
-int list_backups(link::Client& server, const ListOptions& options, std::ostream& out,
-                 std::ostream& err);
 
 struct DownloadOptions {
   std::string name;

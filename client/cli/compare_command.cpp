@@ -9,10 +9,11 @@
 #include "client/cli/cell_text.hpp"
 #include "client/cli/page_file.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/link/admin_rows.hpp"
 #include "client/link/robot_names.hpp"
 #include "client/plots/plot_pages.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/robot_answers_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/tables/table.hpp"
 #include "proto/types/task_experience.hpp"
 #include "robots/models/robot_arguments.hpp"
@@ -65,7 +66,7 @@ Placement reported_placement(link::Client& server, const std::string& task,
   options.task = task;
   options.robot = robot;
   for_each_row(server, AdminVerb::ListPaths, options, kCompare, err, [&](const std::string& row) {
-    const auto path = json::path_summary_from_json(row);
+    const auto path = json::row_from_json<PathSummary>(row);
     if (path && path->received_ms > newest_ms) {
       newest_ms = path->received_ms;
       placement = {true, path->T_task_base};
@@ -90,7 +91,7 @@ std::vector<Target> find_targets(link::Client& server, const CompareOptions& opt
   if (options.targets.empty())
     code =
         for_each_row(server, AdminVerb::ListRobots, {}, kCompare, err, [&](const std::string& row) {
-          if (const auto robot = json::robot_summary_from_json(row))
+          if (const auto robot = json::row_from_json<RobotSummary>(row))
             robots.emplace_back(robot->robot, robot->label);
           return true;
         });
@@ -206,11 +207,8 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
   std::optional<PageFile> page;  // refuses before the server has worked for it
   if (!options.output.empty())
     page.emplace(options.output, out);
-  int code = kDone;
-  const auto rows = show_rows(server, AdminVerb::ShowTask, options.task, kCompare, err, code);
-  if (rows.empty())
-    return code;
-  const auto task = json::task_summary_from_json(rows.front());
+  const auto task =
+      link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = options.task});
   if (!task)
     return refuse(kCompare, task.error(), err);
   std::vector<TaskRobotSummary> sources;
@@ -220,6 +218,7 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
     err << kCompare << ": no robot has paths of task '" << options.task << "'\n";
     return kNotFound;
   }
+  int code = kDone;
   const auto targets = find_targets(server, options, *placements, err, code);
   if (code != kDone)
     return code;

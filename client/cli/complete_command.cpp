@@ -6,7 +6,6 @@
 
 #include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
 
@@ -30,17 +29,18 @@ std::function<std::string(const std::string& row)> word_of(Parse parse, Word wor
 std::map<std::string, Candidates> all_candidates() {
   return {
       {"ROBOT",
-       {AdminVerb::ListRobots, word_of(json::robot_summary_from_json, &RobotSummary::label)}},
-      {"TASK", {AdminVerb::ListTasks, word_of(json::task_summary_from_json, &TaskSummary::task)}},
+       {AdminVerb::ListRobots, word_of(json::row_from_json<RobotSummary>, &RobotSummary::label)}},
+      {"TASK",
+       {AdminVerb::ListTasks, word_of(json::row_from_json<TaskSummary>, &TaskSummary::task)}},
       {"DISTRIBUTION",
        {AdminVerb::ListDistributions,
-        word_of(json::distribution_summary_from_json,
+        word_of(json::row_from_json<DistributionSummary>,
                 [](const DistributionSummary& row) { return row.id.short_hex(); })}},
       {"PATH",
        {AdminVerb::ListPaths,
-        word_of(json::path_summary_from_json,
+        word_of(json::row_from_json<PathSummary>,
                 [](const PathSummary& row) { return row.report_uuid.text(); })}},
-      {"JOB", {AdminVerb::ListJobs, word_of(json::job_from_json, &Job::id)}},
+      {"JOB", {AdminVerb::ListJobs, word_of(json::row_from_json<Job>, &Job::id)}},
   };
 }
 

@@ -12,6 +12,7 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/rehearsal_text.hpp"
+#include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
@@ -252,17 +253,14 @@ int explain_distribution(link::Client& server, const DistributionQuery& query, b
   const std::string id = id_of_query(server, query, kCommand, true, err, code);
   if (code != kDone)
     return code;
-  const auto rows = show_rows(server, AdminVerb::ExplainDistribution, id, kCommand, err, code);
-  if (code != kDone)
-    return code;
-  if (json) {
-    out << rows.front() << '\n';
-    return kDone;
-  }
-  const auto explanation = json::explanation_from_json(rows.front());
+  const auto explanation =
+      link::row_of<Explanation>(server, {.verb = AdminVerb::ExplainDistribution, .argument = id});
   if (!explanation)
-    return refuse(kCommand, {ErrorCode::Internal, explanation.error().message}, err);
-  print_explanation(*explanation, out);
+    return refuse(kCommand, explanation.error(), err);
+  if (json)
+    out << json::to_json(*explanation) << '\n';
+  else
+    print_explanation(*explanation, out);
   return kDone;
 }
 

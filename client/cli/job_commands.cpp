@@ -66,10 +66,7 @@ int wait_for_job(link::Client& server, const std::string& id, const WaitOptions&
 
 int cancel_job(link::Client& server, const std::string& id, bool json, std::ostream& out,
                std::ostream& err) {
-  AdminRequest request;
-  request.verb = AdminVerb::CancelJob;
-  request.argument = id;
-  const Result<Job> job = link::job_of(server, request);
+  const Result<Job> job = link::row_of<Job>(server, {.verb = AdminVerb::CancelJob, .argument = id});
   if (!job)
     return refuse("jobs cancel", job.error(), err);
   if (job->state == JobState::Done || job->state == JobState::Failed)
@@ -81,7 +78,7 @@ int cancel_job(link::Client& server, const std::string& id, bool json, std::ostr
 int run_job(link::Client& server, const AdminRequest& begin, const WaitOptions& options,
             std::string_view command, std::ostream& err,
             const std::function<int(const Job&)>& done) {
-  const Result<Job> begun = link::job_of(server, begin);
+  const Result<Job> begun = link::row_of<Job>(server, begin);
   if (!begun)
     return refuse(command, begun.error(), err);
   int code = kDone;

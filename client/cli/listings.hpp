@@ -22,6 +22,11 @@ int list_distributions(link::Client& server, const ListOptions& options, std::os
                        std::ostream& err);
 int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
               std::ostream& err);
+int list_backups(link::Client& server, const ListOptions& options, std::ostream& out,
+                 std::ostream& err);
+/// `status --clients`: the use that each client makes of the server, the busiest first.
+int list_clients(link::Client& server, const ListOptions& options, std::ostream& out,
+                 std::ostream& err);
 
 /// \param name  a label, or the beginning of a digest.
 int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,

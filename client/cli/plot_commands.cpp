@@ -10,9 +10,9 @@
 #include "client/cli/page_file.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/plots/plot_pages.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::cli {
@@ -93,9 +93,9 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
   std::vector<AttemptSummary> attempts;
   std::vector<DistributionSummary> distributions;
   const TaskRows of{server, task, options.progress, err};
-  int code = read_rows(of, AdminVerb::ListAttempts, json::attempt_summary_from_json, attempts);
+  int code = read_rows(of, AdminVerb::ListAttempts, json::row_from_json<AttemptSummary>, attempts);
   if (code == kDone)
-    code = read_rows(of, AdminVerb::ListDistributions, json::distribution_summary_from_json,
+    code = read_rows(of, AdminVerb::ListDistributions, json::row_from_json<DistributionSummary>,
                      distributions);
   if (code != kDone)
     return code;

@@ -5,8 +5,7 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
-#include "proto/json/admin_rows_json.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "client/link/admin_rows.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -17,18 +16,12 @@ constexpr const char* kNothingToRetire = "nothing to do: retired already\n";
 int retire(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
            std::ostream& out, std::ostream& err) {
   const std::string_view command = verb == AdminVerb::RetirePath ? kRetirePath : kResetTask;
-  int code = kDone;
-  const auto rows = show_rows(server, verb, argument, command, err, code);
-  if (code != kDone)
-    return code;
-  if (json) {
-    out << rows.front() << '\n';
-    return kDone;
-  }
-  const auto retirement = json::retirement_from_json(rows.front());
+  const auto retirement = link::row_of<Retirement>(server, {.verb = verb, .argument = argument});
   if (!retirement)
-    return refuse(command, {ErrorCode::Internal, retirement.error().message}, err);
-  if (retirement->paths == 0)
+    return refuse(command, retirement.error(), err);
+  if (json)
+    out << json::to_json(*retirement) << '\n';
+  else if (retirement->paths == 0)
     out << kNothingToRetire;
   else
     out << count_text(retirement->paths, "path") << " of task '" << retirement->task
@@ -48,13 +41,10 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
                std::ostream& out, std::ostream& err) {
   if (confirmed)
     return retire(server, AdminVerb::ResetTask, task, json, out, err);
-  int code = kDone;
-  const auto rows = show_rows(server, AdminVerb::ShowTask, task, kResetTask, err, code);
-  if (code != kDone)
-    return code;
-  const auto summary = json::task_summary_from_json(rows.front());
+  const auto summary =
+      link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = task});
   if (!summary)
-    return refuse(kResetTask, {ErrorCode::Internal, summary.error().message}, err);
+    return refuse(kResetTask, summary.error(), err);
   if (summary->paths == 0) {
     out << (json ? json::to_json(Retirement{summary->task, 0, {}}) + "\n" : kNothingToRetire);
     return kDone;
@@ -71,17 +61,15 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
 int evict_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
                        std::ostream& err) {
   constexpr const char* kCommand = "distributions evict";
-  int code = kDone;
-  const auto rows = show_rows(server, AdminVerb::EvictDistribution, id, kCommand, err, code);
-  if (code != kDone)
-    return code;
-  const auto evicted = json::eviction_from_json(rows.front());
+  const auto evicted =
+      link::row_of<Eviction>(server, {.verb = AdminVerb::EvictDistribution, .argument = id});
   if (!evicted)
-    return refuse(kCommand, {ErrorCode::Internal, evicted.error().message}, err);
+    return refuse(kCommand, evicted.error(), err);
   if (json)
-    out << rows.front() << '\n';
+    out << json::to_json(*evicted) << '\n';
   else
-    out << "distribution " << evicted->short_hex() << " evicted; the next fetch has it made anew\n";
+    out << "distribution " << evicted->id.short_hex()
+        << " evicted; the next fetch has it made anew\n";
   return kDone;
 }
 

@@ -7,7 +7,6 @@
 #include "client/link/robot_names.hpp"
 #include "client/link/robot_upkeep.hpp"
 #include "proto/json/admin_rows_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/names.hpp"
 
 namespace kinship::cli {

@@ -4,7 +4,6 @@
 #include "client/arguments/selection_arguments.hpp"
 #include "client/cli/audit_command.hpp"
 #include "client/cli/backup_commands.hpp"
-#include "client/cli/client_listing.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/watch_command.hpp"

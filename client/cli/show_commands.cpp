@@ -7,10 +7,10 @@
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/scene_text.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/time_text.hpp"
@@ -199,7 +199,7 @@ void print_status(const ServerStatus& status, std::ostream& out) {
 
 int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err) {
   return show(server, {AdminVerb::Status, "", "status", json}, out, err,
-              json::server_status_from_json,
+              json::row_from_json<ServerStatus>,
               [&](const ServerStatus& status) { print_status(status, out); });
 }
 
@@ -219,7 +219,7 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
     out << "{\"robot\":" << rows[0] << ",\n\"description\":" << rows[1] << "}\n";
     return kDone;
   }
-  const auto robot = json::robot_summary_from_json(rows[0]);
+  const auto robot = json::row_from_json<RobotSummary>(rows[0]);
   const auto description = json::robot_description_from_json(rows[1]);
   if (!robot || !description) {
     err << kCommand << ": cannot read the server's rows: "
@@ -233,7 +233,7 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
 int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,
               std::ostream& err) {
   return show(server, {AdminVerb::ShowTask, task, "tasks show", json}, out, err,
-              json::task_summary_from_json,
+              json::row_from_json<TaskSummary>,
               [&](const TaskSummary& summary) { print_task(summary, out); });
 }
 

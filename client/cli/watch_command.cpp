@@ -14,9 +14,10 @@
 #include "client/cli/cell_text.hpp"
 #include "client/cli/server_rates.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/link/admin_rows.hpp"
 #include "client/link/robot_names.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/event_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/time_text.hpp"
@@ -168,14 +169,11 @@ class Watch {
   }
 
   void read_rates() {
-    int code = kDone;
-    std::ostringstream unsaid;  // that it goes is said when it has gone
-    const auto rows = show_rows(server_, AdminVerb::Status, "", "watch", unsaid, code);
-    const auto status =
-        rows.empty() ? std::nullopt : std::optional(json::server_status_from_json(rows.front()));
-    if (!status || !*status)
+    // That the server goes is said when it has gone.
+    const auto status = link::row_of<ServerStatus>(server_, {.verb = AdminVerb::Status});
+    if (!status)
       return;
-    rates_.add(**status, std::chrono::steady_clock::now());
+    rates_.add(*status, std::chrono::steady_clock::now());
     constexpr int kGuidanceEvery = 5;  // ticks: it changes with reports alone, and is asked of all
     if (readings_++ % kGuidanceEvery == 0)
       read_guidance();
@@ -190,7 +188,7 @@ class Watch {
     std::vector<std::string> changed;
     const RobotNames wanted = robot();
     for_each_row(server_, AdminVerb::ListTasks, {}, "watch", unsaid, [&](const std::string& row) {
-      const auto task = json::task_summary_from_json(row);
+      const auto task = json::row_from_json<TaskSummary>(row);
       if (!task || (!options_.task.empty() && task->task != options_.task))
         return true;
       for (const TaskRobotSummary& robot : task->robots) {

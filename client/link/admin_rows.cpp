@@ -84,17 +84,34 @@ Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& req
   return rows;
 }
 
-Result<Job> job_of(Client& server, const AdminRequest& request) {
-  const Result<std::vector<std::string>> rows = rows_of(server, request);
+Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
+  Result<std::vector<std::string>> rows = rows_of(server, request);
   if (!rows)
     return rows.error();
   if (rows->empty())
-    return Error{ErrorCode::Internal, "the server said nothing of the job"};
-  Result<Job> job = json::job_from_json(rows->front());
-  if (!job)
-    return Error{ErrorCode::Internal, "cannot read the server's row: " + job.error().message};
-  return job;
+    return Error{ErrorCode::Internal, "the server answered without a row"};
+  return std::move(rows->front());
 }
+
+template <typename Row>
+Result<Row> row_of(Client& server, const AdminRequest& request) {
+  const Result<std::string> text = first_row_of(server, request);
+  if (!text)
+    return text.error();
+  Result<Row> row = json::row_from_json<Row>(*text);
+  if (!row)
+    return Error{ErrorCode::Internal, "cannot read the server's row: " + row.error().message};
+  return row;
+}
+
+template Result<Eviction> row_of(Client& server, const AdminRequest& request);
+template Result<Explanation> row_of(Client& server, const AdminRequest& request);
+template Result<Job> row_of(Client& server, const AdminRequest& request);
+template Result<Retirement> row_of(Client& server, const AdminRequest& request);
+template Result<RobotRemoval> row_of(Client& server, const AdminRequest& request);
+template Result<RobotSummary> row_of(Client& server, const AdminRequest& request);
+template Result<ServerStatus> row_of(Client& server, const AdminRequest& request);
+template Result<TaskSummary> row_of(Client& server, const AdminRequest& request);
 
 Result<Job> wait_for_job(Client& server, const std::string& id, Clock::time_point deadline,
                          const std::function<void(const Job&)>& on_progress) {
@@ -104,7 +121,7 @@ Result<Job> wait_for_job(Client& server, const std::string& id, Clock::time_poin
   while (true) {
     const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
     request.deadline = std::clamp(left, milliseconds(0), kProgressInterval);
-    Result<Job> job = job_of(server, request);
+    Result<Job> job = row_of<Job>(server, request);
     if (job && on_progress)
       on_progress(*job);
     if (!job || has_ended(*job) || Clock::now() >= deadline)

@@ -28,8 +28,13 @@ std::optional<Error> for_each_row(Client& server, AdminRequest request,
 /// All rows at once, for verbs that answer with few.
 Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& request);
 
-/// The job that a verb began, or is about.
-Result<Job> job_of(Client& server, const AdminRequest& request);
+/// The first row, for verbs that answer with one. \return Internal if there is none.
+Result<std::string> first_row_of(Client& server, const AdminRequest& request);
+
+/// The same, as a value: the job that a verb began, say. \return Internal if it cannot be read.
+/// \param Row  a row of proto/json/admin_rows_json.hpp that the source instantiates.
+template <typename Row>
+Result<Row> row_of(Client& server, const AdminRequest& request);
 
 /// Waits until a job has ended or the time has come.
 /// \param on_progress  called every second or so with what is known of it; may be empty.

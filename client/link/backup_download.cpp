@@ -95,7 +95,7 @@ class Downloader {
     AdminRequest request;
     request.verb = AdminVerb::HashBackup;
     request.argument = download_.name;
-    Result<Job> job = job_of(server_, request);
+    Result<Job> job = row_of<Job>(server_, request);
     if (!job)
       return job.error();
     const std::string id = job->id;

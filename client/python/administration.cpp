@@ -63,7 +63,7 @@ py::object backup(const ClientHandle& client, const std::string& name, double de
   const auto until = std::chrono::steady_clock::now() + to_milliseconds(deadline, "deadline");
   Job job = client
                 .wait_for<Result<Job>>([request = std::move(request)](link::Client& line) {
-                  return link::job_of(line, request);
+                  return link::row_of<Job>(line, request);
                 })
                 .value_or_throw();
   while (!link::has_ended(job) && std::chrono::steady_clock::now() < until) {

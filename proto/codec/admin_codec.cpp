@@ -23,7 +23,7 @@ std::optional<Error> check(const AdminReply& reply) {
 }
 
 std::size_t max_argument_bytes(AdminVerb verb) {
-  return verb == AdminVerb::Backup ? kMaxFileNameBytes : kMaxTaskBytes;
+  return rule_of(verb).argument == VerbArgument::BackupFile ? kMaxFileNameBytes : kMaxTaskBytes;
 }
 
 }  // namespace

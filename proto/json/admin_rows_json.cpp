@@ -1,5 +1,7 @@
 #include "proto/json/admin_rows_json.hpp"
 
+#include <type_traits>
+
 #include "proto/json/fields.hpp"
 #include "proto/json/parts.hpp"
 
@@ -19,30 +21,62 @@ Explanation read_explanation(const Reader& reader) {
   return explanation;
 }
 
-}  // namespace
-
-std::string to_json(const Explanation& explanation) {
+OrderedJson explanation_object(const Explanation& explanation) {
   OrderedJson object;
   object["distribution"] = distribution_object(explanation.distribution);
   object["experience"] = json_of(explanation.experience);
   object["behind"] = explanation.behind;
   object["next_fit"] = explanation.next_fit;
   object["rehearsal"] = json_of(explanation.rehearsal);
-  return write(object);
+  return object;
 }
 
-std::string to_json(const Retirement& retirement) { return write_fields(retirement); }
-std::string to_json(const RobotRemoval& removal) { return write_fields(removal); }
-std::string to_json(const Job& job) { return write_fields(job); }
-std::string to_json(const ClientUse& client) { return write_fields(client); }
-std::string to_json(const BackupSummary& backup) { return write_fields(backup); }
-std::string to_json(const AuditEntry& entry) { return write_fields(entry); }
+}  // namespace
 
-std::string eviction_to_json(const Digest& distribution_id) {
-  OrderedJson object;
-  object["evicted"] = distribution_id.hex();
-  return write(object);
+template <AdminRow Row>
+std::string to_json(const Row& row) {
+  if constexpr (std::is_same_v<Row, Explanation>)
+    return write(explanation_object(row));
+  else
+    return write_fields(row);
 }
+
+template <AdminRow Row>
+Result<Row> row_from_json(std::string_view text) {
+  if constexpr (std::is_same_v<Row, Explanation>)
+    return read_document(text, kRowName<Row>, read_explanation);
+  else
+    return read_fields<Row>(text, kRowName<Row>);
+}
+
+template std::string to_json(const RobotSummary&);
+template Result<RobotSummary> row_from_json(std::string_view);
+template std::string to_json(const TaskSummary&);
+template Result<TaskSummary> row_from_json(std::string_view);
+template std::string to_json(const PathSummary&);
+template Result<PathSummary> row_from_json(std::string_view);
+template std::string to_json(const AttemptSummary&);
+template Result<AttemptSummary> row_from_json(std::string_view);
+template std::string to_json(const DistributionSummary&);
+template Result<DistributionSummary> row_from_json(std::string_view);
+template std::string to_json(const ServerStatus&);
+template Result<ServerStatus> row_from_json(std::string_view);
+template std::string to_json(const Explanation&);
+template Result<Explanation> row_from_json(std::string_view);
+template std::string to_json(const Eviction&);
+template Result<Eviction> row_from_json(std::string_view);
+template std::string to_json(const Retirement&);
+template Result<Retirement> row_from_json(std::string_view);
+template std::string to_json(const RobotRemoval&);
+template Result<RobotRemoval> row_from_json(std::string_view);
+template std::string to_json(const Job&);
+template Result<Job> row_from_json(std::string_view);
+template std::string to_json(const ClientUse&);
+template Result<ClientUse> row_from_json(std::string_view);
+template std::string to_json(const BackupSummary&);
+template Result<BackupSummary> row_from_json(std::string_view);
+template std::string to_json(const AuditEntry&);
+template Result<AuditEntry> row_from_json(std::string_view);
 
 std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256) {
   OrderedJson object;
@@ -50,37 +84,6 @@ std::string download_to_json(const std::string& file, std::uint64_t bytes, const
   object["bytes"] = bytes;
   object["sha256"] = sha256.hex();
   return write(object);
-}
-
-Result<Explanation> explanation_from_json(std::string_view text) {
-  return read_document(text, "explanation", read_explanation);
-}
-
-Result<Retirement> retirement_from_json(std::string_view text) {
-  return read_fields<Retirement>(text, "retirement");
-}
-
-Result<RobotRemoval> robot_removal_from_json(std::string_view text) {
-  return read_fields<RobotRemoval>(text, "robot removal");
-}
-
-Result<Job> job_from_json(std::string_view text) { return read_fields<Job>(text, "job"); }
-
-Result<ClientUse> client_use_from_json(std::string_view text) {
-  return read_fields<ClientUse>(text, "client");
-}
-
-Result<BackupSummary> backup_summary_from_json(std::string_view text) {
-  return read_fields<BackupSummary>(text, "backup");
-}
-
-Result<AuditEntry> audit_entry_from_json(std::string_view text) {
-  return read_fields<AuditEntry>(text, "audit entry");
-}
-
-Result<Digest> eviction_from_json(std::string_view text) {
-  return read_document(text, "eviction",
-                       [](const Reader& reader) { return reader.at("evicted").digest(); });
 }
 
 }  // namespace kinship::json

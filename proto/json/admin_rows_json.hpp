@@ -11,32 +11,54 @@
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 
-/// The rows of the admin verbs that explain, take out, evict or go on for long: the server writes
-/// them, the command line reads them. Member names are those of the structs and stay.
+/// The rows of the admin conversation and of `--json` listings: the server writes them, clients
+/// read them. Member names are those of the structs and stay.
 namespace kinship::json {
 
-std::string to_json(const Explanation& explanation);
-std::string to_json(const Retirement& retirement);
-std::string to_json(const RobotRemoval& removal);
-std::string to_json(const Job& job);
-std::string to_json(const ClientUse& client);
-std::string to_json(const BackupSummary& backup);
-std::string to_json(const AuditEntry& entry);
+/// What a row is called in a refusal; empty: the value is no row.
+template <typename Row>
+inline constexpr std::string_view kRowName = {};
+template <>
+inline constexpr std::string_view kRowName<RobotSummary> = "robot";
+template <>
+inline constexpr std::string_view kRowName<TaskSummary> = "task";
+template <>
+inline constexpr std::string_view kRowName<PathSummary> = "path";
+template <>
+inline constexpr std::string_view kRowName<AttemptSummary> = "attempt";
+template <>
+inline constexpr std::string_view kRowName<DistributionSummary> = "distribution";
+template <>
+inline constexpr std::string_view kRowName<ServerStatus> = "status";
+template <>
+inline constexpr std::string_view kRowName<Explanation> = "explanation";
+template <>
+inline constexpr std::string_view kRowName<Eviction> = "eviction";
+template <>
+inline constexpr std::string_view kRowName<Retirement> = "retirement";
+template <>
+inline constexpr std::string_view kRowName<RobotRemoval> = "robot removal";
+template <>
+inline constexpr std::string_view kRowName<Job> = "job";
+template <>
+inline constexpr std::string_view kRowName<ClientUse> = "client";
+template <>
+inline constexpr std::string_view kRowName<BackupSummary> = "backup";
+template <>
+inline constexpr std::string_view kRowName<AuditEntry> = "audit entry";
 
-/// The row of EvictDistribution, `{"evicted": id}`.
-std::string eviction_to_json(const Digest& distribution_id);
+template <typename Row>
+concept AdminRow = !kRowName<Row>.empty();
+
+/// A new row is instantiated in the source.
+template <AdminRow Row>
+std::string to_json(const Row& row);
+
+/// Of an Explanation the distribution may lack its mixture (weights, means, covariances null).
+template <AdminRow Row>
+Result<Row> row_from_json(std::string_view text);
 
 /// What `kinship backup download --json` says: `{"file", "bytes", "sha256"}`.
 std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256);
-
-/// The mixture of the distribution may be missing (weights, means and covariances null).
-Result<Explanation> explanation_from_json(std::string_view text);
-Result<Retirement> retirement_from_json(std::string_view text);
-Result<RobotRemoval> robot_removal_from_json(std::string_view text);
-Result<Job> job_from_json(std::string_view text);
-Result<ClientUse> client_use_from_json(std::string_view text);
-Result<BackupSummary> backup_summary_from_json(std::string_view text);
-Result<AuditEntry> audit_entry_from_json(std::string_view text);
-Result<Digest> eviction_from_json(std::string_view text);  ///< \return the distribution's id
 
 }  // namespace kinship::json

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/admin_verb.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
@@ -104,43 +105,12 @@ struct FetchReply {
   std::optional<Rehearsal> rehearsal = {};
 };
 
-enum class AdminVerb {
-  Status,
-  ListRobots,
-  ShowRobot,
-  ListTasks,
-  ShowTask,
-  ListPaths,
-  ShowPath,
-  ListDistributions,
-  ShowDistribution,
-  ExplainDistribution,   ///< row: proto/types/summaries.hpp, Explanation
-  EvictDistribution,     ///< row: {"evicted": id}
-  ExportConfigurations,  ///< begins a job; row: Job. Its rows: CSV lines
-  ExportPaths,           ///< rows: lines of an experience file; filters robot and task
-  RetirePath,            ///< row: Retirement
-  ResetTask,             ///< row: Retirement
-  Backup,                ///< begins a job that writes `argument`, a file at the server; row: Job
-  ListJobs,
-  ShowJob,       ///< answers when the job has ended or `deadline` has passed
-  CancelJob,     ///< row: Job
-  JobRows,       ///< the rows of a job that is done, page by page
-  ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
-  RenameRobot,   ///< `robot` gets the label `argument`; row: RobotSummary
-  RemoveRobot,   ///< row: RobotRemoval
-  ListAudit,     ///< rows: AuditEntry, the newest first; `argument`: of this name alone
-  ListClients,   ///< rows: ClientUse, who asked for most first
-  ListBackups,   ///< rows: BackupSummary, the newest first
-  HashBackup,    ///< begins a job over backup `argument`; rows: its SHA-256 in hex, its bytes
-  ReadBackup     ///< row: bytes of backup `argument` from `cursor` on, in base64
-};
-inline constexpr AdminVerb kLastVerb = AdminVerb::ReadBackup;
-
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;
-  std::string argument;       ///< label, digest prefix, task, UUID, job or file the verb is about
-  std::string robot, task;    ///< filters of a list verb; empty: all. RenameRobot: which robot
-  std::string cursor;         ///< from the page before; empty: the first page
+  std::string argument = {};  ///< what the verb is about: rule_of(verb).argument
+  std::string robot = {};     ///< filter: label or digest prefix; empty: all. RenameRobot: which
+  std::string task = {};      ///< filter; empty: all
+  std::string cursor = {};    ///< from the page before; empty: the first page
   std::uint32_t limit = 100;  ///< rows a page
   std::chrono::milliseconds deadline{0};  ///< of ShowJob: how long it may wait for the end
 };

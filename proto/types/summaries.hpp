@@ -204,6 +204,14 @@ inline constexpr std::tuple kFieldsOf<Retirement>{
     Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
     Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
 
+/// A distribution that was taken out of the store.
+struct Eviction {
+  Digest id;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<Eviction>{Field{"evicted", &Eviction::id}};
+
 /// A robot that was taken out, and what went with it.
 struct RobotRemoval {
   Digest robot;

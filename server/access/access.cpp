@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "proto/types/enum_text.hpp"
-#include "server/access/verb_rules.hpp"
 
 namespace kinship::access {
 namespace {
@@ -104,13 +103,13 @@ std::optional<Error> refusal_of(const Caller& caller, AdminVerb verb) {
   const VerbRule& rule = rule_of(verb);
   if (!has_role(caller, rule.least))
     return refused(caller, rule.act, "needs role " + std::string(to_text(rule.least)));
-  if (rule.is_about_all && is_narrowed(caller))
+  if (rule.is(VerbRule::OfAll) && is_narrowed(caller))
     return refused(caller, rule.act, "that is about all tasks and robots, " + scope_of(caller));
   // All of a robot's paths go, or those of all robots.
   if ((verb == AdminVerb::RemoveRobot && !caller.tasks.empty()) ||
       (verb == AdminVerb::ResetTask && !caller.robots.empty()))
     return refused(caller, rule.act, "that reaches beyond what it is for: " + scope_of(caller));
-  if (rule.is_change && verb != AdminVerb::CancelJob)
+  if (rule.is(VerbRule::Changes) && verb != AdminVerb::CancelJob)
     return refusal_by_place(caller, rule.act);
   return std::nullopt;
 }

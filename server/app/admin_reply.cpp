@@ -7,7 +7,6 @@
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/json/robot_description_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::app {
@@ -21,20 +20,9 @@ std::size_t bytes_of(const AdminReply& reply) {
   return bytes;
 }
 
-bool is_listing(AdminVerb verb) {
-  return verb == AdminVerb::ListRobots || verb == AdminVerb::ListTasks ||
-         verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions ||
-         verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs ||
-         verb == AdminVerb::ListAttempts || verb == AdminVerb::ListClients ||
-         verb == AdminVerb::ListBackups || verb == AdminVerb::ListAudit;
-}
-
 template <typename Value>
 std::string document(const Value& value) {
   return json::to_json(value);
-}
-std::string document(const service::Eviction& eviction) {
-  return json::eviction_to_json(eviction.id);
 }
 std::string document(const service::ExportedRobot& robot) {
   return json::to_experience_line(robot.description);
@@ -61,7 +49,7 @@ AdminReply to_reply(const service::AdminPage& page) {
 bool fits_page(const AdminReply& reply) { return bytes_of(reply) <= kMaxPageBytes; }
 
 std::optional<AdminRequest> for_fewer_rows(const AdminRequest& request, std::size_t rows) {
-  if (!is_listing(request.verb) || rows < 2)
+  if (!rule_of(request.verb).is(VerbRule::Lists) || rows < 2)
     return std::nullopt;
   AdminRequest smaller = request;
   smaller.limit = static_cast<std::uint32_t>(rows / 2);
@@ -74,7 +62,7 @@ AdminRequest for_rest(const AdminRequest& request, const RowCursor& begin) {
   AdminRequest inner = request;
   inner.cursor = begin.inner;
   const bool is_rest = begin.row > 0 || begin.byte > 0;
-  if (is_rest && is_listing(request.verb))
+  if (is_rest && rule_of(request.verb).is(VerbRule::Lists))
     inner.limit = 1;  // only a single row of a listing is cut
   return inner;
 }

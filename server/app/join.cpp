@@ -10,7 +10,7 @@
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/network_interface.hpp"
 #include "proto/dds/requester.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/security/client_directory.hpp"
 #include "proto/security/security_folder.hpp"
 #include "proto/types/failure.hpp"
@@ -44,7 +44,7 @@ std::optional<ServerStatus> ask_server(const ServerOptions& options, const std::
     if (!reply)
       return std::nullopt;
     const auto answer =
-        json::server_status_from_json(reply->rows.empty() ? "" : reply->rows.front());
+        json::row_from_json<ServerStatus>(reply->rows.empty() ? "" : reply->rows.front());
     return answer ? *answer : ServerStatus{};
   } catch (const Failure&) {
     return std::nullopt;

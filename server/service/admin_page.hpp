@@ -18,11 +18,6 @@
 
 namespace kinship::service {
 
-/// The row of EvictDistribution.
-struct Eviction {
-  Digest id;
-};
-
 /// A robot as the first lines of an experience file name it.
 struct ExportedRobot {
   RobotDescription description;
@@ -33,13 +28,7 @@ struct TextLine {
   std::string text;
 };
 
-/// What a verb answers with: Status one ServerStatus; a list verb its summaries; ShowRobot a
-/// RobotSummary, then the RobotDescription; ShowTask a TaskSummary; ShowPath an Attempt;
-/// ShowDistribution a Distribution; ExplainDistribution an Explanation; EvictDistribution an
-/// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
-/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; ListAudit
-/// AuditEntries; ListClients ClientUses; ListBackups BackupSummaries; JobRows and ReadBackup
-/// TextLines; the other verbs of jobs a Job each.
+/// What a verb answers with (AdminVerb says which), as a value still.
 using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
                               PathSummary, AttemptSummary, Attempt, DistributionSummary,
                               Distribution, Explanation, Eviction, ExportedRobot, Retirement,

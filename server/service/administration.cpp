@@ -6,7 +6,6 @@
 
 #include "proto/types/limits.hpp"
 #include "robots/inverse/inverse.hpp"
-#include "server/access/verb_rules.hpp"
 #include "server/catalog/freshness.hpp"
 #include "server/service/backup_verbs.hpp"
 #include "server/service/explain_distribution.hpp"
@@ -18,9 +17,13 @@
 namespace kinship::service {
 namespace {
 
-void allow_no_filter(const AdminRequest& request) {
-  if (!request.robot.empty() || !request.task.empty())
-    throw Failure(ErrorCode::InvalidInput, "this list has no filters");
+/// \throws Failure(InvalidInput) for filters that the verb would not obey.
+void check_filters(const AdminRequest& request) {
+  const VerbRule& rule = rule_of(request.verb);
+  const bool names_robot = !request.robot.empty() && request.verb != AdminVerb::RenameRobot;
+  if (!rule.is(VerbRule::Filters) && (names_robot || !request.task.empty()))
+    throw Failure(ErrorCode::InvalidInput,
+                  std::string(rule.name) + " takes no filter of robot or task");
 }
 
 /// Jobs that were begun are known by themselves, as they stand; and pieces of a backup, which
@@ -36,11 +39,12 @@ bool is_kept(AdminVerb verb, const AdminPage& page) {
 AdminPage Administration::answer(const AdminRequest& request, const std::string& request_key,
                                  const Caller& caller) {
   const AuditEntry audit = audit_entry(caller, request);
-  if (!access::rule_of(request.verb).is_change)
-    return attempt(request, request_key, caller, audit);
+  const Call call{request, request_key, audit};
+  if (!rule_of(request.verb).is(VerbRule::Changes))
+    return attempt(call, caller);
   if (std::optional<AdminPage> before = answered_.find(request_key))
     return std::move(*before);
-  AdminPage page = attempt(request, request_key, caller, audit);
+  AdminPage page = attempt(call, caller);
   trail_.not_done(audit, page);
   if (is_kept(request.verb, page))
     answered_.keep(request_key, page);
@@ -54,12 +58,47 @@ AdminPage Administration::refuse(const AdminRequest& request, const Caller& call
   return page;
 }
 
-AdminPage Administration::attempt(const AdminRequest& request, const std::string& request_key,
-                                  const Caller& caller, const AuditEntry& audit) {
+const std::array<Administration::VerbHandler, kVerbRules.size()> Administration::kHandlers = [] {
+  using enum AdminVerb;
+  using A = Administration;
+  constexpr std::array kAll = {VerbHandler{Status, &A::show_status},
+                               VerbHandler{ListRobots, &A::list_robots},
+                               VerbHandler{ShowRobot, &A::show_robot},
+                               VerbHandler{ListTasks, &A::list_tasks},
+                               VerbHandler{ShowTask, &A::show_task},
+                               VerbHandler{ListPaths, &A::list_paths},
+                               VerbHandler{ShowPath, &A::show_path},
+                               VerbHandler{ListDistributions, &A::list_distributions},
+                               VerbHandler{ShowDistribution, &A::show_distribution},
+                               VerbHandler{ExplainDistribution, &A::explain_distribution},
+                               VerbHandler{EvictDistribution, &A::evict_distribution},
+                               VerbHandler{ExportConfigurations, &A::export_configurations},
+                               VerbHandler{ExportPaths, &A::export_paths},
+                               VerbHandler{RetirePath, &A::retire_path},
+                               VerbHandler{ResetTask, &A::reset_task},
+                               VerbHandler{Backup, &A::back_up},
+                               VerbHandler{ListJobs, &A::list_jobs},
+                               VerbHandler{ShowJob, &A::show_job},
+                               VerbHandler{CancelJob, &A::cancel_job},
+                               VerbHandler{JobRows, &A::job_rows},
+                               VerbHandler{ListAttempts, &A::list_attempts},
+                               VerbHandler{RenameRobot, &A::rename_robot},
+                               VerbHandler{RemoveRobot, &A::remove_robot},
+                               VerbHandler{ListAudit, &A::list_audit},
+                               VerbHandler{ListClients, &A::list_clients},
+                               VerbHandler{ListBackups, &A::list_backups},
+                               VerbHandler{HashBackup, &A::hash_backup},
+                               VerbHandler{ReadBackup, &A::read_backup}};
+  static_assert(is_complete_for_verbs(kAll));
+  return kAll;
+}();
+
+AdminPage Administration::attempt(const Call& call, const Caller& caller) {
   try {
+    check_filters(call.request);
     const Narrowing narrowing(parts_.store, caller);
-    narrowing.check(request);
-    AdminPage page = dispatch(request, request_key, audit);
+    narrowing.check(call.request);
+    AdminPage page = dispatch(call);
     narrowing.apply(page);
     return page;
   } catch (const Failure& failure) {
@@ -69,119 +108,52 @@ AdminPage Administration::attempt(const AdminRequest& request, const std::string
   }
 }
 
-AdminPage Administration::dispatch(const AdminRequest& request, const std::string& request_key,
-                                   const AuditEntry& audit) {
-  if (std::optional<Job> begun = parts_.jobs.begun_by(request_key))
+AdminPage Administration::dispatch(const Call& call) {
+  if (std::optional<Job> begun = parts_.jobs.begun_by(call.key))
     return page_of(std::move(*begun));
-  switch (request.verb) {
-    case AdminVerb::Status:
-      return page_of(parts_.status());
-    case AdminVerb::ListRobots:
-      return list_robots(request);
-    case AdminVerb::ShowRobot:
-      return show_robot(request.argument);
-    case AdminVerb::ListTasks:
-      allow_no_filter(request);
-      return page_of(parts_.store.list_tasks(request.cursor, page_size(request)));
-    case AdminVerb::ShowTask:
-      return show_task(request.argument);
-    case AdminVerb::ListPaths:
-      return list_paths(request);
-    case AdminVerb::ShowPath:
-      return show_path(request.argument);
-    case AdminVerb::ListDistributions:
-      return list_distributions(request);
-    case AdminVerb::ShowDistribution:
-      return show_distribution(request.argument);
-    case AdminVerb::ExplainDistribution:
-      return explain(request.argument);
-    case AdminVerb::ExportConfigurations:
-      return export_configurations(request.argument, request_key, audit);
-    case AdminVerb::EvictDistribution:
-      return evict_distribution(request.argument, audit);
-    case AdminVerb::ExportPaths:
-      return export_paths(request);
-    case AdminVerb::RetirePath:
-      return retire_path(request.argument, audit);
-    case AdminVerb::ResetTask:
-      return reset_task(request.argument, audit);
-    case AdminVerb::RenameRobot:
-      return rename_robot(request, audit);
-    case AdminVerb::RemoveRobot:
-      return remove_robot(request.argument, audit);
-    case AdminVerb::ListAttempts:
-      return list_attempts(request);
-    case AdminVerb::ListClients:
-      return list_clients(request);
-    case AdminVerb::ListAudit:
-      return page_of(parts_.store.list_audit(request.argument, request.cursor, page_size(request)));
-    default:
-      return dispatch_jobs(request, request_key, audit);
-  }
+  return (this->*kHandlers.at(static_cast<std::size_t>(call.request.verb)).handle)(call);
 }
 
-/// The verbs about jobs and backups.
-AdminPage Administration::dispatch_jobs(const AdminRequest& request, const std::string& request_key,
-                                        const AuditEntry& audit) {
-  switch (request.verb) {
-    case AdminVerb::Backup:
-      return back_up(request.argument, request_key, audit);
-    case AdminVerb::ListJobs:
-      return list_jobs(parts_.jobs, request);
-    case AdminVerb::ShowJob:
-      return page_of(parts_.jobs.find(request.argument));
-    case AdminVerb::CancelJob:
-      return cancel_job(request.argument, audit);
-    case AdminVerb::JobRows:
-      return job_rows(parts_.jobs, request);
-    case AdminVerb::ListBackups:
-      return list_backups(parts_.store, parts_.backups, request);
-    case AdminVerb::HashBackup:
-      return hash_backup(request.argument, request_key, audit);
-    case AdminVerb::ReadBackup:
-      return read_backup(request, audit);
-    default:
-      return page_of(Error{ErrorCode::InvalidInput, "this server does not know the verb"});
-  }
-}
+AdminPage Administration::show_status(const Call& /*call*/) { return page_of(parts_.status()); }
 
-AdminPage Administration::list_robots(const AdminRequest& request) {
-  allow_no_filter(request);
-  store::Page<RobotSummary> page = parts_.store.list_robots(request.cursor, page_size(request));
+AdminPage Administration::list_robots(const Call& call) {
+  store::Page<RobotSummary> page =
+      parts_.store.list_robots(call.request.cursor, page_size(call.request));
   for (RobotSummary& summary : page.rows)
     name_solver(summary);
   return page_of(std::move(page));
 }
 
-AdminPage Administration::list_clients(const AdminRequest& request) {
-  allow_no_filter(request);
-  const Result<std::size_t> first = row_number(request.cursor);
-  return first ? page_of(parts_.clients(), *first, page_size(request)) : page_of(first.error());
+AdminPage Administration::list_clients(const Call& call) {
+  const Result<std::size_t> first = row_number(call.request.cursor);
+  return first ? page_of(parts_.clients(), *first, page_size(call.request))
+               : page_of(first.error());
 }
 
-AdminPage Administration::list_paths(const AdminRequest& request) {
+AdminPage Administration::list_paths(const Call& call) {
+  const AdminRequest& request = call.request;
   const std::optional<Digest> robot = robot_filter(request);
-  check_task_filter(request);
   return page_of(parts_.store.list_paths(robot, request.task, request.cursor, page_size(request)));
 }
 
-AdminPage Administration::list_attempts(const AdminRequest& request) {
+AdminPage Administration::list_attempts(const Call& call) {
+  const AdminRequest& request = call.request;
   const std::optional<Digest> robot = robot_filter(request);
-  check_task_filter(request);
   return page_of(
       parts_.store.list_attempts(robot, request.task, request.cursor, page_size(request)));
 }
 
-AdminPage Administration::list_distributions(const AdminRequest& request) {
+AdminPage Administration::list_distributions(const Call& call) {
+  const AdminRequest& request = call.request;
   const std::optional<Digest> robot = robot_filter(request);
-  check_task_filter(request);
   store::Page<DistributionSummary> page =
       parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request));
   complete_summaries(parts_.store, page.rows);
   return page_of(std::move(page));
 }
 
-AdminPage Administration::show_robot(const std::string& name) {
+AdminPage Administration::show_robot(const Call& call) {
+  const std::string& name = call.request.argument;
   RobotSummary summary = find_robot(parts_.store, name).value_or_throw();
   std::optional<store::RobotRecord> record = parts_.store.find_robot(summary.robot);
   if (!record)
@@ -192,18 +164,24 @@ AdminPage Administration::show_robot(const std::string& name) {
   return page;
 }
 
-AdminPage Administration::show_task(const std::string& task) {
+AdminPage Administration::list_tasks(const Call& call) {
+  return page_of(parts_.store.list_tasks(call.request.cursor, page_size(call.request)));
+}
+
+AdminPage Administration::show_task(const Call& call) {
+  const std::string& task = call.request.argument;
   std::optional<TaskSummary> summary = parts_.store.find_task(task);
   return summary ? page_of(std::move(*summary)) : page_of(not_found("task", task));
 }
 
-AdminPage Administration::show_path(const std::string& uuid) {
+AdminPage Administration::show_path(const Call& call) {
+  const std::string& uuid = call.request.argument;
   std::optional<Attempt> attempt = parts_.store.find_attempt(report_of(uuid));
   return attempt ? page_of(std::move(*attempt)) : page_of(not_found("report", uuid));
 }
 
-AdminPage Administration::show_distribution(const std::string& prefix) {
-  Distribution distribution = find_distribution(prefix);
+AdminPage Administration::show_distribution(const Call& call) {
+  Distribution distribution = find_distribution(call.request.argument);
   if (catalog::is_retired(distribution, parts_.store.experience(distribution.task)))
     distribution.reason = cut_text(
         std::string(kNotServed) + (distribution.reason.empty() ? "" : "; ") + distribution.reason,
@@ -211,12 +189,12 @@ AdminPage Administration::show_distribution(const std::string& prefix) {
   return page_of(std::move(distribution));
 }
 
-AdminPage Administration::explain(const std::string& prefix) {
-  Distribution distribution = find_distribution(prefix);
+AdminPage Administration::explain_distribution(const Call& call) {
+  Distribution distribution = find_distribution(call.request.argument);
   if (parts_.advise && has_mixture(distribution.state))
     distribution.advice = parts_.advise(distribution);
   Explanation explanation =
-      explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms());
+      service::explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms());
   if (const std::string trouble = parts_.fit_trouble(explanation.distribution.id); !trouble.empty())
     explanation.next_fit += "; " + trouble;
   if (const std::shared_ptr<const Rehearsal> known = parts_.rehearsal(explanation.distribution.id))
@@ -224,21 +202,39 @@ AdminPage Administration::explain(const std::string& prefix) {
   return page_of(std::move(explanation));
 }
 
-AdminPage Administration::export_paths(const AdminRequest& request) {
-  const std::optional<Digest> robot = robot_filter(request);
-  check_task_filter(request);
-  return service::export_paths(parts_.store, robot, request);
+AdminPage Administration::export_paths(const Call& call) {
+  return service::export_paths(parts_.store, robot_filter(call.request), call.request);
+}
+
+AdminPage Administration::list_jobs(const Call& call) {
+  return service::list_jobs(parts_.jobs, call.request);
+}
+
+/// As it stands: Service waits for its end.
+AdminPage Administration::show_job(const Call& call) {
+  return page_of(parts_.jobs.find(call.request.argument));
+}
+
+AdminPage Administration::job_rows(const Call& call) {
+  return service::job_rows(parts_.jobs, call.request);
+}
+
+AdminPage Administration::list_audit(const Call& call) {
+  const AdminRequest& request = call.request;
+  return page_of(parts_.store.list_audit(request.argument, request.cursor, page_size(request)));
+}
+
+AdminPage Administration::list_backups(const Call& call) {
+  return service::list_backups(parts_.store, parts_.backups, call.request);
 }
 
 std::optional<Digest> Administration::robot_filter(const AdminRequest& request) const {
-  if (request.robot.empty())
-    return std::nullopt;
-  return find_robot(parts_.store, request.robot).value_or_throw().robot;
-}
-
-void Administration::check_task_filter(const AdminRequest& request) const {
+  std::optional<Digest> robot;
+  if (!request.robot.empty())
+    robot = find_robot(parts_.store, request.robot).value_or_throw().robot;
   if (!request.task.empty() && !parts_.store.find_task(request.task))
     throw Failure(not_found("task", request.task));
+  return robot;
 }
 
 Distribution Administration::find_distribution(const std::string& prefix) const {

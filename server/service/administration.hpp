@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -77,41 +78,57 @@ class Administration {
   AdminPage refuse(const AdminRequest& request, const Caller& caller, const Error& refusal);
 
  private:
-  AdminPage attempt(const AdminRequest& request, const std::string& request_key,
-                    const Caller& caller, const AuditEntry& audit);
-  AdminPage dispatch(const AdminRequest& request, const std::string& request_key,
-                     const AuditEntry& audit);
-  AdminPage dispatch_jobs(const AdminRequest& request, const std::string& request_key,
-                          const AuditEntry& audit);
-  AdminPage list_robots(const AdminRequest& request);
-  AdminPage list_clients(const AdminRequest& request);
-  AdminPage list_paths(const AdminRequest& request);
-  AdminPage list_attempts(const AdminRequest& request);
-  AdminPage list_distributions(const AdminRequest& request);
-  AdminPage show_robot(const std::string& name);
-  AdminPage show_task(const std::string& task);
-  AdminPage show_path(const std::string& uuid);
-  AdminPage show_distribution(const std::string& prefix);
-  AdminPage explain(const std::string& prefix);
-  AdminPage export_configurations(const std::string& prefix, const std::string& request_key,
-                                  const AuditEntry& audit);
-  AdminPage evict_distribution(const std::string& prefix, const AuditEntry& audit);
-  AdminPage export_paths(const AdminRequest& request);
-  AdminPage retire_path(const std::string& uuid, const AuditEntry& audit);
-  AdminPage reset_task(const std::string& task, const AuditEntry& audit);
-  AdminPage rename_robot(const AdminRequest& request, const AuditEntry& audit);
-  AdminPage remove_robot(const std::string& name, const AuditEntry& audit);
-  AdminPage back_up(const std::string& file, const std::string& request_key,
-                    const AuditEntry& audit);
-  AdminPage hash_backup(const std::string& name, const std::string& request_key,
-                        const AuditEntry& audit);
-  AdminPage read_backup(const AdminRequest& request, const AuditEntry& audit);
-  AdminPage begin_audited(Result<Jobs::Task> task, const AuditEntry& audit);
-  AdminPage cancel_job(const std::string& id, const AuditEntry& audit);
-  AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
+  /// A request on its way to the handler of its verb.
+  struct Call {
+    const AdminRequest& request;
+    const std::string& key;  ///< the request's name, see answer()
+    const AuditEntry& audit;
+  };
+  using Handler = AdminPage (Administration::*)(const Call& call);
+  struct VerbHandler {
+    AdminVerb verb;
+    Handler handle;
+  };
+  static const std::array<VerbHandler, kVerbRules.size()> kHandlers;
 
+  AdminPage attempt(const Call& call, const Caller& caller);
+  AdminPage dispatch(const Call& call);
+
+  // Each throws Failure(NotFound) for what is not there, and Failure(InvalidInput) for a name that
+  // is none or could be several's.
+  AdminPage show_status(const Call& call);
+  AdminPage list_robots(const Call& call);
+  AdminPage show_robot(const Call& call);
+  AdminPage rename_robot(const Call& call);
+  AdminPage remove_robot(const Call& call);
+  AdminPage list_tasks(const Call& call);
+  AdminPage show_task(const Call& call);
+  AdminPage reset_task(const Call& call);
+  AdminPage list_attempts(const Call& call);
+  AdminPage list_paths(const Call& call);
+  AdminPage show_path(const Call& call);
+  AdminPage export_paths(const Call& call);
+  AdminPage retire_path(const Call& call);
+  AdminPage list_distributions(const Call& call);
+  AdminPage show_distribution(const Call& call);
+  AdminPage explain_distribution(const Call& call);
+  AdminPage export_configurations(const Call& call);
+  AdminPage evict_distribution(const Call& call);
+  AdminPage list_jobs(const Call& call);
+  AdminPage show_job(const Call& call);
+  AdminPage job_rows(const Call& call);
+  AdminPage cancel_job(const Call& call);
+  AdminPage list_audit(const Call& call);
+  AdminPage list_clients(const Call& call);
+  AdminPage back_up(const Call& call);
+  AdminPage list_backups(const Call& call);
+  AdminPage hash_backup(const Call& call);
+  AdminPage read_backup(const Call& call);
+
+  AdminPage begin_audited(Result<Jobs::Task> task, const AuditEntry& audit);
+  AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
+  /// The robot that a request's filters name. \throws Failure(NotFound), of its task as well.
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
-  void check_task_filter(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
   void forget_tasks_of(const Digest& robot);
   void name_solver(RobotSummary& summary);

@@ -40,9 +40,10 @@ AdminPage page_of_later(const Error& error) {
 
 }  // namespace
 
-AdminPage Administration::evict_distribution(const std::string& prefix, const AuditEntry& audit) {
+AdminPage Administration::evict_distribution(const Call& call) {
+  const std::string& prefix = call.request.argument;
   const Digest id = find_distribution_id(parts_.store, prefix).value_or_throw();
-  const bool was_there = parts_.store.evict_distribution(id, &audit);
+  const bool was_there = parts_.store.evict_distribution(id, &call.audit);
   // One that could not be stored is in memory only.
   parts_.forget_distribution(id);
   if (!was_there)
@@ -51,20 +52,21 @@ AdminPage Administration::evict_distribution(const std::string& prefix, const Au
   return page_of(Eviction{id});
 }
 
-AdminPage Administration::export_configurations(const std::string& prefix,
-                                                const std::string& request_key,
-                                                const AuditEntry& audit) {
+AdminPage Administration::export_configurations(const Call& call) {
   const fitting::FitContext context{.store = parts_.store,
                                     .robots = parts_.robots,
                                     .clock = parts_.clock,
                                     .memory = parts_.memory};
-  return begin(export_configurations_job(context, find_distribution(prefix), request_key), audit);
+  return begin(
+      export_configurations_job(context, find_distribution(call.request.argument), call.key),
+      call.audit);
 }
 
-AdminPage Administration::retire_path(const std::string& uuid, const AuditEntry& audit) {
+AdminPage Administration::retire_path(const Call& call) {
+  const std::string& uuid = call.request.argument;
   const Uuid report = report_of(uuid);
   try {
-    return retired(parts_.store.retire_path(report, &audit), "path " + uuid);
+    return retired(parts_.store.retire_path(report, &call.audit), "path " + uuid);
   } catch (const std::exception&) {  // it may be retired all the same
     if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
       parts_.forget_task(attempt->task);
@@ -72,10 +74,11 @@ AdminPage Administration::retire_path(const std::string& uuid, const AuditEntry&
   }
 }
 
-AdminPage Administration::reset_task(const std::string& task, const AuditEntry& audit) {
+AdminPage Administration::reset_task(const Call& call) {
+  const std::string& task = call.request.argument;
   Result<Retirement> retirement = Error{};
   try {
-    retirement = parts_.store.reset_task(task, parts_.stop, &audit);
+    retirement = parts_.store.reset_task(task, parts_.stop, &call.audit);
   } catch (const std::exception&) {  // some of its paths may be retired
     parts_.forget_task(task);
     throw;
@@ -96,10 +99,11 @@ AdminPage Administration::retired(Result<Retirement> retirement, const std::stri
   return page_of(std::move(retirement).value());
 }
 
-AdminPage Administration::rename_robot(const AdminRequest& request, const AuditEntry& audit) {
-  RobotSummary robot = find_robot(parts_.store, request.robot).value_or_throw();
-  const std::string before = std::exchange(robot.label, request.argument);
-  static_cast<void>(parts_.robots.rename_robot(robot.robot, robot.label, &audit).value_or_throw());
+AdminPage Administration::rename_robot(const Call& call) {
+  RobotSummary robot = find_robot(parts_.store, call.request.robot).value_or_throw();
+  const std::string before = std::exchange(robot.label, call.request.argument);
+  static_cast<void>(
+      parts_.robots.rename_robot(robot.robot, robot.label, &call.audit).value_or_throw());
   name_solver(robot);
   if (before != robot.label)
     parts_.on_change({}, "robot '" + before + "' (" + robot.robot.short_hex() + ") is called '" +
@@ -107,11 +111,11 @@ AdminPage Administration::rename_robot(const AdminRequest& request, const AuditE
   return page_of(std::move(robot));
 }
 
-AdminPage Administration::remove_robot(const std::string& name, const AuditEntry& audit) {
-  const RobotSummary robot = find_robot(parts_.store, name).value_or_throw();
+AdminPage Administration::remove_robot(const Call& call) {
+  const RobotSummary robot = find_robot(parts_.store, call.request.argument).value_or_throw();
   Result<store::RemovedRobot> removed = Error{};
   try {
-    removed = parts_.robots.remove_robot(robot.robot, parts_.stop, &audit);
+    removed = parts_.robots.remove_robot(robot.robot, parts_.stop, &call.audit);
   } catch (const std::exception&) {  // some of its paths may be retired
     forget_tasks_of(robot.robot);
     throw;
@@ -143,27 +147,28 @@ void Administration::forget_tasks_of(const Digest& robot) {
   } while (!cursor.empty());
 }
 
-AdminPage Administration::back_up(const std::string& file, const std::string& request_key,
-                                  const AuditEntry& audit) {
-  return begin_audited(backup_job(parts_.store, file, parts_.backups, request_key), audit);
+AdminPage Administration::back_up(const Call& call) {
+  return begin_audited(backup_job(parts_.store, call.request.argument, parts_.backups, call.key),
+                       call.audit);
 }
 
 /// In the audit log once, for whoever then reads the bytes.
-AdminPage Administration::hash_backup(const std::string& name, const std::string& request_key,
-                                      const AuditEntry& audit) {
-  BackupFile file = open_backup(parts_.store, parts_.backups, name).value_or_throw();
+AdminPage Administration::hash_backup(const Call& call) {
+  BackupFile file =
+      open_backup(parts_.store, parts_.backups, call.request.argument).value_or_throw();
   const BackupSummary backup = file.summary();
-  AdminPage page = begin_audited(hash_backup_job(std::move(file), request_key), audit);
+  AdminPage page = begin_audited(hash_backup_job(std::move(file), call.key), call.audit);
   if (page.status == AdminStatus::Ok)
-    downloads_.add(audit.client, backup);
+    downloads_.add(call.audit.client, backup);
   return page;
 }
 
 /// Whoever did not have it digested, as after a restart, is in the audit log before the first byte.
-AdminPage Administration::read_backup(const AdminRequest& request, const AuditEntry& audit) {
-  const std::size_t begin = row_number(request.cursor).value_or_throw();
+AdminPage Administration::read_backup(const Call& call) {
+  const AuditEntry& audit = call.audit;
+  const std::size_t begin = row_number(call.request.cursor).value_or_throw();
   const BackupFile file =
-      open_backup(parts_.store, parts_.backups, request.argument).value_or_throw();
+      open_backup(parts_.store, parts_.backups, call.request.argument).value_or_throw();
   AdminPage page = service::read_backup(file, begin);
   if (downloads_.has(audit.client, file.summary()))
     return page;
@@ -174,7 +179,9 @@ AdminPage Administration::read_backup(const AdminRequest& request, const AuditEn
 }
 
 /// Of one's own job, or one that has ended, there is nothing to answer for.
-AdminPage Administration::cancel_job(const std::string& id, const AuditEntry& audit) {
+AdminPage Administration::cancel_job(const Call& call) {
+  const std::string& id = call.request.argument;
+  const AuditEntry& audit = call.audit;
   const Job job = parts_.jobs.find(id).value_or_throw();
   if (has_ended(job.state) || parts_.jobs.owner_of(id) == audit.client)
     return page_of(parts_.jobs.cancel(id));

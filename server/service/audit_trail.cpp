@@ -1,19 +1,20 @@
 #include "server/service/audit_trail.hpp"
 
+#include <algorithm>
 #include <new>
 #include <optional>
 #include <utility>
 
 #include "proto/types/enum_text.hpp"
-#include "server/access/verb_rules.hpp"
 
 namespace kinship::service {
 namespace {
 
 /// Verbs of which the store has an entry, as begun, before they fail.
 bool is_begun_first(const AuditEntry& entry) {
-  return entry.verb == access::rule_of(AdminVerb::ResetTask).name ||
-         entry.verb == access::rule_of(AdminVerb::RemoveRobot).name;
+  return std::ranges::any_of(kVerbRules, [&](const VerbRule& rule) {
+    return rule.name == entry.verb && rule.is(VerbRule::Long);
+  });
 }
 
 }  // namespace
@@ -25,7 +26,7 @@ AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
     entry.role = to_text(caller.role);
   entry.client = caller.client;
   entry.is_local = caller.is_local;
-  entry.verb = access::rule_of(request.verb).name;
+  entry.verb = rule_of(request.verb).name;
   entry.target = request.verb == AdminVerb::RenameRobot ? request.robot + " to " + request.argument
                                                         : request.argument;
   return entry;

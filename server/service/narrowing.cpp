@@ -50,23 +50,16 @@ void Narrowing::check(const AdminRequest& request) const {
 }
 
 void Narrowing::check_argument(const AdminRequest& request) const {
-  switch (request.verb) {
-    case AdminVerb::ShowTask:
-    case AdminVerb::ResetTask:
+  switch (rule_of(request.verb).argument) {
+    case VerbArgument::Task:
       return throw_if(access::refusal_of_task(caller_, request.argument));
-    case AdminVerb::ShowRobot:
-    case AdminVerb::RemoveRobot:
-    case AdminVerb::RenameRobot:  // the label that it shall have
+    case VerbArgument::Robot:  // of RenameRobot the label that it shall have
       if (access::refusal_of_robot(caller_, label_of(request.argument)))
         throw_if(access::refusal_of_robot(caller_, request.argument));
       return;
-    case AdminVerb::ShowPath:
-    case AdminVerb::RetirePath:
+    case VerbArgument::Report:
       return check_report(request.argument);
-    case AdminVerb::ShowDistribution:
-    case AdminVerb::ExplainDistribution:
-    case AdminVerb::ExportConfigurations:
-    case AdminVerb::EvictDistribution:
+    case VerbArgument::Distribution:
       return check_distribution(request.argument);
     default:
       return;

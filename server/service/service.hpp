@@ -170,7 +170,7 @@ class Service {
   void begin(runtime::WorkerPool& pool, const RegistrationPointer& registration,
              std::function<void()> answer);
   void announce_registered(const Registration& registration, const RegisterReply& reply);
-  runtime::WorkerPool& pool_for(const AdminRequest& request);
+  runtime::WorkerPool& pool_for(AdminVerb verb);
   std::size_t short_tasks() const;
   std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
   void count_refused(const std::vector<Receipt>& receipts);

@@ -3,27 +3,15 @@
 #include <utility>
 
 #include "server/access/access.hpp"
-#include "server/access/verb_rules.hpp"
 #include "server/service/reply_bytes.hpp"
 #include "server/service/service.hpp"
 
 namespace kinship::service {
-namespace {
-
-/// Whether memory answers it; one that is narrowed down by a name may have to ask for that.
-bool is_of_memory(const AdminRequest& request) {
-  const bool is_verb = request.verb == AdminVerb::ListJobs || request.verb == AdminVerb::JobRows ||
-                       request.verb == AdminVerb::ListClients;
-  return is_verb && request.robot.empty() && request.task.empty();
-}
-
-}  // namespace
 
 std::optional<Error> Service::refusal_of(const Caller& caller, const AdminRequest& request) const {
   if (auto refusal = access::refusal_of(caller, request.verb))
     return refusal;
-  if (request.verb != AdminVerb::ShowJob && request.verb != AdminVerb::JobRows &&
-      request.verb != AdminVerb::CancelJob)
+  if (rule_of(request.verb).argument != VerbArgument::Job)
     return std::nullopt;
   const std::optional<std::string> owner = jobs_.owner_of(request.argument);
   if (!owner || *owner == caller.client)
@@ -32,18 +20,18 @@ std::optional<Error> Service::refusal_of(const Caller& caller, const AdminReques
 }
 
 /// Where it waits for nobody who may take long, and nobody for it.
-runtime::WorkerPool& Service::pool_for(const AdminRequest& request) {
-  if (request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot)
+runtime::WorkerPool& Service::pool_for(AdminVerb verb) {
+  if (rule_of(verb).is(VerbRule::Long))
     return reset_pool_;
-  if (request.verb == AdminVerb::Status)
+  if (verb == AdminVerb::Status)
     return status_pool_;
-  return is_of_memory(request) ? memory_task_pool_ : short_task_pool_;
+  return rule_of(verb).is(VerbRule::FromMemory) ? memory_task_pool_ : short_task_pool_;
 }
 
 void Service::administer(AdminRequest request, const std::string& request_key,
                          const std::function<void(const AdminPage&)>& done, const Caller& caller) {
   const std::optional<Error> refusal = refusal_of(caller, request);
-  if (refusal && !access::rule_of(request.verb).is_change) {
+  if (refusal && !rule_of(request.verb).is(VerbRule::Changes)) {
     const AdminPage page = page_of(*refusal);
     count_admin(page);
     return done(page);
@@ -52,7 +40,7 @@ void Service::administer(AdminRequest request, const std::string& request_key,
   if (request.verb == AdminVerb::ShowJob)
     return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
                       [done](const Result<Job>& job) { done(page_of(job)); });
-  runtime::WorkerPool& pool = refusal ? short_task_pool_ : pool_for(request);
+  runtime::WorkerPool& pool = refusal ? short_task_pool_ : pool_for(request.verb);
   const std::string client(catalog::client_of(request_key));
   auto run = [this, request = std::move(request), request_key, client, done, caller, refusal] {
     const AdminPage page = refusal ? administration_.refuse(request, caller, *refusal)

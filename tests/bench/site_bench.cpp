@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "client/link/client.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/load_clients.hpp"
@@ -113,7 +113,7 @@ class Site {
 
   UpstreamStatus upstream() {
     const AdminReply reply = client_->admin({}).value_or_throw();
-    return json::server_status_from_json(reply.rows.at(0)).value_or_throw().upstream.value();
+    return json::row_from_json<ServerStatus>(reply.rows.at(0)).value_or_throw().upstream.value();
   }
 
   void run(Seen& seen) {

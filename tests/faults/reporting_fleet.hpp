@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "client/link/client.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "server/store/maintenance.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/child_process.hpp"
@@ -66,7 +66,7 @@ class ReportingFleet : public testing::Test {
           link::ClientOptions{.domain = domain_.number(), .outbox = {}, .has_outbox = false});
     const Result<AdminReply> reply = observer_->admin({});
     return reply && !reply->rows.empty()
-               ? json::server_status_from_json(reply->rows.front()).value_or_throw()
+               ? json::row_from_json<ServerStatus>(reply->rows.front()).value_or_throw()
                : ServerStatus{};
   }
   /// \return the last status, which the condition holds for unless two minutes have passed.

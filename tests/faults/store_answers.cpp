@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"
 

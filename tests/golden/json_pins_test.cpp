@@ -15,7 +15,6 @@
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/json/store_check_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/sha256.hpp"
 #include "tests/golden/every_value.hpp"
 #include "tests/golden/pins.hpp"
@@ -63,11 +62,6 @@ std::string experience_again(const std::string& text) {
   });
 }
 
-std::string eviction_again(const std::string& text) {
-  return error_or<Digest>(eviction_from_json(text),
-                          [](const Digest& id) { return eviction_to_json(id); });
-}
-
 std::vector<Case> cases() {
   using namespace kinship::test;
   return {
@@ -78,21 +72,21 @@ std::vector<Case> cases() {
       readable("distribution", every_distribution(), distribution_from_json),
       readable("distribution_kernels", every_kernels(), distribution_from_json, false),
       readable("distribution_failed", every_failure(), distribution_from_json),
-      readable("robot_summary", every_robot_summary(), robot_summary_from_json),
-      readable("task_summary", every_task_summary(), task_summary_from_json),
-      readable("path_summary", every_path_summary(), path_summary_from_json),
-      readable("attempt_summary", every_attempt_summary(), attempt_summary_from_json),
+      readable("robot_summary", every_robot_summary(), row_from_json<RobotSummary>),
+      readable("task_summary", every_task_summary(), row_from_json<TaskSummary>),
+      readable("path_summary", every_path_summary(), row_from_json<PathSummary>),
+      readable("attempt_summary", every_attempt_summary(), row_from_json<AttemptSummary>),
       readable("distribution_summary", every_distribution_summary(),
-               distribution_summary_from_json),
-      readable("server_status", every_status(), server_status_from_json),
-      readable("explanation", every_explanation(), explanation_from_json),
-      readable("retirement", every_retirement(), retirement_from_json),
-      readable("robot_removal", every_robot_removal(), robot_removal_from_json),
-      readable("job", every_job(), job_from_json),
-      readable("client_use", every_client_use(), client_use_from_json),
-      readable("backup", every_backup(), backup_summary_from_json),
-      readable("audit_entry", every_audit_entry(), audit_entry_from_json),
-      {"eviction", eviction_to_json(every_distribution().id), eviction_again},
+               row_from_json<DistributionSummary>),
+      readable("server_status", every_status(), row_from_json<ServerStatus>),
+      readable("explanation", every_explanation(), row_from_json<Explanation>),
+      readable("retirement", every_retirement(), row_from_json<Retirement>),
+      readable("robot_removal", every_robot_removal(), row_from_json<RobotRemoval>),
+      readable("job", every_job(), row_from_json<Job>),
+      readable("client_use", every_client_use(), row_from_json<ClientUse>),
+      readable("backup", every_backup(), row_from_json<BackupSummary>),
+      readable("audit_entry", every_audit_entry(), row_from_json<AuditEntry>),
+      readable("eviction", Eviction{every_distribution().id}, row_from_json<Eviction>),
       readable("problem", every_problem(), problem_from_json),
       readable("problem_to_pose", every_pose_problem(), problem_from_json, false),
       readable("problem_from_pose", every_problem_from_pose(), problem_from_json, false),

@@ -10,7 +10,6 @@
 
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "tests/integration/admin_commands.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/places.hpp"
@@ -129,7 +128,7 @@ TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
   EXPECT_EQ(count_lines(server_.kinship({"paths", "export"}).out), 8U);
   const Answer reset = server_.kinship({"tasks", "reset", "sweep", "--yes", "--json"});
   EXPECT_EQ(reset.code, 0) << reset.err;
-  EXPECT_EQ(json::retirement_from_json(reset.out).value_or_throw().paths, 6U);
+  EXPECT_EQ(json::row_from_json<Retirement>(reset.out).value_or_throw().paths, 6U);
   EXPECT_EQ(server_.kinship({"paths", "export"}).out.find("\"solved\""), std::string::npos);
   const Answer fetched =
       server_.kinship({"distributions", "fetch", "--task", "sweep", "--robot", "ur10e"});
@@ -140,14 +139,14 @@ TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
   EXPECT_EQ(again.out, "nothing to do: retired already\n");
   const Answer document = server_.kinship({"tasks", "reset", "sweep", "--json"});
   EXPECT_EQ(document.code, 0) << document.err;
-  EXPECT_EQ(json::retirement_from_json(document.out).value_or_throw().paths, 0U);
+  EXPECT_EQ(json::row_from_json<Retirement>(document.out).value_or_throw().paths, 0U);
 }
 
 TEST_F(AdminCommands, ABackupOfARunningServerIsAStore) {
   teach(server_);
   const Answer backup = server_.kinship({"backup", "copy.db", "--json"});
   ASSERT_EQ(backup.code, 0) << backup.err;
-  const Job job = json::job_from_json(backup.out).value_or_throw();
+  const Job job = json::row_from_json<Job>(backup.out).value_or_throw();
   EXPECT_EQ(job.state, JobState::Done);
   EXPECT_NE(server_.kinship({"jobs", "list"}).out.find(job.id), std::string::npos);
   EXPECT_EQ(server_.kinship({"jobs", "wait", job.id}).code, 0);
@@ -269,11 +268,12 @@ TEST_F(AdminCommands, WhatWasRehearsedIsExplainedAndCounted) {
   const std::string table = explain({});
   EXPECT_NE(table.find("\nrehearsed on 6 recorded queries, "), std::string::npos) << table;
   EXPECT_NE(table.find("  chosen\n"), std::string::npos) << table;
-  const Explanation explanation = json::explanation_from_json(explain({"--json"})).value_or_throw();
+  const Explanation explanation =
+      json::row_from_json<Explanation>(explain({"--json"})).value_or_throw();
   EXPECT_EQ(explanation.rehearsal, reply.rehearsal);
 
   const ServerStatus status =
-      json::server_status_from_json(server_.kinship({"status", "--json"}).out).value_or_throw();
+      json::row_from_json<ServerStatus>(server_.kinship({"status", "--json"}).out).value_or_throw();
   EXPECT_EQ(status.rehearsals, 1U);
   EXPECT_EQ(status.queued_rehearsals, 0U);
   EXPECT_EQ(status.rehearsal_time_s, reply.rehearsal->processor_time_s);

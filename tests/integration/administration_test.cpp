@@ -162,7 +162,8 @@ TEST_F(Administrators, AnEvictedDistributionComesBackWithAHigherRevision) {
   const AdminReply evicted =
       ask(AdminVerb::EvictDistribution, before.distribution->id.hex().substr(0, 8));
   ASSERT_EQ(evicted.status, AdminStatus::Ok) << evicted.message;
-  EXPECT_EQ(json::eviction_from_json(evicted.rows.at(0)).value_or_throw(), before.distribution->id);
+  EXPECT_EQ(json::row_from_json<Eviction>(evicted.rows.at(0)).value_or_throw().id,
+            before.distribution->id);
   const FetchReply after = fetch();
   ASSERT_EQ(after.status, FetchStatus::Ready) << after.message;
   EXPECT_GT(after.distribution->revision, before.distribution->revision);
@@ -173,7 +174,7 @@ TEST_F(Administrators, AfterAResetThereIsNoExperience) {
   ASSERT_EQ(fetch().status, FetchStatus::Ready);
   const AdminReply reply = ask(AdminVerb::ResetTask, "sweep");
   ASSERT_EQ(reply.status, AdminStatus::Ok) << reply.message;
-  EXPECT_EQ(json::retirement_from_json(reply.rows.at(0)).value_or_throw().paths, 6U);
+  EXPECT_EQ(json::row_from_json<Retirement>(reply.rows.at(0)).value_or_throw().paths, 6U);
   EXPECT_EQ(fetch().status, FetchStatus::NoExperience);
 }
 

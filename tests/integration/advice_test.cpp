@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "client/link/client.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/problem_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"

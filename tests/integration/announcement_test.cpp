@@ -9,7 +9,7 @@
 #include "client/link/client.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -95,7 +95,7 @@ TEST(Announcements, TellOfARefitThatNobodyAskedFor) {
   EXPECT_EQ(second.distribution->revision, 2U);
   EXPECT_EQ(second.distribution->sources.at(0).paths, 11U);
   const AdminReply status = client.admin({}).value_or_throw();
-  EXPECT_EQ(json::server_status_from_json(status.rows.at(0)).value_or_throw().followed, 1U);
+  EXPECT_EQ(json::row_from_json<ServerStatus>(status.rows.at(0)).value_or_throw().followed, 1U);
 
   // Who comes late hears of the newest revision.
   EXPECT_EQ(Listener(domain.number()).wait_for(id, 1), 2U);

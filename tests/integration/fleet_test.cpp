@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "client/link/client.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -39,7 +39,7 @@ class Fleet : public testing::Test {
   }
   static ServerStatus status_of(link::Client& client) {
     const AdminReply reply = client.admin({}).value_or_throw();
-    return json::server_status_from_json(reply.rows.at(0)).value_or_throw();
+    return json::row_from_json<ServerStatus>(reply.rows.at(0)).value_or_throw();
   }
   static FetchRequest request_for(const Digest& robot) {
     FetchRequest request;
@@ -57,7 +57,7 @@ class Fleet : public testing::Test {
     do {
       const AdminReply page = client.admin(request).value_or_throw();
       for (const std::string& row : page.rows)
-        listed.insert(json::path_summary_from_json(row).value_or_throw().report_uuid);
+        listed.insert(json::row_from_json<PathSummary>(row).value_or_throw().report_uuid);
       request.cursor = page.next_cursor;
     } while (!request.cursor.empty());
     return listed;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/link/client.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -58,7 +58,7 @@ class Following : public testing::Test {
   }
   ServerStatus status() {
     const AdminReply reply = client_->admin({}).value_or_throw();
-    return json::server_status_from_json(reply.rows.at(0)).value_or_throw();
+    return json::row_from_json<ServerStatus>(reply.rows.at(0)).value_or_throw();
   }
   static std::uint64_t paths_of(const Distribution& distribution) {
     std::uint64_t paths = 0;

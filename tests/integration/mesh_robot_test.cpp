@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "client/link/client.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/problem_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
@@ -149,7 +149,7 @@ class MeshRobots : public testing::Test {
     AdminRequest request;
     request.verb = AdminVerb::ShowRobot;
     request.argument = name;
-    return json::robot_summary_from_json(client_.admin(request).value_or_throw().rows.at(0))
+    return json::row_from_json<RobotSummary>(client_.admin(request).value_or_throw().rows.at(0))
         .value_or_throw();
   }
 

@@ -42,7 +42,7 @@ class Quotas : public testing::Test {
     std::vector<ClientUse> clients;
     const nlohmann::json document = nlohmann::json::parse(answer.out);
     for (const auto& row : document.at("rows"))
-      clients.push_back(json::client_use_from_json(row.dump()).value_or_throw());
+      clients.push_back(json::row_from_json<ClientUse>(row.dump()).value_or_throw());
     return clients;
   }
   static std::uint64_t count(const std::vector<Receipt>& receipts, ReceiptStatus status) {

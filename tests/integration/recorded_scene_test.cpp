@@ -114,7 +114,9 @@ class RecordedScenes : public testing::Test {
     explain.verb = AdminVerb::ExplainDistribution;
     explain.argument = reply.distribution.value().id.hex();
     const AdminReply row = client_.admin(explain).value_or_throw();
-    return json::explanation_from_json(row.rows.at(0)).value_or_throw().distribution.sources.at(0);
+    return json::row_from_json<Explanation>(row.rows.at(0))
+        .value_or_throw()
+        .distribution.sources.at(0);
   }
 
   test::ReservedDomain domain_;

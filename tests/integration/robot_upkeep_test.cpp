@@ -23,7 +23,7 @@ TEST_F(AdminCommands, ALabelIsFreedByARenameAndARobotTakenOutOnlyIfItIsSaidSo) {
   EXPECT_EQ(server_.kinship({"robots", "show", "old_panda"}).code, 0);
   const Answer removed = server_.kinship({"robots", "remove", "old_panda", "--yes", "--json"});
   ASSERT_EQ(removed.code, 0) << removed.err;
-  const auto removal = json::robot_removal_from_json(removed.out).value_or_throw();
+  const auto removal = json::row_from_json<RobotRemoval>(removed.out).value_or_throw();
   EXPECT_EQ(removal.paths, 6U);
   EXPECT_EQ(removal.attempts, 7U);
   EXPECT_FALSE(removal.is_deleted);

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "client/link/client.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -51,7 +51,7 @@ class Stopping : public testing::Test {
   ServerStatus status() {
     AdminRequest request;
     const AdminReply reply = client_.admin(request).value_or_throw();
-    return json::server_status_from_json(reply.rows.at(0)).value_or_throw();
+    return json::row_from_json<ServerStatus>(reply.rows.at(0)).value_or_throw();
   }
   std::uint64_t used(const ServerStatus& status, const std::string& what) const {
     for (const BoundUse& bound : status.bounds)

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "client/link/client.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/problem_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
@@ -55,7 +55,7 @@ class UnsentReports : public testing::Test {
   }
 
   static ServerStatus status_of(link::Client& client) {
-    return json::server_status_from_json(client.admin({}).value_or_throw().rows.at(0))
+    return json::row_from_json<ServerStatus>(client.admin({}).value_or_throw().rows.at(0))
         .value_or_throw();
   }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/link/client.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/raw_conversation.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -29,7 +29,7 @@ class BadInput : public testing::Test {
   }
 
   ServerStatus status() {
-    return json::server_status_from_json(client_.admin({}).value_or_throw().rows.at(0))
+    return json::row_from_json<ServerStatus>(client_.admin({}).value_or_throw().rows.at(0))
         .value_or_throw();
   }
 

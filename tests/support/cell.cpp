@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/robots.hpp"
 
@@ -66,7 +66,7 @@ AdminReply Cell::ask(AdminVerb verb, const std::string& argument) {
 }
 
 ServerStatus Cell::status() {
-  return json::server_status_from_json(ask(AdminRequest()).rows.at(0)).value_or_throw();
+  return json::row_from_json<ServerStatus>(ask(AdminRequest()).rows.at(0)).value_or_throw();
 }
 
 }  // namespace kinship::test

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "proto/dds/replier.hpp"
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "tests/support/reserved_domain.hpp"
 
 namespace kinship::link::robot_names_test {

@@ -39,7 +39,7 @@ TEST(AdminRowsJson, JobIsReadBack) {
   EXPECT_EQ(text, R"({"id":"0a1b2c3d","verb":"backup","argument":"/var/backups/fleet.db",)"
                   R"("state":"running","progress":0.25,"message":"page 3 of 12","rows":7,)"
                   R"("started_ms":1000,"ended_ms":2000})");
-  EXPECT_EQ(to_json(job_from_json(text).value_or_throw()), text);
+  EXPECT_EQ(to_json(row_from_json<Job>(text).value_or_throw()), text);
 }
 
 TEST(AdminRowsJson, JobWithAnImpossibleMemberIsRefusedByName) {
@@ -47,7 +47,7 @@ TEST(AdminRowsJson, JobWithAnImpossibleMemberIsRefusedByName) {
   const auto message_with = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
-    return job_from_json(changed).error().message;
+    return row_from_json<Job>(changed).error().message;
   };
   EXPECT_EQ(message_with(R"("queued")", R"("asleep")"),
             "state: 'asleep' is not one of queued, running, done, failed, cancelled");
@@ -60,7 +60,7 @@ TEST(AdminRowsJson, RetirementIsReadBack) {
   const std::string text = to_json(Retirement{"bin_to_shelf", 12, {digest_of(1), digest_of(2)}});
   EXPECT_EQ(text, R"({"task":"bin_to_shelf","paths":12,"robots":[")" + digest_of(1).hex() +
                       R"(",")" + digest_of(2).hex() + R"("]})");
-  EXPECT_EQ(to_json(retirement_from_json(text).value_or_throw()), text);
+  EXPECT_EQ(to_json(row_from_json<Retirement>(text).value_or_throw()), text);
 }
 
 TEST(AdminRowsJson, ARobotRemovalIsReadBack) {
@@ -68,13 +68,13 @@ TEST(AdminRowsJson, ARobotRemovalIsReadBack) {
   EXPECT_EQ(text, R"({"robot":")" + digest_of(1).hex() +
                       R"(","label":"cell1","paths":12,"attempts":20,"distributions":3,)"
                       R"("is_deleted":true})");
-  EXPECT_EQ(to_json(robot_removal_from_json(text).value_or_throw()), text);
+  EXPECT_EQ(to_json(row_from_json<RobotRemoval>(text).value_or_throw()), text);
 }
 
 TEST(AdminRowsJson, EvictionIsReadBack) {
-  const std::string text = eviction_to_json(digest_of(3));
+  const std::string text = to_json(Eviction{digest_of(3)});
   EXPECT_EQ(text, R"({"evicted":")" + digest_of(3).hex() + R"("})");
-  EXPECT_EQ(eviction_from_json(text).value_or_throw(), digest_of(3));
+  EXPECT_EQ(row_from_json<Eviction>(text).value_or_throw().id, digest_of(3));
 }
 
 TEST(AdminRowsJson, ExplanationIsReadBackWithAndWithoutItsMixture) {
@@ -84,11 +84,11 @@ TEST(AdminRowsJson, ExplanationIsReadBackWithAndWithoutItsMixture) {
   explanation.behind = true;
   explanation.next_fit = "at the next fetch: 12 new paths";
   std::string text = to_json(explanation);
-  EXPECT_EQ(to_json(explanation_from_json(text).value_or_throw()), text);
+  EXPECT_EQ(to_json(row_from_json<Explanation>(text).value_or_throw()), text);
 
   explanation.distribution.mixture.reset();
   text = to_json(explanation);
-  const auto back = explanation_from_json(text);
+  const auto back = row_from_json<Explanation>(text);
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(to_json(*back), text);
   EXPECT_EQ(back->experience[1].label, "iiwa14");
@@ -100,9 +100,9 @@ TEST(AdminRowsJson, RehearsalOfAnExplanationIsReadBackAndMayBeMissing) {
   std::string text = to_json(explanation);
   const std::string none = R"(,"rehearsal":null)";
   ASSERT_NE(text.find(none), std::string::npos) << text;
-  EXPECT_FALSE(explanation_from_json(text).value_or_throw().rehearsal);
+  EXPECT_FALSE(row_from_json<Explanation>(text).value_or_throw().rehearsal);
   text.erase(text.find(none), none.size());
-  EXPECT_FALSE(explanation_from_json(text).value_or_throw().rehearsal);
+  EXPECT_FALSE(row_from_json<Explanation>(text).value_or_throw().rehearsal);
 
   explanation.rehearsal = Rehearsal{.guide = Guide::RetreatWays,
                                     .is_complete = true,
@@ -117,10 +117,10 @@ TEST(AdminRowsJson, RehearsalOfAnExplanationIsReadBackAndMayBeMissing) {
       R"("processor_time_s":74.25,"costs":[{"guide":"none","plans":400,"solved":380,)"
       R"("mean_checks":1552.5,"median_checks":900.0}],"message":"why"}})"))
       << text;
-  EXPECT_EQ(explanation_from_json(text).value_or_throw().rehearsal, explanation.rehearsal);
+  EXPECT_EQ(row_from_json<Explanation>(text).value_or_throw().rehearsal, explanation.rehearsal);
   text.replace(text.find("retreat+ways"), 12, "luck");
-  EXPECT_TRUE(explanation_from_json(text).error().message.starts_with("guide: 'luck'"))
-      << explanation_from_json(text).error().message;
+  EXPECT_TRUE(row_from_json<Explanation>(text).error().message.starts_with("guide: 'luck'"))
+      << row_from_json<Explanation>(text).error().message;
 }
 
 TEST(AdminRowsJson, RefusalInsideAnExplanationNamesThePlace) {
@@ -129,7 +129,7 @@ TEST(AdminRowsJson, RefusalInsideAnExplanationNamesThePlace) {
   std::string text = to_json(explanation);
   const std::string member = R"("recommended_share":0.0)";
   text.replace(text.find(member), member.size(), R"("recommended_share":2)");
-  EXPECT_EQ(explanation_from_json(text).error().message,
+  EXPECT_EQ(row_from_json<Explanation>(text).error().message,
             "distribution.recommended_share: 2 exceeds 1");
 }
 

@@ -1,4 +1,4 @@
-#include "proto/json/summaries_json.hpp"
+#include "proto/json/admin_rows_json.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,14 +33,14 @@ TEST(SummariesJson, RobotIsReadBack) {
       R"({"robot":")" + digest_of(1).hex() +
           R"(","label":"panda","base_link":"base","tip_link":"hand","dof":7,)"
           R"("solver":"numeric","paths":60,"attempts":64,"registered_ms":1234567890123,"geometry":"","geometry_ms":0})");
-  expect_same_text_again(robot, robot_summary_from_json);
+  expect_same_text_again(robot, row_from_json<RobotSummary>);
 }
 
 TEST(SummariesJson, TaskIsReadBack) {
   TaskSummary task{"bin_to_shelf", 100, 120, {}};
   task.robots.push_back({digest_of(2), "panda", 60, 70, 12});
   task.robots.push_back({digest_of(3), "iiwa14", 40, 50, 11});
-  expect_same_text_again(task, task_summary_from_json);
+  expect_same_text_again(task, row_from_json<TaskSummary>);
 }
 
 TEST(SummariesJson, PathIsReadBack) {
@@ -56,9 +56,9 @@ TEST(SummariesJson, PathIsReadBack) {
   path.length = 1.0 / 3.0;
   path.received_ms = 5;
   path.retired_ms = 6;
-  expect_same_text_again(path, path_summary_from_json);
+  expect_same_text_again(path, row_from_json<PathSummary>);
   path.T_task_base = Eigen::Isometry3d::Identity();
-  expect_same_text_again(path, path_summary_from_json);
+  expect_same_text_again(path, row_from_json<PathSummary>);
 }
 
 TEST(SummariesJson, AttemptIsReadBack) {
@@ -69,7 +69,7 @@ TEST(SummariesJson, AttemptIsReadBack) {
   attempt.record.outcome = Outcome::Timeout;
   attempt.record.collision_checks = 12;
   attempt.received_ms = 5;
-  expect_same_text_again(attempt, attempt_summary_from_json);
+  expect_same_text_again(attempt, row_from_json<AttemptSummary>);
 }
 
 TEST(SummariesJson, DistributionIsReadBack) {
@@ -77,7 +77,7 @@ TEST(SummariesJson, DistributionIsReadBack) {
       DistributionSummary{digest_of(6), 2, "bin_to_shelf", digest_of(7), "ur10e",
                           std::string(kMaxProfileBytes, 'p'), DistributionState::Failed,
                           "nothing within reach", 0, 0, 120, 99},
-      distribution_summary_from_json);
+      row_from_json<DistributionSummary>);
 }
 
 TEST(SummariesJson, StatusIsReadBack) {
@@ -106,9 +106,9 @@ TEST(SummariesJson, StatusIsReadBack) {
     *counter = ++value;
   status.upstream = upstream;
   status.replicas = {{"postgresql://db2/kinship", value + 1, value + 2, value + 3, "it is behind"}};
-  expect_same_text_again(status, server_status_from_json);
-  EXPECT_EQ(server_status_from_json(to_json(status))->upstream->tasks, value);
-  EXPECT_EQ(server_status_from_json(to_json(status))->replicas.at(0).failed, value + 3);
+  expect_same_text_again(status, row_from_json<ServerStatus>);
+  EXPECT_EQ(row_from_json<ServerStatus>(to_json(status))->upstream->tasks, value);
+  EXPECT_EQ(row_from_json<ServerStatus>(to_json(status))->replicas.at(0).failed, value + 3);
 }
 
 TEST(SummariesJson, StatusOfAServerThatRehearsesNothingIsRead) {
@@ -116,11 +116,11 @@ TEST(SummariesJson, StatusOfAServerThatRehearsesNothingIsRead) {
   status.fits = 3;
   std::string text = to_json(status);
   text = text.substr(0, text.find(R"(,"rehearsals")")) + "}";
-  const auto read = server_status_from_json(text);
+  const auto read = row_from_json<ServerStatus>(text);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(to_json(*read), to_json(status));
   status.rehearsal_time_s = -1;
-  EXPECT_EQ(server_status_from_json(to_json(status)).error().message,
+  EXPECT_EQ(row_from_json<ServerStatus>(to_json(status)).error().message,
             "rehearsal_time_s: -1 is below 0");
 }
 
@@ -142,7 +142,7 @@ TEST(SummariesJson, RegisteredRobotNamesTheSameArms) {
 }
 
 TEST(SummariesJson, RowOfAnotherKindIsRefusedByItsMissingMember) {
-  const auto refused = robot_summary_from_json(to_json(ServerStatus{}));
+  const auto refused = row_from_json<RobotSummary>(to_json(ServerStatus{}));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "robot: is missing");
 }
@@ -151,7 +151,8 @@ TEST(SummariesJson, CountersMustFit) {
   std::string text = to_json(RobotSummary{});
   const std::string member = "\"dof\":0";
   text.replace(text.find(member), member.size(), "\"dof\":4294967296");
-  EXPECT_EQ(robot_summary_from_json(text).error().message, "dof: 4294967296 exceeds 4294967295");
+  EXPECT_EQ(row_from_json<RobotSummary>(text).error().message,
+            "dof: 4294967296 exceeds 4294967295");
 }
 
 }  // namespace

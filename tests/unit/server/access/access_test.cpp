@@ -6,7 +6,6 @@
 #include <string>
 
 #include "proto/types/enum_text.hpp"
-#include "server/access/verb_rules.hpp"
 
 namespace kinship::access::access_test {
 namespace {
@@ -32,7 +31,7 @@ std::string words(const std::optional<Error>& refusal) { return refusal ? refusa
 
 std::set<std::string> allowed(const Caller& caller) {
   std::set<std::string> names;
-  for (const VerbRule& rule : verb_rules())
+  for (const VerbRule& rule : kVerbRules)
     if (!refusal_of(caller, rule.verb))
       names.emplace(rule.name);
   return names;
@@ -46,7 +45,7 @@ TEST(VerbRules, EachVerbHasOneUnderANameOfItsOwn) {
     EXPECT_TRUE(names.insert(rule.name).second) << rule.name;
     EXPECT_TRUE(acts.insert(rule.act).second) << rule.act;
   }
-  EXPECT_EQ(names.size(), verb_rules().size());
+  EXPECT_EQ(names.size(), kVerbRules.size());
 }
 
 TEST(VerbRules, ARoleMayWhatItIsForAndWhatTheOneBeforeItMay) {
@@ -77,7 +76,7 @@ TEST(VerbRules, ARoleMayWhatItIsForAndWhatTheOneBeforeItMay) {
   EXPECT_EQ(allowed(named("o", AccessRole::Operator)), more);
   more.insert({"rename_robot", "remove_robot"});
   EXPECT_EQ(allowed(named("a", AccessRole::Admin)), more);
-  EXPECT_EQ(more.size(), verb_rules().size());
+  EXPECT_EQ(more.size(), kVerbRules.size());
 }
 
 TEST(Access, ARefusalSaysWhoWhatAndWhatItWouldTake) {
@@ -93,10 +92,10 @@ TEST(Access, ARefusalSaysWhoWhatAndWhatItWouldTake) {
 
 TEST(Access, WithoutSecurityAnotherHostMayReadAndReportButChangeNothing) {
   const Caller here = without_security(true), elsewhere = without_security(false);
-  for (const VerbRule& rule : verb_rules()) {
+  for (const VerbRule& rule : kVerbRules) {
     EXPECT_EQ(words(refusal_of(here, rule.verb)), "") << rule.name;
     EXPECT_EQ(refusal_of(elsewhere, rule.verb).has_value(),
-              rule.is_change && rule.verb != AdminVerb::CancelJob)
+              rule.is(VerbRule::Changes) && rule.verb != AdminVerb::CancelJob)
         << rule.name;
   }
   EXPECT_EQ(words(refusal_of(elsewhere, AdminVerb::ResetTask)),

@@ -5,7 +5,6 @@
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::app::admin_reply_test {
@@ -27,7 +26,7 @@ TEST(AdminReply, RowsAreTheDocumentsThatClientsRead) {
   EXPECT_EQ(reply.status, AdminStatus::Ok);
   EXPECT_EQ(reply.next_cursor, "17");
   ASSERT_EQ(reply.rows.size(), 2U);
-  EXPECT_EQ(json::task_summary_from_json(reply.rows[1]).value_or_throw().task, "bin");
+  EXPECT_EQ(json::row_from_json<TaskSummary>(reply.rows[1]).value_or_throw().task, "bin");
 }
 
 TEST(AdminReply, EveryKindOfRowIsItsOwnDocument) {
@@ -40,7 +39,7 @@ TEST(AdminReply, EveryKindOfRowIsItsOwnDocument) {
   distribution.limits = Eigen::Matrix2Xd::Zero(2, 3);
   EXPECT_EQ(to_json(distribution), json::to_json(distribution));
   const Digest id = Digest::from_hex(std::string(64, 'a')).value();
-  EXPECT_EQ(json::eviction_from_json(to_json(service::Eviction{id})).value_or_throw(), id);
+  EXPECT_EQ(json::row_from_json<Eviction>(to_json(Eviction{id})).value_or_throw().id, id);
   const service::AdminRow exported = service::ExportedRobot{robot};
   EXPECT_TRUE(to_json(exported).starts_with("{\"robot_description\":")) << to_json(exported);
   EXPECT_EQ(to_json(service::TextLine{"1,2,3"}), "1,2,3");

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "proto/types/caller.hpp"
+
+/// The verbs of the admin conversation: what each is called, answers, needs and changes.
+namespace kinship {
+
+/// Numbered as on the wire: a new verb comes last.
+enum class AdminVerb {
+  Status,                ///< row: ServerStatus
+  ListRobots,            ///< rows: RobotSummary
+  ShowRobot,             ///< rows: RobotSummary, RobotDescription
+  ListTasks,             ///< rows: TaskSummary
+  ShowTask,              ///< row: TaskSummary
+  ListPaths,             ///< rows: PathSummary; filters robot and task
+  ShowPath,              ///< row: Attempt
+  ListDistributions,     ///< rows: DistributionSummary; filters robot and task
+  ShowDistribution,      ///< row: Distribution
+  ExplainDistribution,   ///< row: Explanation
+  EvictDistribution,     ///< row: {"evicted": id}
+  ExportConfigurations,  ///< begins a job; row: Job. Rows of the job: lines of CSV
+  ExportPaths,           ///< rows: lines of an experience file; filters robot and task
+  RetirePath,            ///< row: Retirement
+  ResetTask,             ///< row: Retirement
+  Backup,                ///< begins a job that writes a file at the server; row: Job
+  ListJobs,              ///< rows: Job
+  ShowJob,               ///< row: Job, when the job has ended or `deadline` has passed
+  CancelJob,             ///< row: Job
+  JobRows,               ///< the rows of a job that is done, page by page
+  ListAttempts,          ///< rows: AttemptSummary, in the order of arrival; filters robot and task
+  RenameRobot,           ///< `robot` gets the label `argument`; row: RobotSummary
+  RemoveRobot,           ///< row: RobotRemoval
+  ListAudit,             ///< rows: AuditEntry, the newest first; of the name `argument`, if any
+  ListClients,           ///< rows: ClientUse, the busiest first
+  ListBackups,           ///< rows: BackupSummary, the newest first
+  HashBackup,            ///< begins a job; row: Job. Rows of the job: SHA-256 in hex, bytes
+  ReadBackup             ///< row: bytes of a backup from `cursor` on, in base64
+};
+inline constexpr AdminVerb kLastVerb = AdminVerb::ReadBackup;
+
+/// What `argument` of a request names.
+enum class VerbArgument { Nothing, Robot, Task, Report, Distribution, Job, BackupFile, Name };
+
+struct VerbRule {
+  enum Trait : unsigned {
+    Changes = 1,  ///< it is in the audit log, and without security for this machine alone
+    OfAll = 2,    ///< about all tasks and robots: not for a certificate that is for some of them
+    Lists = 4,    ///< a page may have fewer rows than were asked for
+    Filters = 8,  ///< its request may name a robot and a task
+    FromMemory = 16,  ///< answered without the store
+    Long = 32         ///< takes many transactions; in the audit log as begun before the first
+  };
+
+  AdminVerb verb;
+  std::string_view name;  ///< in the audit log, which keeps it
+  std::string_view act;   ///< completes "... may not <act>"
+  AccessRole least;       ///< this role, and those after it in AccessRole
+  VerbArgument argument;
+  unsigned traits = 0;
+
+  constexpr bool is(Trait trait) const { return (traits & trait) != 0; }
+};
+
+/// One for each verb, in the order of AdminVerb.
+inline constexpr auto kVerbRules = [] {
+  using enum AdminVerb;
+  using enum VerbRule::Trait;
+  using Is = VerbArgument;
+  constexpr AccessRole kRobot = AccessRole::Robot, kReader = AccessRole::Reader,
+                       kOperator = AccessRole::Operator, kAdmin = AccessRole::Admin;
+  return std::array{
+      VerbRule{Status, "status", "see the status", kRobot, Is::Nothing},
+      VerbRule{ListRobots, "list_robots", "list robots", kReader, Is::Nothing, Lists},
+      VerbRule{ShowRobot, "show_robot", "see a robot's description", kReader, Is::Robot},
+      VerbRule{ListTasks, "list_tasks", "list tasks", kReader, Is::Nothing, Lists},
+      VerbRule{ShowTask, "show_task", "see a task", kReader, Is::Task},
+      VerbRule{ListPaths, "list_paths", "list paths", kReader, Is::Nothing, Lists | Filters},
+      VerbRule{ShowPath, "show_path", "see a path", kReader, Is::Report},
+      VerbRule{ListDistributions, "list_distributions", "list distributions", kReader, Is::Nothing,
+               Lists | Filters},
+      VerbRule{ShowDistribution, "show_distribution", "see a distribution", kReader,
+               Is::Distribution},
+      VerbRule{ExplainDistribution, "explain_distribution", "have a distribution explained",
+               kReader, Is::Distribution},
+      VerbRule{EvictDistribution, "evict_distribution", "evict distributions", kOperator,
+               Is::Distribution, Changes},
+      VerbRule{ExportConfigurations, "export_configurations", "export configurations", kReader,
+               Is::Distribution},
+      VerbRule{ExportPaths, "export_paths", "export paths", kReader, Is::Nothing, Lists | Filters},
+      VerbRule{RetirePath, "retire_path", "retire paths", kOperator, Is::Report, Changes},
+      VerbRule{ResetTask, "reset_task", "reset tasks", kOperator, Is::Task, Changes | Long},
+      VerbRule{Backup, "backup", "make backups", kOperator, Is::BackupFile, Changes | OfAll},
+      VerbRule{ListJobs, "list_jobs", "list jobs", kOperator, Is::Nothing,
+               OfAll | Lists | FromMemory},
+      VerbRule{ShowJob, "show_job", "see a job", kReader, Is::Job},
+      // Of the caller's own job; of others see access.hpp.
+      VerbRule{CancelJob, "cancel_job", "cancel jobs", kReader, Is::Job, Changes},
+      VerbRule{JobRows, "job_rows", "read what a job made", kReader, Is::Job, FromMemory},
+      VerbRule{ListAttempts, "list_attempts", "list attempts", kReader, Is::Nothing,
+               Lists | Filters},
+      VerbRule{RenameRobot, "rename_robot", "rename robots", kAdmin, Is::Robot, Changes},
+      VerbRule{RemoveRobot, "remove_robot", "remove robots", kAdmin, Is::Robot, Changes | Long},
+      VerbRule{ListAudit, "list_audit", "read the audit log", kOperator, Is::Name, OfAll | Lists},
+      VerbRule{ListClients, "list_clients", "list clients", kOperator, Is::Nothing,
+               OfAll | Lists | FromMemory},
+      VerbRule{ListBackups, "list_backups", "list backups", kOperator, Is::Nothing, OfAll | Lists},
+      // A copy of everything leaves the server: in the audit log once, and without security for its
+      // own machine alone. Reading the pieces of one is in the log where it is refused.
+      VerbRule{HashBackup, "hash_backup", "digest backups", kOperator, Is::BackupFile,
+               Changes | OfAll},
+      VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::BackupFile,
+               Changes | OfAll}};
+}();
+
+/// Whether a table has one row for each verb, in their order.
+/// \param table  of rows with a member `verb`.
+template <typename Table>
+constexpr bool is_complete_for_verbs(const Table& table) {
+  std::size_t verb = 0;
+  for (const auto& row : table)
+    if (static_cast<std::size_t>(row.verb) != verb++)
+      return false;
+  return verb == static_cast<std::size_t>(kLastVerb) + 1;
+}
+static_assert(is_complete_for_verbs(kVerbRules));
+
+constexpr const VerbRule& rule_of(AdminVerb verb) {
+  return kVerbRules.at(static_cast<std::size_t>(verb));
+}
+
+}  // namespace kinship
