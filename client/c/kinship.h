@@ -215,7 +215,7 @@ KINSHIP_API kinship_code kinship_report(kinship_client* client, const kinship_at
  *    "machine": "cell 3", "T_task_base": [0, 0, 0, 0, 0, 0, 1],
  *    "waypoints": [[0, 0.5], [1, 0.5]], "record": {"outcome": "solved", "planner": "mine",
  *    "planner_options": "", "planning_time_s": 0.5, "collision_checks": 1000, "projections": 0,
- *    "time_limit_s": 10, "arm": "uniform", "share": 0, "distribution_id": null,
+ *    "time_limit_s": 10, "sampling_mode": "uniform", "share": 0, "distribution_id": null,
  *    "distribution_revision": 0},
  *    "scene": {"boxes": [{"name": "table", "pose": [0.6, 0, -0.05, 0, 0, 0, 1],
  *    "size": [0.8, 1.2, 0.1]}]}} */

@@ -183,7 +183,7 @@ int list_paths(link::Client& server, const ListOptions& options, std::ostream& o
                               {"LENGTH", Fit::Wide},
                               {"TIME_S", Fit::Wide},
                               {"PLANNER", Fit::Wide},
-                              {"ARM", Fit::Wide},
+                              {"MODE", Fit::Wide},
                               {"MACHINE", Fit::Wide},
                               {"RECEIVED", Fit::Wide},
                               {"RETIRED", Fit::Wide}}),

@@ -67,7 +67,7 @@ void print_robot(const RobotSummary& robot, const RobotDescription& description,
       << "registered  " << time_text(robot.registered_ms) << '\n';
 }
 
-/// Collision checks per solution of an arm; "-" without a solution.
+/// Collision checks per solution in a sampling mode; "-" without a solution.
 std::string checks_text(const std::optional<ModeEvidence>& mode) {
   return mode && mode->solved > 0 ? number_text(mode->checks_per_solution, 0) : "-";
 }
@@ -100,7 +100,7 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
       << " collision checks, " << number_text(record.planning_time_s, 3) << " s of "
       << number_text(record.time_limit_s, 1) << " s\n"
       << "planner     " << record.planner << ' ' << record.planner_options << '\n'
-      << "arm         " << to_text(record.sampling_mode) << ", share "
+      << "mode        " << to_text(record.sampling_mode) << ", share "
       << number_text(record.share, 2);
   if (record.distribution_id)
     out << ", distribution " << record.distribution_id->short_hex() << " revision "

@@ -69,7 +69,7 @@ class GuidanceCache {
   /// How the next problem shall be planned, by what ask() brought and add() was told. Never waits.
   QueryGuidance choose(const Problem& problem) const;
 
-  /// A problem was attempted: all that come after choose their arm by that, too.
+  /// A problem was attempted: all that come after choose their sampling mode by that, too.
   void add(const PlannedProblem& planned);
 
  private:

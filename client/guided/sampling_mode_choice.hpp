@@ -27,8 +27,8 @@ double guided_fraction(const Advice& advice, const SamplingModeOptions& options)
 
 /// Chooses, query by query, between planning guided and uniformly (control) for one (task, robot).
 ///
-/// Thompson sampling: the arm that is cheaper in one draw from what is believed of both costs
-/// (evidence::compare_costs) is taken; with two arms that is guided with the probability that
+/// Thompson sampling: the mode that is cheaper in one draw from what is believed of both costs
+/// (evidence::compare_costs) is taken; with two modes that is guided with the probability that
 /// guidance is cheaper. The probability is kept at least kGuidedFloor; that of control at least
 /// kEarlyControlFloor until kEarlyControls attempts of it are known, then kLateControlFloor. A
 /// `control_fraction` takes the place of all that; a share of 0 plans every query uniformly, which
@@ -42,8 +42,8 @@ class SamplingModeChooser {
   /// \throws std::invalid_argument if a share is outside 0 to 1.
   SamplingModeChooser(const Advice& advice, const SamplingModeOptions& options);
 
-  /// The arm of the next query, guidance being there: Guided or Control, or Uniform at share 0.
-  /// Equal seed and equal evidence, equal arm.
+  /// The mode of the next query, guidance being there: Guided or Control, or Uniform at share 0.
+  /// Equal seed and equal evidence, equal mode.
   SamplingMode choose(std::uint64_t seed) const;
 
   /// Probability that the next query is guided.

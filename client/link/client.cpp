@@ -8,8 +8,8 @@
 
 #include "client/link/delivery.hpp"
 #include "client/link/environment.hpp"
+#include "client/link/interruptible_sleep.hpp"
 #include "client/link/outbox.hpp"
-#include "client/link/pauses.hpp"
 #include "client/link/report_sender.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/requester.hpp"
@@ -33,7 +33,7 @@ milliseconds server_share(milliseconds left) {
 
 /// Asks until the reply is final or the time is over: a server that is busy says when to ask again.
 template <typename Reply>
-Result<Reply> ask_until_final(Clock::time_point deadline, Pauses& pauses,
+Result<Reply> ask_until_final(Clock::time_point deadline, InterruptibleSleep& sleep,
                               const std::function<Result<Reply>()>& ask) {
   while (true) {
     Result<Reply> reply = ask();
@@ -42,7 +42,7 @@ Result<Reply> ask_until_final(Clock::time_point deadline, Pauses& pauses,
     const auto pause = std::max<milliseconds>(reply->retry_after, kShortestPause);
     if (Clock::now() + pause >= deadline)
       return reply;
-    pauses.sleep(pause);
+    sleep.sleep(pause);
   }
 }
 
@@ -98,7 +98,7 @@ struct Client::Line {
   dds::Requester<codec::ReportConversation> reporting;
   dds::Requester<codec::FetchConversation> fetching;
   dds::Requester<codec::AdminConversation> administering;
-  Pauses pauses;
+  InterruptibleSleep sleep;
   std::optional<ReportSender> sender;  // last: uses the outbox and requesters
 };
 
@@ -128,7 +128,7 @@ Result<RegisterReply> Client::register_robot(const RobotDescription& description
       line_->outbox->keep_robot(chain->digest(), description);
   const Clock::time_point deadline = Clock::now() + line_->timeout;
   Result<RegisterReply> reply = ask_until_final<RegisterReply>(
-      deadline, line_->pauses, [&] { return line_->registering.call(description, deadline); });
+      deadline, line_->sleep, [&] { return line_->registering.call(description, deadline); });
   if (line_->sender && reply && reply->status != RegisterStatus::Refused)
     line_->sender->retry();
   return reply;
@@ -187,7 +187,7 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
     const std::optional<milliseconds> pause = is_worse ? std::nullopt : pause_after(*last);
     if (!pause || Clock::now() + *pause >= deadline)
       return answer();
-    line_->pauses.sleep(*pause);
+    line_->sleep.sleep(*pause);
   }
 }
 
@@ -201,7 +201,7 @@ std::unique_ptr<Watcher> Client::watch(Watcher::Handlers handlers) const {
 }
 
 Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
-  return link::deliver(std::move(attempts), line_->timeout, line_->pauses,
+  return link::deliver(std::move(attempts), line_->timeout, line_->sleep,
                        [this](const ReportRequest& batch, Clock::time_point deadline) {
                          return line_->reporting.call(batch, deadline);
                        });
@@ -209,7 +209,7 @@ Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
 
 Result<AdminReply> Client::admin(const AdminRequest& request) {
   const Clock::time_point deadline = Clock::now() + line_->timeout + request.deadline;
-  return ask_until_final<AdminReply>(deadline, line_->pauses,
+  return ask_until_final<AdminReply>(deadline, line_->sleep,
                                      [&] { return line_->administering.call(request, deadline); });
 }
 
@@ -226,7 +226,7 @@ void Client::cancel() {
   line_->registering.cancel();
   line_->fetching.cancel();
   line_->administering.cancel();
-  line_->pauses.end();
+  line_->sleep.end();
 }
 
 }  // namespace kinship::link

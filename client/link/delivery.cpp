@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds kLongestWait = 10min;  // of one batch, as t
 /// asks for do not count.
 /// \return what is wrong if there was no reply at all.
 std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds timeout,
-                               Pauses& pauses, const Send& send, Receipts& receipts) {
+                               InterruptibleSleep& sleep, const Send& send, Receipts& receipts) {
   Clock::time_point deadline = Clock::now() + timeout;
   const Clock::time_point last = deadline + kLongestWait;
   std::chrono::milliseconds asked{0};
@@ -34,7 +34,7 @@ std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds ti
       const auto pause = std::max(kPause, asked);
       if (Clock::now() + pause >= deadline)
         break;
-      if (!pauses.sleep(pause))
+      if (!sleep.sleep(pause))
         break;
     }
     const Result<ReportReply> reply = send(batch, deadline);
@@ -54,7 +54,7 @@ std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds ti
 }  // namespace
 
 Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts,
-                                     std::chrono::milliseconds timeout, Pauses& pauses,
+                                     std::chrono::milliseconds timeout, InterruptibleSleep& sleep,
                                      const Send& send) {
   std::vector<Receipt> receipts;
   for (const Attempt& attempt : attempts) {
@@ -78,7 +78,7 @@ Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts,
       batch.attempts.push_back(std::move(attempt));
     }
     Receipts answered;
-    if (const auto error = hand_over(std::move(batch), timeout, pauses, send, answered))
+    if (const auto error = hand_over(std::move(batch), timeout, sleep, send, answered))
       return *error;
     for (const auto& [uuid, place] : places)
       if (const auto found = answered.find(uuid); found != answered.end())

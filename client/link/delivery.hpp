@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "client/link/pauses.hpp"
+#include "client/link/interruptible_sleep.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
@@ -14,11 +14,11 @@ namespace kinship::link {
 /// Hands attempts to a server in batches within its limits, and again what it could not store yet.
 /// \param timeout  of a batch, with its repetitions; beside it pauses that the server asks for do
 ///                 not count, up to 10 minutes.
-/// \param pauses   ending them ends the delivery: what has no receipt yet is TryAgain.
+/// \param sleep    ending it ends the delivery: what has no receipt yet is TryAgain.
 /// \param send     sends a batch and waits for its reply until the deadline.
 /// \return one receipt per attempt, in order; an error if a batch had no reply at all.
 Result<std::vector<Receipt>> deliver(
-    std::vector<Attempt> attempts, std::chrono::milliseconds timeout, Pauses& pauses,
+    std::vector<Attempt> attempts, std::chrono::milliseconds timeout, InterruptibleSleep& sleep,
     const std::function<Result<ReportReply>(const ReportRequest&,
                                             std::chrono::steady_clock::time_point deadline)>& send);
 

@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kIdle = 2s;       // another process may hav
 constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
 constexpr std::chrono::hours kAgeing{1};
-constexpr std::chrono::minutes kGreeting{10};
+constexpr std::chrono::minutes kBetweenProbes{10};
 constexpr std::chrono::milliseconds kPoll = 50ms;  // for what another process sends
 
 bool is_final(ReceiptStatus status) {
@@ -124,13 +124,13 @@ std::chrono::milliseconds ReportSender::work(std::optional<files::LockFile>& loc
       return kLockRetry;
   }
   age_now_and_then(false);
-  is_offering_again_ = false;
+  is_resending_ = false;
   retry_after_ = 0ms;
-  const bool gets_on = send_all_pending() && greet();
+  const bool gets_on = send_all_pending() && probe_epoch();
   if (!gets_on)  // a server that is busy says when it will not be
     return retry_after_ > 0ms ? std::max<std::chrono::milliseconds>(retry_after_, kShortestRetry)
                               : kRetry;
-  return is_offering_again_ ? 0ms : kIdle;
+  return is_resending_ ? 0ms : kIdle;
 }
 
 /// Every hour, so that a process that is killed takes no more than that with it, and at the end.
@@ -174,13 +174,13 @@ bool ReportSender::send_all_pending() {
 /// Tells a server that came, and every server now and then, how far its store is known here, for
 /// the case that it was rolled back: who reports nothing would never hear of it.
 /// \return false if it should be tried again.
-bool ReportSender::greet() {
+bool ReportSender::probe_epoch() {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
-  const bool is_known = servers == servers_greeted_ && greeted_ && now_() - *greeted_ < kGreeting;
+  const bool is_known = servers == servers_probed_ && probed_ && now_() - *probed_ < kBetweenProbes;
   if (servers == 0 || is_known || !outbox_.has_receipts())
     return true;
-  ReportRequest greeting;
-  return exchange(greeting).has_value();
+  ReportRequest probe;
+  return exchange(probe).has_value();
 }
 
 /// Sends a batch with what is known of the store, and notes what the reply says of it.
@@ -193,9 +193,9 @@ Result<ReportReply> ReportSender::exchange(ReportRequest& batch) {
   if (!reply || reply->store_epoch == Uuid{})  // the server could not even read the batch
     return reply;
   if (outbox_.note_store(reply->store_epoch, reply->history_mark))
-    is_offering_again_ = true;
-  servers_greeted_ = servers;
-  greeted_ = now_();
+    is_resending_ = true;
+  servers_probed_ = servers;
+  probed_ = now_();
   return reply;
 }
 

@@ -46,9 +46,9 @@ class ReportSender {
   /// \param register_robot  called on the sender's thread for robots that the server does not know
   ///                        and the outbox has a description of; empty: they wait.
   /// \param now             the time by which `sent/` grows older.
-  /// \param count_servers   a new server is greeted if nothing is pending, and every server now and
+  /// \param count_servers   a new server is probed if nothing is pending, and every server now and
   ///                        then: its answer tells whether its store has lost what was sent. Empty:
-  ///                        nobody is greeted.
+  ///                        nobody is probed.
   ReportSender(Outbox& outbox, Send send, Register register_robot = {},
                Now now = std::chrono::steady_clock::now, CountServers count_servers = {});
   ~ReportSender();  ///< waits for the call under way, which should be made to end before
@@ -67,7 +67,7 @@ class ReportSender {
   std::chrono::milliseconds work(std::optional<files::LockFile>& lock);
   void age_now_and_then(bool is_end);
   bool send_all_pending();
-  bool greet();
+  bool probe_epoch();
   Result<ReportReply> exchange(ReportRequest& batch);
   bool deliver(ReportRequest& batch);
   bool send_batch(ReportRequest& batch);
@@ -83,12 +83,11 @@ class ReportSender {
   const CountServers count_servers_;
   // Of the thread alone:
   std::optional<std::chrono::steady_clock::time_point> aged_;
-  std::optional<std::chrono::steady_clock::time_point>
-      greeted_;  // the last reply, also a receipt's
-  std::uint64_t servers_greeted_ = 0;
-  bool is_offering_again_ = false;  // what was sent is pending again
-  RetryAfter retry_after_{0};       // the server asked for, in this round
-  std::set<Digest> unknown_;        // robots whose reports wait for the next round
+  std::optional<std::chrono::steady_clock::time_point> probed_;  // the last reply, also a receipt's
+  std::uint64_t servers_probed_ = 0;
+  bool is_resending_ = false;  // what was sent is pending again
+  RetryAfter retry_after_{0};  // the server asked for, in this round
+  std::set<Digest> unknown_;   // robots whose reports wait for the next round
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

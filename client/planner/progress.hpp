@@ -32,7 +32,7 @@ class Progress {
   bool terminal_;
   std::size_t total_;
   std::size_t done_ = 0, attempted_ = 0, solved_ = 0;
-  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // searches by arm
+  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // searches by sampling mode
   std::size_t gated_ = 0;                               // of the guided ones
   UnplannedProblems unplanned_;
   std::uint64_t checks_ = 0;    // of searches

@@ -74,7 +74,7 @@ void bind_word(AttemptClass& attempt, const char* name, Enum PlanningRecord::*me
 
 void bind_record(AttemptClass& attempt) {
   bind_word(attempt, "outcome", &PlanningRecord::outcome, "'solved', 'timeout' or 'failed'.");
-  bind_word(attempt, "arm", &PlanningRecord::sampling_mode,
+  bind_word(attempt, "sampling_mode", &PlanningRecord::sampling_mode,
             "'guided', 'control' (uniform to compare) or 'uniform' (there was no guidance).");
   bind_member(attempt, "planner", &PlanningRecord::planner, "Its name.");
   bind_member(attempt, "planner_options", &PlanningRecord::planner_options, "Free text.");

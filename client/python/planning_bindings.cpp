@@ -66,12 +66,13 @@ SharedGuidance guidance_for(const Robot& robot, const std::optional<AnyGuidance>
 }
 
 planner::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& problem,
-                                const std::string& arm) {
+                                const std::string& sampling_mode) {
   if (!guidance)
     return {.why_not = "no guidance was given"};
   return {.guidance = &guidance->guidance(),
-          .sampling_mode = arm.empty() ? guidance->choose(problem)
-                                       : parse_word<SamplingMode>(arm).value_or_throw()};
+          .sampling_mode = sampling_mode.empty()
+                               ? guidance->choose(problem)
+                               : parse_word<SamplingMode>(sampling_mode).value_or_throw()};
 }
 
 /// What kinship-plan warns of: solids of the robot and of the scene that cannot be meant.
@@ -106,12 +107,12 @@ void read_proof(std::optional<double> clearance, std::optional<double> resolutio
 
 Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
                 const std::optional<AnyGuidance>& guided_by, std::optional<std::uint64_t> seed,
-                const std::string& arm, const planner::PlanSettings& settings) {
+                const std::string& sampling_mode, const planner::PlanSettings& settings) {
   Plan made{robot, problem, settings, {}};
   if (seed)
     made.problem.seed = *seed;
   const SharedGuidance guidance = guidance_for(*robot, guided_by);
-  const planner::QueryGuidance query = query_of(guidance, made.problem, arm);
+  const planner::QueryGuidance query = query_of(guidance, made.problem, sampling_mode);
   std::vector<std::string> doubts;
   {
     const py::gil_scoped_release unlocked;
@@ -244,7 +245,7 @@ void bind_outcome(py::class_<Plan>& plan) {
 }
 
 void bind_guided(py::class_<Plan>& plan) {
-  plan.def_property_readonly("arm", word(&ProblemResult::sampling_mode),
+  plan.def_property_readonly("sampling_mode", word(&ProblemResult::sampling_mode),
                              "'guided', 'control' (uniform to compare) or 'uniform'.")
       .def_property_readonly("share", result(&ProblemResult::share), "Of guided samples.")
       .def_property_readonly("guide", word(&ProblemResult::guide),
@@ -272,7 +273,7 @@ void bind_planning(py::module_& module) {
       "plan",
       [](const std::shared_ptr<Robot>& robot, const Problem& problem,
          const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
-         const std::string& arm, const std::string& planner, std::uint64_t max_checks,
+         const std::string& sampling_mode, const std::string& planner, std::uint64_t max_checks,
          std::optional<double> clearance, std::optional<double> resolution,
          std::uint64_t shortcut_checks, int max_goals, double limit_slack) {
         planner::PlanSettings settings;
@@ -283,10 +284,10 @@ void bind_planning(py::module_& module) {
         settings.limit_slack = limit_slack;
         if (!planner.empty())
           settings.planner = planner::parse_planner(planner).value_or_throw();
-        return plan_query(robot, problem, guidance, seed, arm, settings);
+        return plan_query(robot, problem, guidance, seed, sampling_mode, settings);
       },
       py::arg("robot"), py::arg("problem"), py::arg("guidance") = py::none(), py::kw_only(),
-      py::arg("seed") = py::none(), py::arg("arm") = "", py::arg("planner") = "",
+      py::arg("seed") = py::none(), py::arg("sampling_mode") = "", py::arg("planner") = "",
       py::arg("max_checks") = planner::PlanSettings{}.max_checks, py::arg("clearance") = py::none(),
       py::arg("resolution") = py::none(),
       py::arg("shortcut_checks") = planner::PlanSettings{}.shortcut_checks,
@@ -296,7 +297,7 @@ void bind_planning(py::module_& module) {
 
 guidance         of Client.guidance(), or a Distribution; None: uniform
 seed             instead of the problem's: equal seed, equal path
-arm              'guided', 'control' or 'uniform'; empty: chosen as the evidence says
+sampling_mode    'guided', 'control' or 'uniform'; empty: chosen as the evidence says
 planner          'birrt', 'cbirrt2', 'roadmap' or 'ompl:NAME'; empty: as the problem needs
 max_checks       collision checks after which it gives up
 clearance        what comes nearer to an obstacle counts as touching, m, by default 0.001: every edge

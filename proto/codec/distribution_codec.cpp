@@ -35,7 +35,7 @@ void check_recent(const std::vector<JudgedAttempt>& recent, Rules& rules) {
   rules.at_most("recent", recent.size(), kMaxJudgedAttempts);
   for (std::size_t i = 0; i < recent.size() && !rules.broken(); ++i) {
     rules.that(recent[i].sampling_mode != SamplingMode::Uniform,
-               "recent: an attempt of arm uniform");
+               "recent: an attempt of sampling_mode uniform");
     if (i > 0)
       rules.that(recent[i].age <= recent[i - 1].age,
                  "recent: age " + std::to_string(recent[i].age) + " after " +

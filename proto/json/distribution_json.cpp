@@ -63,7 +63,7 @@ Advice read_advice(const Reader& reader) {
   const std::vector<Reader> recent = reader.at("recent").elements(kMaxJudgedAttempts);
   for (std::size_t i = 0; i < recent.size(); ++i) {
     if (advice.recent[i].sampling_mode == SamplingMode::Uniform)
-      recent[i].at("arm").refuse("must be guided or control");
+      recent[i].at("sampling_mode").refuse("must be guided or control");
     if (i > 0 && advice.recent[i].age > advice.recent[i - 1].age)
       recent[i].refuse("is older than the one before, must be oldest first");
   }

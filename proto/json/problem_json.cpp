@@ -85,7 +85,7 @@ constexpr std::tuple kGuidance{
     Field{"distribution_id", &ProblemResult::distribution_id, {.may_be_missing = true}},
     Field{"revision", &ProblemResult::distribution_revision},
     Field{"share", &ProblemResult::share, {.min = 0, .max = 1}},
-    Field{"arm", &ProblemResult::sampling_mode},
+    Field{"sampling_mode", &ProblemResult::sampling_mode},
     Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}},
     Field{"track_share", &ProblemResult::track_share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"experience_revision", &ProblemResult::experience_revision, {.may_be_missing = true}},

@@ -12,12 +12,12 @@
 
 namespace kinship {
 
-/// What all attempts of one arm of a (task, robot) cost. An attempt that did not solve its problem
-/// is censored: its checks count, it adds no solution.
+/// What all attempts in one sampling mode of a (task, robot) cost. An attempt that did not solve
+/// its problem is censored: its checks count, it adds no solution.
 struct ModeEvidence {
   std::uint64_t attempts = 0;
   std::uint64_t solved = 0;
-  double checks_per_solution = 0;  ///< all checks of the arm / solved; 0 if none was solved
+  double checks_per_solution = 0;  ///< all checks in the mode / solved; 0 if none was solved
 
   bool operator==(const ModeEvidence&) const = default;
 };
@@ -37,15 +37,16 @@ struct JudgedAttempt {
   SamplingMode sampling_mode = SamplingMode::Guided;  ///< Guided or Control
   bool solved = false;
   std::uint64_t checks = 0;  ///< collision checks
-  std::uint32_t age = 0;     ///< judged attempts of either arm that came after it
+  std::uint32_t age = 0;     ///< judged attempts in either mode that came after it
 
   bool operator==(const JudgedAttempt&) const = default;
 };
 
 template <>
 inline constexpr std::tuple kFieldsOf<JudgedAttempt>{
-    Field{
-        "arm", &JudgedAttempt::sampling_mode, {.max = static_cast<double>(SamplingMode::Control)}},
+    Field{"sampling_mode",
+          &JudgedAttempt::sampling_mode,
+          {.max = static_cast<double>(SamplingMode::Control)}},
     Field{"solved", &JudgedAttempt::solved}, Field{"checks", &JudgedAttempt::checks},
     Field{"age", &JudgedAttempt::age}};
 
@@ -54,11 +55,12 @@ struct Advice {
   /// For clients that plan every query alike: of guided samples, 0 to 1; falls as guidance turns
   /// out worse.
   double recommended_share = 0;
-  /// For clients that choose an arm per query: of guided samples in a guided query, 0 to 1.
+  /// For clients that choose a sampling mode per query: of guided samples in a guided query, 0
+  /// to 1.
   double guided_share = 0;
   std::string evidence;                         ///< for recommended_share, in words
   std::optional<ModeEvidence> guided, control;  ///< missing: no such attempts
-  std::vector<JudgedAttempt> recent;            ///< the newest of each arm, oldest first
+  std::vector<JudgedAttempt> recent;            ///< the newest in each mode, oldest first
 };
 
 }  // namespace kinship

@@ -60,7 +60,7 @@ inline constexpr std::tuple kFieldsOf<PlanningRecord>{
     Field{"collision_checks", &PlanningRecord::collision_checks},
     Field{"projections", &PlanningRecord::projections, {.may_be_missing = true}},
     Field{"time_limit_s", &PlanningRecord::time_limit_s, {.min = 0, .may_be_missing = true}},
-    Field{"arm", &PlanningRecord::sampling_mode, {.may_be_missing = true}},
+    Field{"sampling_mode", &PlanningRecord::sampling_mode, {.may_be_missing = true}},
     Field{"share", &PlanningRecord::share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"distribution_id", &PlanningRecord::distribution_id},
     Field{

@@ -31,7 +31,7 @@ struct Words<Outcome> {
 };
 template <>
 struct Words<SamplingMode> {
-  static constexpr std::string_view kWhat = "arm";
+  static constexpr std::string_view kWhat = "sampling_mode";
   static constexpr std::array<std::string_view, 3> kWords = {"guided", "control", "uniform"};
 };
 template <>

@@ -97,7 +97,7 @@ CREATE TABLE experience (
   paths               bigint NOT NULL DEFAULT 0 CHECK (paths >= 0),  -- in use
   attempts            bigint NOT NULL DEFAULT 0 CHECK (attempts >= 0),
   dropped             bigint NOT NULL DEFAULT 0,  -- paths beyond the cap, in all
-  -- Sums over the attempts of arm 1 (guided) and 2 (control): checks are collision checks.
+  -- Sums over the attempts in sampling_mode 1 (guided) and 2 (control): checks are collision checks.
   guided_attempts           bigint NOT NULL DEFAULT 0,
   guided_solved             bigint NOT NULL DEFAULT 0,
   guided_checks             double precision NOT NULL DEFAULT 0,
@@ -186,7 +186,7 @@ CREATE TABLE attempt (
   collision_checks       bigint NOT NULL CHECK (collision_checks >= 0),
   projections            bigint NOT NULL CHECK (projections >= 0),
   time_limit_s           double precision NOT NULL CHECK (time_limit_s BETWEEN 0 AND 1e12),
-  arm                    bigint NOT NULL CHECK (arm IN (1, 2, 3)),  -- 1 guided, 2 control, 3 uniform
+  sampling_mode          bigint NOT NULL CHECK (sampling_mode IN (1, 2, 3)),  -- 1 guided, 2 control, 3 uniform
   share                  double precision NOT NULL CHECK (share BETWEEN 0 AND 1),
   distribution_digest    bytea CHECK (length(distribution_digest) = 32),
   distribution_revision  bigint NOT NULL CHECK (distribution_revision >= 0),

@@ -79,7 +79,7 @@ CREATE TABLE experience (
   attempts            INTEGER NOT NULL DEFAULT 0 CHECK (attempts >= 0),
   -- Made by the last retirement: what was fitted before it is never served again.
   retired_generation  INTEGER NOT NULL DEFAULT 0 CHECK (retired_generation BETWEEN 0 AND generation),
-  -- Sums over the attempts of arm 1 (guided) and 2 (control): checks are collision checks.
+  -- Sums over the attempts in sampling_mode 1 (guided) and 2 (control): checks are collision checks.
   guided_attempts           INTEGER NOT NULL DEFAULT 0,
   guided_solved             INTEGER NOT NULL DEFAULT 0,
   guided_checks             REAL NOT NULL DEFAULT 0,
@@ -160,7 +160,7 @@ CREATE TABLE attempt (
   collision_checks       INTEGER NOT NULL CHECK (collision_checks >= 0),
   projections            INTEGER NOT NULL CHECK (projections >= 0),
   time_limit_s           REAL NOT NULL CHECK (time_limit_s BETWEEN 0 AND 1e12),
-  arm                    INTEGER NOT NULL CHECK (arm IN (1, 2, 3)),  -- 1 guided, 2 control, 3 uniform
+  sampling_mode          INTEGER NOT NULL CHECK (sampling_mode IN (1, 2, 3)),  -- 1 guided, 2 control, 3 uniform
   share                  REAL NOT NULL CHECK (share BETWEEN 0 AND 1),
   distribution_digest    BLOB CHECK (length(distribution_digest) = 32),
   distribution_revision  INTEGER NOT NULL CHECK (distribution_revision >= 0),

@@ -121,7 +121,7 @@ int migrate(const OfflineOptions& options, std::ostream& out) {
 }
 
 /// Why a verb does not do its work on a PostgreSQL database, and what does it there.
-std::string instead_in_words(OfflineVerb verb) {
+std::string alternative_to(OfflineVerb verb) {
   switch (verb) {
     case OfflineVerb::Check:
       return "check: a PostgreSQL database checks its own pages (pg_amcheck; initdb "
@@ -144,8 +144,8 @@ std::string instead_in_words(OfflineVerb verb) {
 int run(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
   const std::string name = options.store.string();
   if (store::kind_of_store(name).value_or_throw() == store::StoreKind::PostgresDatabase)
-    throw Failure(ErrorCode::InvalidInput, "store '" + store::displayed_store(name) +
-                                               "': " + instead_in_words(options.verb));
+    throw Failure(ErrorCode::InvalidInput,
+                  "store '" + store::displayed_store(name) + "': " + alternative_to(options.verb));
   switch (options.verb) {
     case OfflineVerb::Check:
       return check(options, progress, out);

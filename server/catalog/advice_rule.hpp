@@ -6,7 +6,7 @@
 
 namespace kinship::catalog {
 
-/// With fewer attempts than this in either arm the profile decides on the share.
+/// With fewer attempts than this in either sampling mode the profile decides on the share.
 inline constexpr std::uint64_t kMinAttempts = 10;
 
 /// What the attempts of a robot and task recommend.

@@ -190,9 +190,10 @@ class Service {
   void start_forwarder();
   void stop_forwarder();
   void tell_line(std::string_view line);
-  void commit_from_above(std::vector<store::SharedReport> reports, store::Store::ReportsDone done);
-  void came_from_above(std::span<const catalog::AttemptCost> costs,
-                       std::span<const Receipt> receipts);
+  void commit_from_upstream(std::vector<store::SharedReport> reports,
+                            store::Store::ReportsDone done);
+  void note_from_upstream(std::span<const catalog::AttemptCost> costs,
+                          std::span<const Receipt> receipts);
   void expose_upstream(metrics::Exposition& page, std::uint64_t attempts) const;
 
   const ServiceOptions options_;

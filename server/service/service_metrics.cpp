@@ -231,14 +231,14 @@ void Service::expose_guidance(Exposition& page) const {
                      .advice = worth.advice,
                      .ratio = evidence::compare_costs(worth.advice.recent)});
   page.family("kinship_guidance_attempts_total", Type::Counter,
-              "Attempts with guidance, and of the control arm without it.");
+              "Attempts with guidance, and of the control without it.");
   expose_modes(page, pairs, &ModeEvidence::attempts);
   page.family("kinship_guidance_solved_total", Type::Counter, "Those that solved their problem.");
   expose_modes(page, pairs, &ModeEvidence::solved);
   page.family(
       "kinship_guidance_cost_ratio", Type::Gauge,
       "Collision checks of a query without guidance / with it, the median of what the newest "
-      "attempts say; above 1 guidance saves. Missing until both arms have attempts.");
+      "attempts say; above 1 guidance saves. Missing until both modes have attempts.");
   for (const Pair& pair : pairs)
     if (pair.ratio.is_compared)
       page.sample(pair.ratio.quantile(0), {{"task", pair.task}, {"robot", pair.robot}});

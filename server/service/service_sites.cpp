@@ -30,7 +30,7 @@ void Service::start_forwarder() {
   };
   forwarder.hooks.commit = [this](std::vector<store::SharedReport> reports,
                                   store::Store::ReportsDone done) {
-    commit_from_above(std::move(reports), std::move(done));
+    commit_from_upstream(std::move(reports), std::move(done));
   };
   forwarder.hooks.take_geometry = [this](const Digest& robot, const RobotDescription& description) {
     if (!robots_.offer_geometry(robot, description, options_.clock.unix_ms()))
@@ -53,8 +53,8 @@ void Service::tell_line(std::string_view line) {
                [line] { return "upstream: " + std::string(line); });
 }
 
-void Service::commit_from_above(std::vector<store::SharedReport> reports,
-                                store::Store::ReportsDone done) {
+void Service::commit_from_upstream(std::vector<store::SharedReport> reports,
+                                   store::Store::ReportsDone done) {
   std::vector<catalog::AttemptCost> costs;
   costs.reserve(reports.size());
   for (const store::SharedReport& report : reports)
@@ -62,14 +62,14 @@ void Service::commit_from_above(std::vector<store::SharedReport> reports,
   store_->commit_shared(std::move(reports),
                         [this, costs = std::move(costs),
                          done = std::move(done)](const std::vector<Receipt>& receipts) {
-                          came_from_above(costs, receipts);
+                          note_from_upstream(costs, receipts);
                           done(receipts);
                         });
 }
 
 /// As reports of this site's robots, but that nobody watches each of them.
-void Service::came_from_above(std::span<const catalog::AttemptCost> costs,
-                              std::span<const Receipt> receipts) {
+void Service::note_from_upstream(std::span<const catalog::AttemptCost> costs,
+                                 std::span<const Receipt> receipts) {
   std::map<std::string, std::size_t> grown;  // paths
   for (std::size_t i = 0; i < std::min(costs.size(), receipts.size()); ++i) {
     const bool is_stored = receipts[i].status == ReceiptStatus::Stored;

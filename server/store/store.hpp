@@ -82,7 +82,8 @@ struct FitRight {
       0;  ///< greater than that of anybody who had it before; 0: there is one server
 };
 
-/// What the attempts of one arm sum up to; the sums from which a ratio's interval follows.
+/// What the attempts in one sampling mode sum up to; the sums from which a ratio's interval
+/// follows.
 struct ModeTotals {
   std::uint64_t attempts = 0;
   std::uint64_t solved = 0;
@@ -104,7 +105,7 @@ struct KnownAttempt {
 /// which are those of one planner.
 inline constexpr std::size_t kKnownAttemptsPerMode = 2 * kJudgedAttemptsPerMode;
 
-/// The attempts of one robot and task, by arm.
+/// The attempts of one robot and task, by sampling mode.
 struct AttemptTotals {
   ModeTotals guided, control;
   std::vector<KnownAttempt> recent;  ///< the newest kKnownAttemptsPerMode of each, oldest first

@@ -125,7 +125,7 @@ std::vector<Case> record_cases() {
        {"planner_options", "1025", "1024"}},
       {"outcome 7", [](auto& a, Arena&) { record_of(a).outcome = 7; }, {"outcome", "7", "2"}},
       {"arm 2^32 - 1",
-       [](auto& a, Arena&) { record_of(a).arm = 0xFFFFFFFF; },
+       [](auto& a, Arena&) { record_of(a).sampling_mode = 0xFFFFFFFF; },
        {"arm", "4294967295", "2"}},
       {"a share of 1.5", [](auto& a, Arena&) { record_of(a).share = 1.5; }, {"share", "1.5", "1"}},
       {"a share of NaN",

@@ -29,7 +29,7 @@ def attempt(number: int, arm: str, checks: int, **changes) -> dict:
     return {"report_uuid": str(uuid.uuid4()), "task": "sweep", "robot": "panda", "machine": "test",
             "T_task_base": IDENTITY, "waypoints": waypoints,
             "record": {"outcome": "solved", "planner": "birrt", "planner_options": "", "planning_time_s": 0.5,
-                       "collision_checks": checks + number, "projections": 0, "time_limit_s": 10, "arm": arm,
+                       "collision_checks": checks + number, "projections": 0, "time_limit_s": 10, "sampling_mode": arm,
                        "share": 0.5 if arm == "guided" else 0}} | changes
 
 

@@ -50,8 +50,8 @@ class PlotPages(unittest.TestCase):
         used = {"distribution_id": cls.first["id"], "distribution_revision": cls.first["revision"]}
         own = []
         for seed in range(12):
-            own.append(attempt("ur10e", 2 * seed, arm="guided", share=0.5, collision_checks=300 + 11 * seed, **used))
-            own.append(attempt("ur10e", 2 * seed + 1, arm="control", collision_checks=900 + 13 * seed, **used))
+            own.append(attempt("ur10e", 2 * seed, sampling_mode="guided", share=0.5, collision_checks=300 + 11 * seed, **used))
+            own.append(attempt("ur10e", 2 * seed + 1, sampling_mode="control", collision_checks=900 + 13 * seed, **used))
         own.append(attempt("ur10e", 50, outcome="timeout", collision_checks=5000))
         own.append(attempt("ur10e", 51, outcome="failed", collision_checks=0))
         cls.give(own)

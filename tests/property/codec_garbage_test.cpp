@@ -114,7 +114,7 @@ class Vandal {
       case 3:
         return spoil(wire.planning_time_s);
       case 4:
-        return spoil(wire.arm);
+        return spoil(wire.sampling_mode);
       case 5:
         return spoil(wire.share);
       default:
@@ -147,7 +147,7 @@ class Vandal {
 
   void spoil(kinship_wire_JudgedAttempt& wire) {
     if (values_.coin())
-      spoil(wire.arm);
+      spoil(wire.sampling_mode);
     else
       wire.age = static_cast<std::uint32_t>(values_.below(10));  // no longer oldest first
   }

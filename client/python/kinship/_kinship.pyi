@@ -203,7 +203,7 @@ class Attempt:
     task: str
     machine: str
     outcome: str
-    arm: str
+    sampling_mode: str
     planner: str
     planner_options: str
     planning_time_s: float
@@ -220,7 +220,7 @@ class Attempt:
         T_task_base: Optional[ArrayLike] = ...,
         machine: str = ...,
         outcome: str = ...,
-        arm: str = ...,
+        sampling_mode: str = ...,
         planner: str = ...,
         planner_options: str = ...,
         planning_time_s: float = ...,
@@ -435,7 +435,7 @@ def plan(
     guidance: Optional[Union[Guidance, Distribution]] = None,
     *,
     seed: Optional[int] = None,
-    arm: str = "",
+    sampling_mode: str = "",
     planner: str = "",
     max_checks: int = 100000,
     clearance: Optional[float] = None,

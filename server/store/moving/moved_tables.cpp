@@ -140,7 +140,7 @@ MovedTable attempts() {
                       {"collision_checks"},
                       {"projections"},
                       {"time_limit_s", Real},
-                      {"arm"},
+                      {"sampling_mode"},
                       {"share", Real},
                       {"distribution_digest", Blob},
                       {"distribution_revision"},

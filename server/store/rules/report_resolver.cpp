@@ -120,7 +120,7 @@ Receipt ReportResolver::resolve_again(const PreparedAttempt& prepared, Pair& pai
   if (path.is_in_use())
     drop_excess(pair);
   if (path.is_beyond_cap())
-    return {uuid, ReceiptStatus::Recorded, beyond_cap_in_words(max_paths_)};
+    return {uuid, ReceiptStatus::Recorded, beyond_cap_text(max_paths_)};
   return {uuid, ReceiptStatus::Stored, ""};
 }
 
@@ -239,7 +239,7 @@ Receipt ReportResolver::receipt_of(const PreparedAttempt& prepared, const Attemp
   if (path.is_retired)
     return {uuid, ReceiptStatus::Recorded, "recorded, but its path was retired before it came"};
   if (path.is_beyond_cap())
-    return {uuid, ReceiptStatus::Recorded, beyond_cap_in_words(max_paths_)};
+    return {uuid, ReceiptStatus::Recorded, beyond_cap_text(max_paths_)};
   if (!prepared.path)
     return {uuid, ReceiptStatus::Recorded, ""};
   // A report whose row was damaged is kept anew, although its path is there.

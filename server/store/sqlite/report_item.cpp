@@ -9,7 +9,7 @@
 namespace kinship::store {
 namespace {
 
-std::string in_words(const Uuid& report_uuid, const std::string& what) {
+std::string describe(const Uuid& report_uuid, const std::string& what) {
   return "report " + report_uuid.text() + " cannot be stored, the store is damaged there: " + what +
          "; 'kinship status' tells what to do";
 }
@@ -29,7 +29,7 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
     return receipt;
   } catch (const SqliteError& error) {
     if (error.is_damage()) {
-      const std::string why = in_words(uuid, error.what());
+      const std::string why = describe(uuid, error.what());
       damaged.note(uuid, why);
       if (error.spares_transaction())
         return {uuid, ReceiptStatus::TryAgain, why};

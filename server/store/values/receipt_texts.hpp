@@ -14,7 +14,7 @@ inline Receipt refused(const Uuid& report_uuid, const std::string& why) {
 }
 
 /// Why a report's path was not kept.
-inline std::string beyond_cap_in_words(std::uint64_t max_paths) {
+inline std::string beyond_cap_text(std::uint64_t max_paths) {
   return "recorded, but its path is not kept: its robot and task have " +
          std::to_string(max_paths) + " paths, the most that are kept (--max-paths-per-pair)";
 }

@@ -12,14 +12,14 @@
 
 namespace kinship::store {
 
-/// An arm that had no attempts among so many newest ones is as good as unknown.
+/// A mode that had no attempts among so many newest ones is as good as unknown.
 inline constexpr std::int64_t kMaxRecentRows = 10'000;
 
 /// The newest judged attempts of each sampling mode, as they are met.
 class RecentAttempts {
  public:
   static constexpr std::string_view kColumns =
-      "arm, outcome, collision_checks, planner, distribution_digest ";
+      "sampling_mode, outcome, collision_checks, planner, distribution_digest ";
 
   bool complete() const { return std::min(guided_, control_) >= kKnownAttemptsPerMode; }
 

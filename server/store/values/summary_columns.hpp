@@ -15,7 +15,7 @@ namespace kinship::store {
 
 inline constexpr std::string_view kRecordColumns =
     "attempt.outcome, attempt.planner, attempt.planner_options, attempt.planning_time_s,"
-    " attempt.collision_checks, attempt.projections, attempt.time_limit_s, attempt.arm,"
+    " attempt.collision_checks, attempt.projections, attempt.time_limit_s, attempt.sampling_mode,"
     " attempt.share, attempt.distribution_digest, attempt.distribution_revision ";
 
 /// \param first_column  of kRecordColumns.

@@ -84,7 +84,7 @@ static void report(const uint8_t robot[32], int first, int count) {
     record->planning_time_s = 0.5;
     record->collision_checks = 100;
     record->time_limit_s = 10;
-    record->arm = 2;
+    record->sampling_mode = 2;
     attempt->dof = DOF;
     attempt->waypoints._length = attempt->waypoints._maximum = DOF * WAYPOINTS;
     attempt->waypoints._buffer = &waypoints[i][0][0];

@@ -148,7 +148,7 @@ class Planning(WithServer):
         scene.add_cylinder("post", [0.75, 0, 0.5, 0, 0, 0, 1], 0.05, 1.0)
         plan = kinship.plan(self.ur10e, kinship.Problem("post", self.START, self.GOAL, scene=scene), guidance)
         self.assertTrue(plan.solved, plan.reason)
-        self.assertEqual((plan.arm, plan.guide), ("guided", guidance.guide))
+        self.assertEqual((plan.sampling_mode, plan.guide), ("guided", guidance.guide))
         self.client.report(plan.attempt("planned"))
         state = self.client.flush(60)
         self.assertEqual((state.pending, state.refused), (0, 0), state.problem)

@@ -52,7 +52,7 @@ AttemptTotals totals_of(Connection& connection, const Digest& robot, std::string
   constexpr int kTask = 10, kRobot = 11;
   AttemptTotals totals = read_totals(rows.front());
   RecentAttempts recent;
-  // In pages: an arm that has enough of them soon is the rule.
+  // In pages: a mode that has enough of them soon is the rule.
   constexpr std::int64_t kPage = 1000;
   for (std::int64_t skipped = 0; skipped < kMaxRecentRows && !recent.complete(); skipped += kPage) {
     const Rows page = connection.query("SELECT " + std::string(RecentAttempts::kColumns) +

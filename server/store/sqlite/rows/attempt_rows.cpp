@@ -22,7 +22,7 @@ std::int64_t insert_attempt(Database& database, const NewAttempt& added,
       .cached(
           "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
           " machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
-          " collision_checks, projections, time_limit_s, arm, share, distribution_digest,"
+          " collision_checks, projections, time_limit_s, sampling_mode, share, distribution_digest,"
           " distribution_revision, received_ms, scene_id) "
           "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       ->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(added.from->body.bytes), added.key.task_id,

@@ -33,7 +33,8 @@ std::vector<KnownAttempt> readable_recent_of(Database& database, const Experienc
   return recent.oldest_first();
 }
 
-/// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRecentRows alone.
+/// The newest judged attempts in each sampling mode, oldest first. Looks at the newest
+/// kMaxRecentRows alone.
 std::vector<KnownAttempt> recent_of(Database& database, const ExperienceKey& key) {
   try {
     const auto query =

@@ -20,7 +20,7 @@ constexpr std::chrono::seconds kBetweenLines{60};
 constexpr std::chrono::milliseconds kIdle{1000};
 constexpr std::chrono::milliseconds kRest{10'000};  // between two passes
 
-std::string in_words(const std::map<std::uint64_t, PageOwner>& owners, std::size_t all) {
+std::string describe(const std::map<std::uint64_t, PageOwner>& owners, std::size_t all) {
   constexpr std::size_t kNamed = 8;
   std::string words;
   std::size_t named = 0;
@@ -140,7 +140,7 @@ void Scrub::name_pages() {
   std::string words;
   if (!named_.empty()) {
     const ReaderPool::Lease database = readers_->lease();
-    words = in_words(owners_of(*database, named_, std::chrono::steady_clock::now() + kLookUp),
+    words = describe(owners_of(*database, named_, std::chrono::steady_clock::now() + kLookUp),
                      named_.size());
   }
   is_news_ = !words.empty();

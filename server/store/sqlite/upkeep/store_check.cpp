@@ -35,7 +35,7 @@ struct Rule {
 
 const std::string kPair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
 
-// What an experience says of its attempts of one arm.
+// What an experience says of its attempts in one sampling mode.
 Rule rule_of_sums(const std::string& mode, int code, const std::string& counted) {
   // Sums of doubles depend on their order in the last bits.
   const auto differs = [&](const std::string& sum) {
@@ -48,7 +48,7 @@ Rule rule_of_sums(const std::string& mode, int code, const std::string& counted)
               " total(collision_checks) AS found_checks,"
               " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
               " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
-              "FROM attempt WHERE arm = " +
+              "FROM attempt WHERE sampling_mode = " +
               std::to_string(code) + " AND " + counted +
               " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
               "WHERE " +

@@ -347,7 +347,8 @@ void Salvager::make_experience() const {
         "_checks_of_solved = of_solved FROM (SELECT task_id AS t, robot_id AS r, count(*) AS n,"
         " sum(outcome = 1) AS solved, total(collision_checks) AS checks,"
         " total(1.0 * collision_checks * collision_checks) AS squared,"
-        " total(iif(outcome = 1, collision_checks, 0)) AS of_solved FROM attempt WHERE arm = " +
+        " total(iif(outcome = 1, collision_checks, 0)) AS of_solved FROM attempt WHERE "
+        "sampling_mode = " +
         std::to_string(code) + " GROUP BY task_id, robot_id) WHERE t = task_id AND r = robot_id");
   }
 }

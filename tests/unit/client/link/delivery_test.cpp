@@ -20,7 +20,7 @@ class Deliver : public testing::Test {
  protected:
   Result<std::vector<Receipt>> deliver(const std::vector<Attempt>& attempts,
                                        std::chrono::milliseconds timeout = 5s) {
-    return link::deliver(attempts, timeout, pauses_,
+    return link::deliver(attempts, timeout, sleep_,
                          [this](const ReportRequest& batch, Clock::time_point) {
                            batches_.push_back(batch.attempts.size());
                            return answer_(batch);
@@ -46,7 +46,7 @@ class Deliver : public testing::Test {
   test::RandomValues values_{43};
   std::function<Result<ReportReply>(const ReportRequest&)> answer_ = store;
   std::vector<std::size_t> batches_;
-  Pauses pauses_;
+  InterruptibleSleep sleep_;
 };
 
 TEST_F(Deliver, APauseOfAMinuteEndsWithWhoEndsIt) {
@@ -60,7 +60,7 @@ TEST_F(Deliver, APauseOfAMinuteEndsWithWhoEndsIt) {
   const auto begin = Clock::now();
   auto delivered = std::async(std::launch::async, [&] { return deliver(attempts(3), 30s); });
   asked.get_future().wait();
-  pauses_.end();
+  sleep_.end();
   const auto receipts = delivered.get().value_or_throw();
   EXPECT_LT(Clock::now() - begin, 20s);
   ASSERT_EQ(receipts.size(), 3U);

@@ -314,7 +314,7 @@ TEST_F(GreetingTest, GreetingWithoutAnAnswerIsRepeatedAndTheMarkKept) {
 TEST_F(GreetingTest, KnownServerIsGreetedEveryTenMinutes) {
   const auto sender = make_sender();
   send_one(*sender);
-  for (int i = 0; i < 3; ++i) {  // rounds without a greeting: each sends its report
+  for (int i = 0; i < 3; ++i) {  // rounds without a probe: each sends its report
     minutes += 9;
     send_one(*sender);
   }

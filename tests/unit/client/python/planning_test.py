@@ -50,7 +50,7 @@ class Paths(OfAUr10e):
         self.assertTrue(plan.solved, plan.reason)
         np.testing.assert_array_equal(plan.waypoints[0], START)
         np.testing.assert_array_equal(plan.waypoints[-1], GOAL)
-        self.assertEqual((plan.arm, plan.planner, plan.found_by), ("uniform", "BiRRT", "search"))
+        self.assertEqual((plan.sampling_mode, plan.planner, plan.found_by), ("uniform", "BiRRT", "search"))
         steps = [np.linspace(a, b, 2 + int(np.linalg.norm(b - a) / 0.05))
                  for a, b in zip(plan.waypoints, plan.waypoints[1:])]
         self.assertTrue(kinship.World.of_problem(self.robot, self.problem).free(np.concatenate(steps)).all())
@@ -112,10 +112,10 @@ class Guided(OfAUr10e):
     def test_by_a_distribution_it_draws_from_it(self):
         plan = kinship.plan(self.robot, self.problem, around((START + GOAL) / 2, self.robot.digest))
         self.assertTrue(plan.solved, plan.reason)
-        self.assertEqual((plan.arm, plan.guide), ("guided", "mixture"))
+        self.assertEqual((plan.sampling_mode, plan.guide), ("guided", "mixture"))
         self.assertGreater(plan.share, 0)
         attempt = plan.attempt("sweep", machine="cell 3")
-        self.assertEqual((attempt.arm, attempt.outcome, attempt.task, attempt.machine),
+        self.assertEqual((attempt.sampling_mode, attempt.outcome, attempt.task, attempt.machine),
                          ("guided", "solved", "sweep", "cell 3"))
         self.assertEqual((attempt.collision_checks, attempt.share), (plan.collision_checks, plan.share))
         self.assertEqual(len(attempt.scene), 1)
@@ -123,9 +123,9 @@ class Guided(OfAUr10e):
 
     def test_as_control_it_plans_as_without_guidance(self):
         distribution = around(START, self.robot.digest)
-        plan, without = (kinship.plan(self.robot, self.problem, distribution, arm="control"),
+        plan, without = (kinship.plan(self.robot, self.problem, distribution, sampling_mode="control"),
                          kinship.plan(self.robot, self.problem))
-        self.assertEqual(plan.arm, "control")
+        self.assertEqual(plan.sampling_mode, "control")
         np.testing.assert_array_equal(plan.waypoints, without.waypoints)
 
     def test_by_another_robots_distribution_it_is_refused(self):

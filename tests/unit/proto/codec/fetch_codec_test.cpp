@@ -208,7 +208,7 @@ TEST(FetchCodec, RecentAttemptsAreJudgedOnesOldestFirst) {
   EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
   advice.recent.resize(1);
   auto message = encode({}, reply).value_or_throw();
-  message.wire.distribution._buffer[0].recent._buffer[0].arm = 2;
+  message.wire.distribution._buffer[0].recent._buffer[0].sampling_mode = 2;
   EXPECT_EQ(decode(message.wire).error().message,
             "arm of a recent attempt: 2 is not between 0 and 1");
 }

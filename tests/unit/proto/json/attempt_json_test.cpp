@@ -23,7 +23,7 @@ std::string solved_line() {
          R"("waypoints":[[0.1,0.2],[0.3,0.4],[0.5,0.6]],)"
          R"("record":{"outcome":"solved","planner":"birrt","planner_options":"step=0.1",)"
          R"("planning_time_s":0.25,"collision_checks":1234,"projections":5,"time_limit_s":10,)"
-         R"("arm":"guided","share":0.9,"distribution_id":")" +
+         R"("sampling_mode":"guided","share":0.9,"distribution_id":")" +
          std::string(64, 'a') + R"(","distribution_revision":7},"scene":null})";
 }
 
@@ -57,14 +57,14 @@ TEST(AttemptJson, WritesTheMembersInTheOrderOfTheFileFormat) {
   attempt.T_task_base.reset();
   attempt.record = PlanningRecord{};
   const std::string zeros(64, '0');
-  EXPECT_EQ(to_json(attempt),
-            std::string(R"({"report_uuid":")") + kUuid + R"(","task":"bin_to_shelf","robot":")" +
-                zeros +
-                R"(","machine":"Zelle 3, Süd","T_task_base":null,"waypoints":null,)"
-                R"("record":{"outcome":"failed","planner":"","planner_options":"",)"
-                R"("planning_time_s":0.0,"collision_checks":0,"projections":0,"time_limit_s":0.0,)"
-                R"("arm":"uniform","share":0.0,"distribution_id":null,"distribution_revision":0},)"
-                R"("scene":null})");
+  EXPECT_EQ(
+      to_json(attempt),
+      std::string(R"({"report_uuid":")") + kUuid + R"(","task":"bin_to_shelf","robot":")" + zeros +
+          R"(","machine":"Zelle 3, Süd","T_task_base":null,"waypoints":null,)"
+          R"("record":{"outcome":"failed","planner":"","planner_options":"",)"
+          R"("planning_time_s":0.0,"collision_checks":0,"projections":0,"time_limit_s":0.0,)"
+          R"("sampling_mode":"uniform","share":0.0,"distribution_id":null,"distribution_revision":0},)"
+          R"("scene":null})");
 }
 
 TEST(AttemptJson, RobotOfSixtyFourDigitsIsADigest) {

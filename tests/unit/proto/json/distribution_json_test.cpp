@@ -108,8 +108,8 @@ TEST(DistributionJson, SelectionSourcesAndEvidenceAreReadBack) {
             R"("paths_with_scene":20,"tracks_through":85,"poses_on_tracks":750})"),
         std::string(R"("guided":{"attempts":20,"solved":18,"checks_per_solution":45.0},)"
                     R"("control":null,"recent":[)"
-                    R"({"arm":"control","solved":true,"checks":70,"age":19},)"
-                    R"({"arm":"guided","solved":false,"checks":45,"age":0}])"),
+                    R"({"sampling_mode":"control","solved":true,"checks":70,"age":19},)"
+                    R"({"sampling_mode":"guided","solved":false,"checks":45,"age":0}])"),
         std::string(R"("guided_share":0.5,)")})
     EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
   const auto back = distribution_from_json(text);
@@ -137,8 +137,8 @@ TEST(DistributionJson, DetailsOutsideTheirRangeAreRefused) {
   EXPECT_EQ(message_with("\"same_arm\"", "\"cousin\""),
             "relation: 'cousin' is not one of other, same_arm, identical");
   EXPECT_EQ(message_with("\"solved\":18", "\"solved\":21"), "guided.solved: 21 exceeds 20");
-  EXPECT_EQ(message_with("\"arm\":\"control\"", "\"arm\":\"uniform\""),
-            "recent[0].arm: must be guided or control");
+  EXPECT_EQ(message_with("\"sampling_mode\":\"control\"", "\"sampling_mode\":\"uniform\""),
+            "recent[0].sampling_mode: must be guided or control");
   EXPECT_EQ(message_with("\"age\":0", "\"age\":20"),
             "recent[1]: is older than the one before, must be oldest first");
 }

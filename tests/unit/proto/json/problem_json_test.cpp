@@ -286,7 +286,7 @@ TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
   result.sampling_mode = SamplingMode::Control;
   const std::string text = to_json(result);
   EXPECT_NE(
-      text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false,)"
+      text.find(R"("revision":0,"share":0.0,"sampling_mode":"control","gate_fired":false,)"
                 R"("track_share":0.0,"experience_revision":0,"tracks_followed":0,"guide":"none"})"),
       std::string::npos)
       << text;

@@ -32,7 +32,7 @@ class Arrivals : public EmptyStore {
     connection.query(
         "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, status, machine,"
         " outcome, planner, planner_options, planning_time_s, collision_checks, projections,"
-        " time_limit_s, arm, share, distribution_revision, received_ms) "
+        " time_limit_s, sampling_mode, share, distribution_revision, received_ms) "
         "VALUES ($1, sha256(''), $2, 1, 3, 'cell', 2, 'rrt', '', 1, 1, 0, 1, 2, 0, 0, 1)",
         Bytes(test::id_from<Uuid>(number).bytes), task_id);
   }

@@ -1,13 +1,13 @@
-#include "client/link/pauses.hpp"
+#include "client/link/interruptible_sleep.hpp"
 
 namespace kinship::link {
 
-bool Pauses::sleep(std::chrono::milliseconds time) {
+bool InterruptibleSleep::sleep(std::chrono::milliseconds time) {
   std::unique_lock lock(mutex_);
   return !ended_.wait_for(lock, time, [this] { return is_ended_; });
 }
 
-void Pauses::end() {
+void InterruptibleSleep::end() {
   {
     const std::lock_guard lock(mutex_);
     is_ended_ = true;

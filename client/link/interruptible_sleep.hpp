@@ -6,14 +6,14 @@
 
 namespace kinship::link {
 
-/// Pauses between two requests, which another thread can end. May be shared between threads.
-class Pauses {
+/// A pause between two requests that another thread can end. May be shared between threads.
+class InterruptibleSleep {
  public:
   /// Sleeps, unless end() was called or is called meanwhile.
   /// \return whether the time has passed.
   bool sleep(std::chrono::milliseconds time);
 
-  /// Ends the pauses under way, and later ones at once.
+  /// Ends the sleep under way, and later ones at once.
   void end();
 
  private:
