@@ -22,15 +22,11 @@ std::optional<Error> check(const AdminReply& reply) {
   return rules.at_most("rows (bytes)", bytes, kMaxPageBytes).broken();
 }
 
-std::size_t max_argument_bytes(AdminVerb verb) {
-  return rule_of(verb).argument == VerbArgument::BackupFile ? kMaxFileNameBytes : kMaxTaskBytes;
-}
-
 }  // namespace
 
 std::optional<Error> check(const AdminRequest& request) {
   return Rules()
-      .text("argument", request.argument, max_argument_bytes(request.verb))
+      .text("argument", request.argument, kMaxTaskBytes)
       .text("robot", request.robot, kMaxTaskBytes)
       .text("task", request.task, kMaxTaskBytes)
       .text("cursor", request.cursor, kMaxCursorBytes)
@@ -60,7 +56,7 @@ Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
   Reader reader;
   AdminRequest request;
   request.verb = reader.enumerator("verb", wire.verb, kLastVerb);
-  request.argument = reader.text("argument", wire.argument, max_argument_bytes(request.verb));
+  request.argument = reader.text("argument", wire.argument, kMaxTaskBytes);
   request.robot = reader.text("robot", wire.robot, kMaxTaskBytes);
   request.task = reader.text("task", wire.task, kMaxTaskBytes);
   request.cursor = reader.text("cursor", wire.cursor, kMaxCursorBytes);

@@ -202,8 +202,15 @@ TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefuse
   request = fleet::question(AdminVerb::ListPaths);
   request.task = "bin";
   EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).message, "no task 'bin'");
-  request = fleet::question(AdminVerb::ListRobots);
-  request.task = "bin";
+  for (const VerbRule& rule : kVerbRules) {
+    request = fleet::question(rule.verb, "x");
+    request.task = "bin";
+    const AdminPage page = administration_.answer(request, "", fleet::caller_here());
+    const std::string refusal = std::string(rule.name) + " takes no filter of robot or task";
+    EXPECT_EQ(page.message == refusal, !rule.is(VerbRule::Filters)) << rule.name << page.message;
+  }
+  request = fleet::question(AdminVerb::ListTasks);
+  request.robot = "nobody";
   EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).status, AdminStatus::Refused);
 }
 
