@@ -21,24 +21,6 @@ FetchReply ready_reply() {
   return reply;
 }
 
-TEST(FetchCodec, RequestComesBack) {
-  test::RandomValues values(kSeed);
-  FetchRequest written;
-  written.task = "shelf_pick";
-  written.robot = values.digest();
-  written.T_task_base = values.pose();
-  written.profile = "paper";
-  written.minimum_generation = 5;
-  written.deadline = std::chrono::seconds(30);
-  const auto read = decode(encode({}, written)->wire).value_or_throw();
-  EXPECT_EQ(read.task, written.task);
-  EXPECT_EQ(read.robot, written.robot);
-  EXPECT_TRUE(read.T_task_base->isApprox(*written.T_task_base, 1e-12));
-  EXPECT_EQ(read.profile, written.profile);
-  EXPECT_EQ(read.minimum_generation, 5U);
-  EXPECT_EQ(read.deadline, std::chrono::seconds(30));
-}
-
 TEST(FetchCodec, PlacementIsSevenNumbersOrNone) {
   FetchRequest request;
   request.task = "t";

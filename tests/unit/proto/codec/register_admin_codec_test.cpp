@@ -60,22 +60,6 @@ TEST(RegisterCodec, JointHeldTwiceIsRefused) {
   EXPECT_EQ(decode(message.wire).error().message, "held joint 'a': is there twice");
 }
 
-TEST(RegisterCodec, MeshSolidsComeBack) {
-  RobotDescription written = robot();
-  written.mesh_solids.solids = {{"arm", CapsuleShape{0.1, 0.2}},
-                                {"arm", BoxShape{{0.1, 0.2, 0.3}}},
-                                {"hand", SphereShape{0.4}}};
-  written.mesh_solids.solids[1].T_link_shape.translation() << 1, 2, 3;
-  written.mesh_solids.unfiltered = {{"arm", "hand"}};
-  const RobotDescription read = decode(encode({}, written)->wire).value_or_throw();
-  ASSERT_EQ(read.mesh_solids.solids.size(), 3U);
-  EXPECT_EQ(std::get<CapsuleShape>(read.mesh_solids.solids[0].shape).length_m, 0.2);
-  EXPECT_EQ(read.mesh_solids.solids[1].T_link_shape.matrix(),
-            written.mesh_solids.solids[1].T_link_shape.matrix());
-  EXPECT_EQ(read.mesh_solids.solids[2].link, "hand");
-  EXPECT_EQ(read.mesh_solids.unfiltered, written.mesh_solids.unfiltered);
-}
-
 TEST(RegisterCodec, MeshSolidsThatAreNoneAreRefused) {
   RobotDescription bad = robot();
   bad.mesh_solids.solids = {{"arm", SphereShape{0}}};
@@ -92,21 +76,6 @@ TEST(RegisterCodec, MeshSolidsThatAreNoneAreRefused) {
   EXPECT_TRUE(decode(message.wire).value_or_throw().mesh_solids.solids.empty());
 }
 
-TEST(RegisterCodec, ReplyComesBack) {
-  const RegisterReply written{
-      RegisterStatus::Known,  test::RandomValues(kSeed).digest(), 7,    "numeric", "",
-      {"ur10e_1", "ur10e_2"}, GeometryGrade::Approximate,         true, "2 links"};
-  const auto read = decode(encode({}, written)->wire).value_or_throw();
-  EXPECT_EQ(read.status, written.status);
-  EXPECT_EQ(read.robot, written.robot);
-  EXPECT_EQ(read.dof, 7U);
-  EXPECT_EQ(read.solver, "numeric");
-  EXPECT_EQ(read.same_arms, written.same_arms);
-  EXPECT_EQ(read.geometry_grade, GeometryGrade::Approximate);
-  EXPECT_TRUE(read.took_geometry);
-  EXPECT_EQ(read.geometry, "2 links");
-}
-
 TEST(RegisterCodec, SameArmsAreLimited) {
   RegisterReply reply;
   reply.same_arms.assign(1025, "ur10e");
@@ -117,23 +86,6 @@ TEST(RegisterCodec, SameArmsAreLimited) {
   auto message = encode({}, reply).value_or_throw();
   message.wire.same_arms._length = 1025;  // refused before any is read
   EXPECT_EQ(decode(message.wire).error().message, "same_arms: 1025 exceeds 1024");
-}
-
-TEST(AdminCodec, RequestComesBack) {
-  const AdminRequest written{AdminVerb::ListPaths, "a", "r", "t", "c", 17};
-  const auto read = decode(encode({}, written)->wire).value_or_throw();
-  EXPECT_EQ(read.verb, AdminVerb::ListPaths);
-  EXPECT_EQ(read.argument + read.robot + read.task + read.cursor, "artc");
-  EXPECT_EQ(read.limit, 17U);
-}
-
-TEST(AdminCodec, ReplyComesBack) {
-  const AdminReply written{AdminStatus::Ok, {"{\"a\":1}", "", "{}"}, "next", "ü"};
-  const auto read = decode(encode({}, written)->wire).value_or_throw();
-  EXPECT_EQ(read.status, AdminStatus::Ok);
-  EXPECT_EQ(read.rows, written.rows);
-  EXPECT_EQ(read.next_cursor, "next");
-  EXPECT_EQ(read.message, "ü");
 }
 
 AdminRequest request_of(AdminVerb verb, const std::string& argument) {

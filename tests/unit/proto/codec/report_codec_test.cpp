@@ -243,21 +243,6 @@ TEST(ReportCodec, AttemptWithoutARecordIsRefused) {
   EXPECT_EQ(read.refused[1].message, "record: is missing");
 }
 
-TEST(ReportCodec, ReceiptsComeBack) {
-  ReportReply written{Uuid::random(),
-                      {{Uuid::random(), ReceiptStatus::Stored, ""},
-                       {Uuid::random(), ReceiptStatus::Refused, "share: 2"},
-                       {Uuid::random(), ReceiptStatus::UnknownRobot, "robot 'x': unknown"}}};
-  const auto read = decode(encode({}, written)->wire).value_or_throw();
-  EXPECT_EQ(read.store_epoch, written.store_epoch);
-  ASSERT_EQ(read.receipts.size(), 3U);
-  EXPECT_EQ(read.receipts[1].report_uuid, written.receipts[1].report_uuid);
-  EXPECT_EQ(read.receipts[1].status, ReceiptStatus::Refused);
-  EXPECT_EQ(read.receipts[1].message, "share: 2");
-  EXPECT_EQ(read.receipts[2].status, ReceiptStatus::UnknownRobot);
-  EXPECT_EQ(read.receipts[2].message, "robot 'x': unknown");
-}
-
 TEST(ReportCodec, MarksComeBackAndHaveALimit) {
   const HistoryMark mark(kMaxHistoryMarkBytes, 0xa5);
   const HistoryMark too_long(kMaxHistoryMarkBytes + 1, 0xa5);

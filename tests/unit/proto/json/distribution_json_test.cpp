@@ -41,17 +41,6 @@ std::string message_of(const std::string& text) {
   return result ? "accepted" : result.error().message;
 }
 
-TEST(DistributionJson, WritesTheDocumentOfTheFileFormat) {
-  const std::string text = to_json(two_components());
-  for (const char* member :
-       {R"("weights":[0.25,0.75])", R"("means":[[0.1,0.2],[0.3,0.4]])",
-        R"("covariances":[[[2.0,0.5],[0.5,1.0]],[[1.0,0.0],[0.0,1.0]]])",
-        R"("limits":[[-1.0,1.0],[-2.0,2.0]])", R"("cuts":null)", R"("k_curve":null)",
-        R"("held_out_score":null)", R"("recommended_share":0.9)", R"("state":"ready")",
-        R"("revision":3)", R"("T_task_base":null)", R"("sources":[])", R"("configurations":400)"})
-    EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
-}
-
 Digest digest_of(std::uint8_t byte) {
   Digest digest;
   digest.bytes.fill(byte);
@@ -64,28 +53,8 @@ Distribution with_details() {
       .sources = {digest_of(1), digest_of(2)}, .weighting = Weighting::Paths, .since_ms = 99};
   Source source;
   source.robot = digest_of(1);
-  source.label = "panda";
-  source.paths = 60;
-  source.generation = 12;
-  source.poses = 900;
-  source.poses_solved = 800;
   source.relation = Relation::SameArm;
-  source.paths_used = 50;
-  source.out_of_reach = 60;
-  source.outside_limits = 30;
-  source.not_converged = 10;
-  source.configurations = 4000;
   source.mass = 0.625;
-  source.colliding = 7;
-  source.tracks_tried = 90;
-  source.tracks_kept = 80;
-  source.random_configurations = 1500;
-  source.filter_checks = 5000;
-  source.self_collisions = 600;
-  source.scene_collisions = 400;
-  source.paths_with_scene = 20;
-  source.tracks_through = 85;
-  source.poses_on_tracks = 750;
   distribution.sources = {source};
   distribution.advice.guided =
       ModeEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
@@ -93,32 +62,6 @@ Distribution with_details() {
   distribution.advice.recent = {{SamplingMode::Control, true, 70, 19},
                                 {SamplingMode::Guided, false, 45, 0}};
   return distribution;
-}
-
-TEST(DistributionJson, SelectionSourcesAndEvidenceAreReadBack) {
-  const std::string text = to_json(with_details());
-  for (const std::string& member :
-       {R"("selection":{"sources":[")" + digest_of(1).hex() + R"(",")" + digest_of(2).hex() +
-            R"("],"weighting":"paths","since_ms":99})",
-        std::string(
-            R"("relation":"same_arm","paths_used":50,"out_of_reach":60,)"
-            R"("outside_limits":30,"not_converged":10,"configurations":4000,"mass":0.625,)"
-            R"("colliding":7,"tracks_tried":90,"tracks_kept":80,"random_configurations":1500,)"
-            R"("filter_checks":5000,"self_collisions":600,"scene_collisions":400,)"
-            R"("paths_with_scene":20,"tracks_through":85,"poses_on_tracks":750})"),
-        std::string(R"("guided":{"attempts":20,"solved":18,"checks_per_solution":45.0},)"
-                    R"("control":null,"recent":[)"
-                    R"({"sampling_mode":"control","solved":true,"checks":70,"age":19},)"
-                    R"({"sampling_mode":"guided","solved":false,"checks":45,"age":0}])"),
-        std::string(R"("guided_share":0.5,)")})
-    EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
-  const auto back = distribution_from_json(text);
-  ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(to_json(*back), text);
-  EXPECT_EQ(back->selection, with_details().selection);
-  EXPECT_EQ(back->advice.guided, with_details().advice.guided);
-  EXPECT_EQ(back->advice.recent, with_details().advice.recent);
-  EXPECT_EQ(back->advice.guided_share, 0.5);
 }
 
 TEST(DistributionJson, DetailsOutsideTheirRangeAreRefused) {
@@ -198,32 +141,6 @@ TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
   EXPECT_EQ(message_of(changed("\"k_curve\":null",
                                R"("k_curve":[{"K":20,"score":1},{"K":20,"score":0}])")),
             "k_curve[1]: K does not fall");
-}
-
-TEST(DistributionJson, CurveAndCutsComeBack) {
-  Distribution written = two_components();
-  written.component_scores = {{40, -0.5}, {20, 0.25}};
-  written.cuts = {std::nullopt, -1.5};
-  const std::string text = to_json(written);
-  EXPECT_NE(
-      text.find(R"("cuts":[null,-1.5],"k_curve":[{"K":40,"score":-0.5},{"K":20,"score":0.25}])"),
-      std::string::npos)
-      << text;
-  const Distribution read = distribution_from_json(text).value_or_throw();
-  EXPECT_EQ(read.component_scores, written.component_scores);
-  EXPECT_EQ(read.cuts, written.cuts);
-}
-
-TEST(DistributionJson, WhatAFitBeganWithComesBack) {
-  Distribution written = two_components();
-  EXPECT_NE(to_json(written).find(R"("fit":null)"), std::string::npos);
-  written.fit = FitOrigin{4, 2, 525, 25, 30, "of a test"};
-  const std::string text = to_json(written);
-  EXPECT_EQ(distribution_from_json(text).value_or_throw().fit, written.fit) << text;
-  EXPECT_EQ(
-      message_of(changed("\"fit\":null", R"("fit":{"from_revision":1,"full_revision":1,"paths":5,)"
-                                         R"("new_paths":6,"transferred":0,"reason":""})")),
-      "fit.new_paths: 6 exceeds 5");
 }
 
 TEST(DistributionJson, ComponentsAreLimited) {

@@ -19,20 +19,6 @@ RobotDescription planar_arm() {
   return description;
 }
 
-TEST(RobotDescriptionJson, IsReadBack) {
-  const RobotDescription written = planar_arm();
-  const auto back = robot_description_from_json(to_json(written));
-  ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(back->label, written.label);
-  EXPECT_EQ(back->urdf, written.urdf);
-  EXPECT_EQ(back->base_link, written.base_link);
-  EXPECT_EQ(back->tip_link, written.tip_link);
-  EXPECT_TRUE(back->T_tip_transfer.isApprox(written.T_tip_transfer));
-  EXPECT_EQ(back->task_axes, written.task_axes);
-  EXPECT_EQ(back->held_joints, written.held_joints);
-  EXPECT_EQ(back->never_colliding, written.never_colliding);
-}
-
 TEST(RobotDescriptionJson, MeshSolidsAreReadBackAndLeftOutWhereThereAreNone) {
   RobotDescription written = planar_arm();
   EXPECT_EQ(to_json(written).find("mesh_solids"), std::string::npos);
