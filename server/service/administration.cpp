@@ -7,11 +7,9 @@
 #include "proto/types/limits.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "server/catalog/freshness.hpp"
-#include "server/service/backup_verbs.hpp"
 #include "server/service/explain_distribution.hpp"
 #include "server/service/export_paths.hpp"
 #include "server/service/find_by_name.hpp"
-#include "server/service/job_verbs.hpp"
 #include "server/service/narrowing.hpp"
 
 namespace kinship::service {
@@ -206,26 +204,9 @@ AdminPage Administration::export_paths(const Call& call) {
   return service::export_paths(parts_.store, robot_filter(call.request), call.request);
 }
 
-AdminPage Administration::list_jobs(const Call& call) {
-  return service::list_jobs(parts_.jobs, call.request);
-}
-
-/// As it stands: Service waits for its end.
-AdminPage Administration::show_job(const Call& call) {
-  return page_of(parts_.jobs.find(call.request.argument));
-}
-
-AdminPage Administration::job_rows(const Call& call) {
-  return service::job_rows(parts_.jobs, call.request);
-}
-
 AdminPage Administration::list_audit(const Call& call) {
   const AdminRequest& request = call.request;
   return page_of(parts_.store.list_audit(request.argument, request.cursor, page_size(request)));
-}
-
-AdminPage Administration::list_backups(const Call& call) {
-  return service::list_backups(parts_.store, parts_.backups, call.request);
 }
 
 std::optional<Digest> Administration::robot_filter(const AdminRequest& request) const {

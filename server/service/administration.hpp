@@ -125,6 +125,8 @@ class Administration {
   AdminPage hash_backup(const Call& call);
   AdminPage read_backup(const Call& call);
 
+  /// \throws Failure(InvalidInput) for a name that is none; Failure(NotFound).
+  BackupFile open_backup(const std::string& name) const;
   AdminPage begin_audited(Result<Jobs::Task> task, const AuditEntry& audit);
   AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
   /// The robot that a request's filters name. \throws Failure(NotFound), of its task as well.

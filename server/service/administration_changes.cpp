@@ -1,13 +1,10 @@
-// What administrators change, and what leaves the server.
+// What administrators change.
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "proto/types/enum_text.hpp"
 #include "server/service/administration.hpp"
-#include "server/service/backup_verbs.hpp"
-#include "server/service/export_configurations.hpp"
 #include "server/service/find_by_name.hpp"
 
 namespace kinship::service {
@@ -30,14 +27,6 @@ AdminPage page_of_unfinished(const Error& error) {
   return page;
 }
 
-/// There is no room for a job now.
-AdminPage page_of_later(const Error& error) {
-  constexpr RetryAfter kJobEnds{5000};
-  AdminPage page = page_of_unfinished(error);
-  page.retry_after = kJobEnds;
-  return page;
-}
-
 }  // namespace
 
 AdminPage Administration::evict_distribution(const Call& call) {
@@ -50,16 +39,6 @@ AdminPage Administration::evict_distribution(const Call& call) {
     return page_of(not_found("distribution", prefix));
   parts_.on_change({}, "distribution " + id.short_hex() + " evicted");
   return page_of(Eviction{id});
-}
-
-AdminPage Administration::export_configurations(const Call& call) {
-  const fitting::FitContext context{.store = parts_.store,
-                                    .robots = parts_.robots,
-                                    .clock = parts_.clock,
-                                    .memory = parts_.memory};
-  return begin(
-      export_configurations_job(context, find_distribution(call.request.argument), call.key),
-      call.audit);
 }
 
 AdminPage Administration::retire_path(const Call& call) {
@@ -145,69 +124,6 @@ void Administration::forget_tasks_of(const Digest& robot) {
         parts_.forget_task(task.task);
     cursor = page.next_cursor;
   } while (!cursor.empty());
-}
-
-AdminPage Administration::back_up(const Call& call) {
-  return begin_audited(backup_job(parts_.store, call.request.argument, parts_.backups, call.key),
-                       call.audit);
-}
-
-/// In the audit log once, for whoever then reads the bytes.
-AdminPage Administration::hash_backup(const Call& call) {
-  BackupFile file =
-      open_backup(parts_.store, parts_.backups, call.request.argument).value_or_throw();
-  const BackupSummary backup = file.summary();
-  AdminPage page = begin_audited(hash_backup_job(std::move(file), call.key), call.audit);
-  if (page.status == AdminStatus::Ok)
-    downloads_.add(call.audit.client, backup);
-  return page;
-}
-
-/// Whoever did not have it digested, as after a restart, is in the audit log before the first byte.
-AdminPage Administration::read_backup(const Call& call) {
-  const AuditEntry& audit = call.audit;
-  const std::size_t begin = row_number(call.request.cursor).value_or_throw();
-  const BackupFile file =
-      open_backup(parts_.store, parts_.backups, call.request.argument).value_or_throw();
-  AdminPage page = service::read_backup(file, begin);
-  if (downloads_.has(audit.client, file.summary()))
-    return page;
-  trail_.hand_out(audit, "read from byte " + std::to_string(begin) + " on of " +
-                             std::to_string(file.summary().bytes));
-  downloads_.add(audit.client, file.summary());
-  return page;
-}
-
-/// Of one's own job, or one that has ended, there is nothing to answer for.
-AdminPage Administration::cancel_job(const Call& call) {
-  const std::string& id = call.request.argument;
-  const AuditEntry& audit = call.audit;
-  const Job job = parts_.jobs.find(id).value_or_throw();
-  if (has_ended(job.state) || parts_.jobs.owner_of(id) == audit.client)
-    return page_of(parts_.jobs.cancel(id));
-  const std::string before = job.verb + " " + job.argument + ": " + std::string(to_text(job.state));
-  trail_.begin(audit, before);
-  Result<Job> cancelled = parts_.jobs.cancel(id);
-  if (cancelled)
-    trail_.end(audit, before, "told to end: " + std::string(to_text(cancelled->state)));
-  return page_of(std::move(cancelled));
-}
-
-/// A job that is in the audit log as begun, and as it ended.
-AdminPage Administration::begin_audited(Result<Jobs::Task> task, const AuditEntry& audit) {
-  Jobs::Task begun = std::move(task).value_or_throw();
-  if (const auto refusal = parts_.jobs.refusal_of(audit.client))
-    return page_of_later(*refusal);
-  trail_.begin(audit, "");
-  begun.on_end = trail_.ending(audit);
-  return begin(std::move(begun), audit);
-}
-
-AdminPage Administration::begin(Result<Jobs::Task> task, const AuditEntry& audit) {
-  Jobs::Task begun = std::move(task).value_or_throw();
-  begun.owner = audit.client;
-  Result<Job> job = parts_.jobs.begin(std::move(begun));
-  return job ? page_of(std::move(job).value()) : page_of_later(job.error());
 }
 
 }  // namespace kinship::service

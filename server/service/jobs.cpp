@@ -179,13 +179,21 @@ std::optional<Job> Jobs::begun_by(const std::string& request_key) const {
   return entry ? std::optional<Job>(entry->now()) : std::nullopt;
 }
 
-std::vector<Job> Jobs::list() const {
+store::Page<Job> Jobs::list(const std::string& cursor, std::size_t limit) const {
   const std::lock_guard lock(mutex_);
-  std::vector<Job> jobs;
-  jobs.reserve(entries_.size());
-  for (const EntryPointer& entry : entries_)
-    jobs.push_back(entry->now());
-  return jobs;
+  auto next = entries_.rbegin();
+  if (!cursor.empty()) {
+    next = std::find_if(next, entries_.rend(),
+                        [&](const EntryPointer& entry) { return entry->job.id == cursor; });
+    if (next != entries_.rend())
+      ++next;
+  }
+  store::Page<Job> page;
+  for (; next != entries_.rend() && page.rows.size() < limit; ++next)
+    page.rows.push_back((*next)->now());
+  if (next != entries_.rend())
+    page.next_cursor = page.rows.back().id;
+  return page;
 }
 
 Result<Job> Jobs::find(const std::string& id) const {

@@ -17,6 +17,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/worker_pool.hpp"
 #include "server/service/job_rows.hpp"
+#include "server/store/store.hpp"
 
 namespace kinship::service {
 
@@ -92,7 +93,9 @@ class Jobs {
   std::optional<Error> refusal_of(const std::string& owner) const;
 
   std::optional<Job> begun_by(const std::string& request_key) const;
-  std::vector<Job> list() const;                  ///< in the order in which they were begun
+  /// From the one that was begun last. Jobs are forgotten from the oldest on: a page after a
+  /// forgotten one is empty. \param cursor  of the page before; empty: the first page.
+  store::Page<Job> list(const std::string& cursor, std::size_t limit) const;
   Result<Job> find(const std::string& id) const;  ///< NotFound
   std::optional<std::string> owner_of(const std::string& id) const;
   std::size_t active() const;  ///< not ended

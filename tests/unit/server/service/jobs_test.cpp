@@ -7,9 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <variant>
-
-#include "server/service/job_verbs.hpp"
 
 namespace kinship::service::jobs_test {
 namespace {
@@ -102,21 +99,17 @@ class JobsTest : public testing::Test {  // NOLINT: GoogleTest deletes it
 TEST_F(JobsTest, AreListedFromTheLastThatWasBegunPageByPage) {
   for (const char* const argument : {"a", "b", "c", "d", "e"})
     begin(held(argument));
-  AdminRequest request;
-  request.verb = AdminVerb::ListJobs;
-  request.limit = 2;
-  std::string listed;
+  std::string listed, cursor;
   do {
-    const AdminPage page = list_jobs(*jobs_, request);
-    for (const AdminRow& row : page.rows)
-      listed += std::get<Job>(row).argument;
-    request.cursor = page.next_cursor;
+    const store::Page<Job> page = jobs_->list(cursor, 2);
+    for (const Job& job : page.rows)
+      listed += job.argument;
+    cursor = page.next_cursor;
     if (listed.size() == 2)
       begin(held("f"));  // comes before what was shown
-  } while (!request.cursor.empty());
+  } while (!cursor.empty());
   EXPECT_EQ(listed, "edcba");
-  request.cursor = "forgotten";
-  EXPECT_TRUE(list_jobs(*jobs_, request).rows.empty());
+  EXPECT_TRUE(jobs_->list("forgotten", 2).rows.empty());
 }
 
 TEST_F(JobsTest, AJobIsDoneWithItsMessageAndRows) {
@@ -159,15 +152,15 @@ TEST_F(JobsTest, OneRunsAtATimeInTheOrderOfBeginning) {
   EXPECT_EQ(jobs_->active(), 0U);
 }
 
-TEST_F(JobsTest, ListsThemInTheOrderOfBeginningWithTheirProgress) {
+TEST_F(JobsTest, ListsThemWithTheirProgress) {
   const std::string id = begin(endless());
   const std::string other = begin(quick("two"));
   wait_for_begun(1);
-  const std::vector<Job> jobs = jobs_->list();
+  const std::vector<Job> jobs = jobs_->list("", 10).rows;
   ASSERT_EQ(jobs.size(), 2U);
-  EXPECT_EQ(jobs[0].id, id);
-  EXPECT_EQ(jobs[0].progress, 0.25);
-  EXPECT_EQ(jobs[1].id, other);
+  EXPECT_EQ(jobs[0].id, other);
+  EXPECT_EQ(jobs[1].id, id);
+  EXPECT_EQ(jobs[1].progress, 0.25);
   jobs_->cancel(id).value_or_throw();
 }
 
@@ -220,7 +213,7 @@ TEST_F(JobsTest, TheEndedOnesOfOneOwnerPushOutNobodyElses) {
     of("ben");
   EXPECT_TRUE(jobs_->find(of_anna));
   EXPECT_FALSE(jobs_->find(first_of_ben));
-  EXPECT_EQ(jobs_->list().size(), 5U);
+  EXPECT_EQ(jobs_->list("", 100).rows.size(), 5U);
 }
 
 TEST_F(JobsTest, ACancelledJobThatWaitedFreesItsPlaceAndNeverRuns) {
@@ -339,11 +332,11 @@ TEST_F(JobsTest, EndedJobsAreForgottenByAgeNumberAndSize) {
   for (int i = 0; i < 3; ++i)
     end_of(begin(quick("small")));
   EXPECT_FALSE(jobs_->find(bigger)) << "the fourth";
-  EXPECT_EQ(jobs_->list().size(), 3U);
+  EXPECT_EQ(jobs_->list("", 100).rows.size(), 3U);
   time_ms_ += 1000;
   EXPECT_EQ(jobs_->next_deadline(), clock_.now());
   jobs_->expire(clock_.now());
-  EXPECT_TRUE(jobs_->list().empty());
+  EXPECT_TRUE(jobs_->list("", 100).rows.empty());
   EXPECT_FALSE(jobs_->next_deadline());
 }
 
