@@ -77,7 +77,7 @@ class Administrators : public testing::Test {
     return link::rows_of(*client_, request).value_or_throw();
   }
   Job end_of(const AdminRequest& begin) {
-    const Job job = link::job_of(*client_, begin).value_or_throw();
+    const Job job = link::row_of<Job>(*client_, begin).value_or_throw();
     return link::wait_for_job(*client_, job.id, std::chrono::steady_clock::now() + seconds(60))
         .value_or_throw();
   }
@@ -139,43 +139,6 @@ TEST_F(Administrators, ABackupIsMadeWhileReportsGoOn) {
   AdminRequest request = question(AdminVerb::ExportPaths, "");
   request.task = "sweep";
   EXPECT_GE(rows(request).size(), 21U);
-}
-
-TEST_F(Administrators, ConfigurationsOfAFitComeAsAJobsRows) {
-  report(panda_attempts(6));
-  const FetchReply reply = fetch();
-  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  const Job job = end_of(question(AdminVerb::ExportConfigurations, reply.distribution->id.hex()));
-  ASSERT_EQ(job.state, JobState::Done) << job.message;
-  const std::vector<std::string> lines = rows(question(AdminVerb::JobRows, job.id));
-  EXPECT_EQ(lines.size(), reply.distribution->configurations + 1);
-  EXPECT_TRUE(lines.at(0).starts_with("path_id,source_robot,")) << lines.at(0);
-  EXPECT_EQ(ask(AdminVerb::CancelJob, job.id).status, AdminStatus::Ok);
-  EXPECT_EQ(end_of(question(AdminVerb::ShowJob, job.id)).state, JobState::Done);
-  EXPECT_EQ(ask(AdminVerb::ShowJob, "01234567").status, AdminStatus::NotFound);
-}
-
-TEST_F(Administrators, AnEvictedDistributionComesBackWithAHigherRevision) {
-  report(panda_attempts(6));
-  const FetchReply before = fetch();
-  ASSERT_EQ(before.status, FetchStatus::Ready) << before.message;
-  const AdminReply evicted =
-      ask(AdminVerb::EvictDistribution, before.distribution->id.hex().substr(0, 8));
-  ASSERT_EQ(evicted.status, AdminStatus::Ok) << evicted.message;
-  EXPECT_EQ(json::row_from_json<Eviction>(evicted.rows.at(0)).value_or_throw().id,
-            before.distribution->id);
-  const FetchReply after = fetch();
-  ASSERT_EQ(after.status, FetchStatus::Ready) << after.message;
-  EXPECT_GT(after.distribution->revision, before.distribution->revision);
-}
-
-TEST_F(Administrators, AfterAResetThereIsNoExperience) {
-  report(panda_attempts(6));
-  ASSERT_EQ(fetch().status, FetchStatus::Ready);
-  const AdminReply reply = ask(AdminVerb::ResetTask, "sweep");
-  ASSERT_EQ(reply.status, AdminStatus::Ok) << reply.message;
-  EXPECT_EQ(json::row_from_json<Retirement>(reply.rows.at(0)).value_or_throw().paths, 6U);
-  EXPECT_EQ(fetch().status, FetchStatus::NoExperience);
 }
 
 TEST_F(Administrators, WhatWasRetiredIsNeverServedAgainAlsoIfTheServerDiesAtOnce) {
