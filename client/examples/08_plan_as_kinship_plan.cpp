@@ -25,30 +25,30 @@ int main(int count, char** words) try {
     throw std::runtime_error("usage: 08_plan_as_kinship_plan MODELS");
   const auto arm =
       models::load_robot({.source = std::string(words[1]) + "/ur10e"}).value_or_throw();
-  const planner::PlannedRobot robot(arm.chain, arm.shapes);
+  const guided::PlannedRobot robot(arm.chain, arm.shapes);
   link::Client client(link::options_from_environment());
   client.register_robot(arm.description).value_or_throw();
 
-  planner::GuidanceOptions wanted;
+  guided::GuidanceOptions wanted;
   wanted.task = "sweep";
   wanted.robot = arm.chain.digest();
   wanted.dof = arm.chain.dof();
   wanted.chain = arm.chain;  // follows the stored ways
-  planner::GuidanceCache guidance(
-      [&](const FetchRequest& request) { return client.fetch(request); }, wanted);
-  const planner::PlanSettings settings;
+  guided::GuidanceCache guidance([&](const FetchRequest& request) { return client.fetch(request); },
+                                 wanted);
+  const guided::PlanSettings settings;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Problem problem = around_a_post(seed);
     if (const auto [answer, is_new] = guidance.ask(problem.T_task_base); is_new)
       std::cout << answer.message << '\n';  // without a server too: planned uniformly then
-    const planner::PlannedProblem planned = planner::plan_problem(
+    const guided::PlannedProblem planned = guided::plan_problem(
         robot, problem, guidance.choose(problem), settings, [] { return false; });
     guidance.add(planned);
     std::cout << problem.name << (planned.result.solved ? " solved with " : " not solved with ")
               << planned.result.collision_checks << " checks\n";
     Attempt attempt =
-        planner::make_attempt({wanted.robot, "cell 4", wanted.task}, problem, planned, settings);
-    attempt.scene = planner::record_scene(arm.chain, problem).value_or_throw();
+        guided::make_attempt({wanted.robot, "cell 4", wanted.task}, problem, planned, settings);
+    attempt.scene = guided::record_scene(arm.chain, problem).value_or_throw();
     client.report(attempt);
   }
   std::cout << "pending " << client.flush(std::chrono::seconds(30)).pending << '\n';

@@ -38,8 +38,8 @@ struct Comparison {
   double median_time_ratio = 0;
   WilcoxonSummary checks_test;  ///< unsolved = infinite; both unsolved = no difference
   WilcoxonSummary time_test;
-  std::vector<std::string> unpaired;     ///< names that only one side answered
-  planner::UnplannedProblems unplanned;  ///< answered by both, and by one without a search
+  std::vector<std::string> unpaired;    ///< names that only one side answered
+  guided::UnplannedProblems unplanned;  ///< answered by both, and by one without a search
 };
 
 /// The comparison of uniform planning with something else than what is compared first, e.g. with

@@ -90,7 +90,7 @@ std::string json_of(const PlannerStatistics& planner) {
 }
 
 /// {"start_collides": 3}; an empty object if all was planned.
-std::string json_of(const planner::UnplannedProblems& unplanned) {
+std::string json_of(const guided::UnplannedProblems& unplanned) {
   std::string members;
   for (const auto& [reason, count] : unplanned.by_reason())
     members += (members.empty() ? "\"" : ",\"") + std::string(to_text(reason)) +

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 std::string describe(const PlanSettings& settings, const ProblemResult& result) {
@@ -43,4 +43,4 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   return attempt;
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -7,7 +7,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/problem.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Who reports, and for what.
 struct Reporter {
@@ -20,4 +20,4 @@ struct Reporter {
 Attempt make_attempt(const Reporter& reporter, const Problem& problem,
                      const PlannedProblem& planned, const PlanSettings& settings);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 constexpr std::size_t kNoted = 200;     // more say nothing new
@@ -97,4 +97,4 @@ std::string ContactNotes::text() {
   return text;
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -10,7 +10,7 @@
 #include "robots/collision/edge_prover.hpp"
 #include "robots/planning/is_free.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// What is too near at a configuration, or touches.
 using FindNear = std::function<std::vector<collision::NearPair>(const Eigen::VectorXd& q)>;
@@ -41,4 +41,4 @@ class ContactNotes {
   std::vector<Eigen::VectorXd> colliding_;
 };
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -2,7 +2,7 @@
 
 #include "robots/geometry/geometry_doubts.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 constexpr std::size_t kMaxTold = 20;  // of a run of many scenes
@@ -29,4 +29,4 @@ std::vector<std::string> GeometryWarnings::find(const Problem& problem,
   return sentences;
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

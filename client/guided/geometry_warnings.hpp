@@ -9,7 +9,7 @@
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/chain.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Says of each planned scene what cannot be meant; the same of many problems once.
 class GeometryWarnings {
@@ -30,4 +30,4 @@ class GeometryWarnings {
   std::set<std::string> told_;
 };
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -5,7 +5,7 @@
 
 #include "proto/types/enum_text.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 GuidanceAnswer refusal(NoGuidance why, std::string message) {
@@ -214,4 +214,4 @@ void GuidanceCache::add(const PlannedProblem& planned) {
     sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks);
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

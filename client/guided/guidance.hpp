@@ -16,7 +16,7 @@
 #include "proto/types/result.hpp"
 #include "robots/kinematics/chain.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Asks the server; link::Client::fetch in the program.
 using Fetch = std::function<Result<FetchReply>(const FetchRequest&)>;
@@ -84,4 +84,4 @@ class GuidanceCache {
   bool server_missing_ = false;
 };
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

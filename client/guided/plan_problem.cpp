@@ -28,7 +28,7 @@
 #include "robots/planning/shortcut.hpp"
 #include "robots/planning/start_configuration.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 using planning::NoPath;
@@ -450,4 +450,4 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& given,
   return planned;
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -20,7 +20,7 @@
 #include "robots/kinematics/chain.hpp"
 #include "robots/planning/search_recorder.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// What planning knows about the robot.
 struct PlannedRobot {
@@ -58,4 +58,4 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const std::function<bool()>& stop,
                             planning::SearchRecorder* recorder = nullptr);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -5,7 +5,7 @@
 #include "client/guided/planner_choice.hpp"
 #include "robots/planning/guided_sampler.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Resolutions that may be asked for, joint units.
 inline constexpr double kLeastResolution = 1e-4, kLargestResolution = 1;
@@ -28,4 +28,4 @@ struct PlanSettings {
   PlannerChoice planner = {};
 };
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -5,7 +5,7 @@
 
 #include "client/ompl/ompl_planner.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 constexpr std::string_view kOmpl = "ompl:";
@@ -67,4 +67,4 @@ std::string name_of(const PlannerChoice& planner) {
   return "";
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -5,7 +5,7 @@
 
 #include "proto/types/result.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 enum class PlannerKind {
   ByProblem,  ///< BiRRT, or CBiRRT2 under a constraint
@@ -32,4 +32,4 @@ Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrain
 /// As results and reports name it: "BiRRT", "CBiRRT2", "Repetition Roadmap", "OMPL RRTConnect".
 std::string name_of(const PlannerChoice& planner);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -7,7 +7,7 @@
 
 #include "proto/types/number_text.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 /// Six digits behind the point, or as many as tell a value from a limit that it hardly exceeds.
@@ -92,4 +92,4 @@ std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Prob
   return std::nullopt;
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

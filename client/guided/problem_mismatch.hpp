@@ -7,7 +7,7 @@
 #include "proto/types/problem.hpp"
 #include "robots/kinematics/chain.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Why a problem is not one of a robot.
 struct Mismatch {
@@ -37,4 +37,4 @@ class WithinLimits {
 /// Other joints, a start or goal beyond a limit.
 std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Problem& problem);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

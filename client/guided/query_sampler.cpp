@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 planning::ConfigurationSampler make_query_sampler(const kinematics::Chain& chain,
                                                   const planning::TrackQuery& query,
@@ -28,4 +28,4 @@ planning::ConfigurationSampler make_query_sampler(const kinematics::Chain& chain
   return std::move(guided.sampler);
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

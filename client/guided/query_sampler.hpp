@@ -14,7 +14,7 @@
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/experience_guide.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// What a task's experience gives a robot, for all queries from one placement: a distribution, or
 /// stored ways of the hand, or both.
@@ -45,4 +45,4 @@ planning::ConfigurationSampler make_query_sampler(const kinematics::Chain& chain
                                                   const PlanSettings& settings,
                                                   ProblemResult& result);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -9,7 +9,7 @@
 #include "proto/types/pose.hpp"
 #include "proto/types/split_mix.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 /// Numbers one after another become one number.
@@ -94,4 +94,4 @@ std::uint64_t sampling_mode_seed(const Problem& problem) {
   return fingerprint.value();
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

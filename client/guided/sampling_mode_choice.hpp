@@ -8,7 +8,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/problem.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// What a user says about guidance; what is missing follows the evidence.
 struct SamplingModeOptions {
@@ -67,4 +67,4 @@ class SamplingModeChooser {
 /// one; it says nothing about the samples that a planner seeded with problem.seed draws.
 std::uint64_t sampling_mode_seed(const Problem& problem);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

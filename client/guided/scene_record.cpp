@@ -10,7 +10,7 @@
 #include "robots/geometry/mesh_cover.hpp"
 #include "robots/geometry/point_cloud.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 constexpr std::size_t kBoxesOfACloud = 128;  // of some 2000 objects that a scene may hold
@@ -98,4 +98,4 @@ Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem
   return SceneRecords().record(chain, problem);
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

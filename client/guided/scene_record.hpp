@@ -13,7 +13,7 @@
 #include "robots/geometry/fitted_shape.hpp"
 #include "robots/kinematics/chain.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Says the scenes of problems as the server is told of them. Solids around a mesh are fitted once,
 /// however many problems have it. Used by one thread.
@@ -41,4 +41,4 @@ class SceneRecords {
 /// The same for one problem alone.
 Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem& problem);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -5,7 +5,7 @@
 #include <ostream>
 #include <utility>
 
-namespace kinship::planner {
+namespace kinship::guided {
 namespace {
 
 constexpr std::size_t kFirstTold = 3;
@@ -44,4 +44,4 @@ void UnplannedProblems::write_first(std::ostream& out) const {
     out << "  and " << size_ - first_.size() << " more\n";
 }
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

@@ -8,7 +8,7 @@
 
 #include "proto/types/problem.hpp"
 
-namespace kinship::planner {
+namespace kinship::guided {
 
 /// Problems that no search was begun for, by reason: averages leave them out.
 class UnplannedProblems {
@@ -34,4 +34,4 @@ class UnplannedProblems {
 /// "shelf-1-0003: every goal collides"; why a line could not be read begins with its name already.
 std::string named_outcome(const ProblemResult& result, const std::string& outcome);
 
-}  // namespace kinship::planner
+}  // namespace kinship::guided

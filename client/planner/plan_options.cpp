@@ -77,13 +77,13 @@ void add_inputs(CLI::App& app, PlanOptions& options) {
 void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   using arguments::between;
   constexpr std::uint64_t kMax = 1'000'000'000;
-  PlanSettings& settings = options.settings;
+  guided::PlanSettings& settings = options.settings;
   app.add_option(
          "--planner", raw.planner,
          "birrt, cbirrt2, roadmap, or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
          "LazyPRM ...; default: birrt, and cbirrt2 for problems with a constraint)")
       ->check([](const std::string& text) {
-        const Result<PlannerChoice> planner = parse_planner(text);
+        const Result<guided::PlannerChoice> planner = guided::parse_planner(text);
         return planner ? std::string() : planner.error().message;
       });
   CLI::Option* const clearance =
@@ -96,7 +96,7 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   app.add_option("--resolution", raw.resolution,
                  "prove nothing, but check configurations that are at most so far apart, joint "
                  "units, as studies do: what is thinner may be missed")
-      ->check(between(kLeastResolution, kLargestResolution))
+      ->check(between(guided::kLeastResolution, guided::kLargestResolution))
       ->excludes(clearance);
   app.add_option("--max-checks", settings.max_checks, "collision checks after which to give up")
       ->check(between(std::uint64_t{1}, kMax))
@@ -241,7 +241,7 @@ void note_unused(const CLI::App& app, const PlanOptions& options, std::ostream& 
     note_unused(app, {"--control-share"}, "with --share 0", notes);
   if (!options.report)
     note_unused(app, kOfReports, "without --report yes", notes);
-  if (options.settings.planner.kind == PlannerKind::Ompl)
+  if (options.settings.planner.kind == guided::PlannerKind::Ompl)
     note_unused(app, {"--overshoot"}, "on planners of OMPL", notes);
   if (is_uniform && !options.report) {
     note_unused(app, kOfServer, "where no server is needed", notes);
@@ -284,7 +284,7 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
     require_name(check_task(options.task), "--task");
   require_name(check_machine(options.machine), "--machine");
   if (!raw.planner.empty())
-    options.settings.planner = parse_planner(raw.planner).value_or_throw();
+    options.settings.planner = guided::parse_planner(raw.planner).value_or_throw();
   options.guidance = guidance_of(raw, options);
   options.report = raw.report == "yes";
   options.record_scenes = raw.record_scenes == "yes";

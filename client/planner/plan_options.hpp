@@ -32,13 +32,13 @@ struct PlanOptions {
   std::string profile = "default";
   std::optional<Guide> guide;  ///< missing: what the server found by rehearsal, else all there is
   bool rehearsed = false;      ///< wait for a rehearsal, as for a distribution
-  SamplingModeOptions sampling;
+  guided::SamplingModeOptions sampling;
   Selection selection;               ///< without its sources
   std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all
   bool report = false;
   bool record_scenes = true;  ///< reports carry their problem's scene
   std::string machine;        ///< empty: the host's name
-  PlanSettings settings;
+  guided::PlanSettings settings;
   std::uint64_t seed_offset = 0;   ///< added to each problem's seed
   std::filesystem::path output;    ///< empty: standard output
   std::filesystem::path searches;  ///< how each search grew; empty: is not recorded

@@ -30,15 +30,15 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-int exit_code_without(NoGuidance why_not) {
+int exit_code_without(guided::NoGuidance why_not) {
   switch (why_not) {
-    case NoGuidance::None:
+    case guided::NoGuidance::None:
       return kDone;
-    case NoGuidance::NoServer:
+    case guided::NoGuidance::NoServer:
       return kNoServer;
-    case NoGuidance::NotFound:
+    case guided::NoGuidance::NotFound:
       return kNotFound;
-    case NoGuidance::Failed:
+    case guided::NoGuidance::Failed:
       break;
   }
   return kFailed;
@@ -93,13 +93,13 @@ class SceneRecorder {
   const bool wanted_;
   const kinematics::Chain& chain_;
   std::ostream& messages_;
-  SceneRecords records_;
+  guided::SceneRecords records_;
   bool told_ = false, told_of_meshes_ = false;
 };
 
 /// The answer to a problem whose meshes cannot be had.
-PlannedProblem unread(const Problem& problem, const Error& error) {
-  PlannedProblem planned;
+guided::PlannedProblem unread(const Problem& problem, const Error& error) {
+  guided::PlannedProblem planned;
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
   planned.result.reason = error.message;
@@ -107,8 +107,9 @@ PlannedProblem unread(const Problem& problem, const Error& error) {
   return planned;
 }
 
-GuidanceOptions guidance_options(const PlanOptions& options, const kinematics::Chain& chain) {
-  GuidanceOptions wanted;
+guided::GuidanceOptions guidance_options(const PlanOptions& options,
+                                         const kinematics::Chain& chain) {
+  guided::GuidanceOptions wanted;
   wanted.task = options.task;
   wanted.robot = chain.digest();
   wanted.dof = chain.dof();
@@ -149,7 +150,7 @@ class Run {
     for (ProblemLine& line : lines) {
       if (stop())
         return false;
-      PlannedProblem planned;
+      guided::PlannedProblem planned;
       if (line.problem)
         planned = plan(*std::move(line.problem), stop);
       else
@@ -166,13 +167,13 @@ class Run {
   }
 
  private:
-  PlannedProblem plan(Problem problem, const std::function<bool()>& stop) {
+  guided::PlannedProblem plan(Problem problem, const std::function<bool()>& stop) {
     problem.seed += options_.seed_offset;
     if (const auto error = meshes_.read(problem.scene, problem.attached))
       return unread(problem, *error);
-    PlannedProblem planned =
-        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
-                     streams_.searches != nullptr ? &recorder_ : nullptr);
+    guided::PlannedProblem planned =
+        guided::plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
+                             streams_.searches != nullptr ? &recorder_ : nullptr);
     for (const std::string& warning : warnings_.find(problem, planned))
       streams_.messages << "warning: " << warning << '\n';
     for (const std::string& moved : planned.moved)
@@ -182,7 +183,7 @@ class Run {
     server_.add(planned);
     if (options_.report)
       server_.report([&] {
-        Attempt attempt = make_attempt(reporter_, problem, planned, options_.settings);
+        Attempt attempt = guided::make_attempt(reporter_, problem, planned, options_.settings);
         scenes_.add(problem, attempt);
         return attempt;
       });
@@ -190,11 +191,11 @@ class Run {
   }
 
   const PlanOptions& options_;
-  const PlannedRobot robot_;
-  GeometryWarnings warnings_;
+  const guided::PlannedRobot robot_;
+  guided::GeometryWarnings warnings_;
   ServerLine& server_;
   const RunStreams& streams_;
-  const Reporter reporter_;
+  const guided::Reporter reporter_;
   models::SceneMeshes meshes_;
   SceneRecorder scenes_;
   planning::SearchRecorder recorder_;  // of the search under way
@@ -219,8 +220,9 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};
   }
-  const NoGuidance why_not = server.fetch_guidance(guidance_options(options, robot.chain), lines);
-  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
+  const guided::NoGuidance why_not =
+      server.fetch_guidance(guidance_options(options, robot.chain), lines);
+  if (options.guidance == GuidanceMode::Require && why_not != guided::NoGuidance::None && !stop()) {
     streams.messages << "nothing is planned: --guidance require, and there is none\n";
     return {exit_code_without(why_not), false};
   }

@@ -47,8 +47,8 @@ void Progress::add(const ProblemResult& result, bool attempted) {
   const std::string outcome =
       result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason;
   stream_ << (terminal_ ? "\r\033[K" : "") << "planned " << done_ << "/" << total_ << ", solved "
-          << solved_ << ", last: " << named_outcome(result, outcome) << (terminal_ ? "" : "\n")
-          << std::flush;
+          << solved_ << ", last: " << guided::named_outcome(result, outcome)
+          << (terminal_ ? "" : "\n") << std::flush;
 }
 
 void Progress::finish() {
@@ -76,7 +76,7 @@ void Progress::finish() {
 
 std::string result_text(const ProblemResult& result) {
   if (result.not_planned)
-    return named_outcome(result, result.reason);
+    return guided::named_outcome(result, result.reason);
   std::string text = result.name + ": ";
   text += result.solved && result.waypoints
               ? "solved, " + std::to_string(result.waypoints->cols()) + " waypoints"

@@ -34,7 +34,7 @@ class Progress {
   std::size_t done_ = 0, attempted_ = 0, solved_ = 0;
   std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // searches by sampling mode
   std::size_t gated_ = 0;                               // of the guided ones
-  UnplannedProblems unplanned_;
+  guided::UnplannedProblems unplanned_;
   std::uint64_t checks_ = 0;    // of searches
   double planning_time_s_ = 0;  // of searches
 };

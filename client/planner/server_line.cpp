@@ -11,14 +11,14 @@
 namespace kinship::planner {
 namespace {
 
-NoGuidance why_not(const Error& error) {
+guided::NoGuidance why_not(const Error& error) {
   switch (error.code) {
     case ErrorCode::Unavailable:
-      return NoGuidance::NoServer;
+      return guided::NoGuidance::NoServer;
     case ErrorCode::NotFound:
-      return NoGuidance::NotFound;
+      return guided::NoGuidance::NotFound;
     default:
-      return NoGuidance::Failed;
+      return guided::NoGuidance::Failed;
   }
 }
 
@@ -120,22 +120,22 @@ std::optional<Error> ServerLine::find_sources(Selection& selection) {
   return std::nullopt;
 }
 
-NoGuidance ServerLine::fetch_guidance(GuidanceOptions wanted,
-                                      const std::vector<ProblemLine>& lines) {
+guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
+                                              const std::vector<ProblemLine>& lines) {
   if (options_.guidance == GuidanceMode::Uniform)
-    return NoGuidance::None;
+    return guided::NoGuidance::None;
   const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wanted.selection);
   if (trouble) {
     messages_ << "no guidance, all is planned uniformly: " << trouble->message << '\n';
     why_unguided_ = trouble->message;
     return why_not(*trouble);
   }
-  guidance_ = std::make_unique<GuidanceCache>(
+  guidance_ = std::make_unique<guided::GuidanceCache>(
       [this](const FetchRequest& request) {
         return wait_for<FetchReply>([&] { return client_->fetch(request); });
       },
       std::move(wanted));
-  NoGuidance first_reason = NoGuidance::None;
+  guided::NoGuidance first_reason = guided::NoGuidance::None;
   for (const ProblemLine& line : lines) {
     if (stop_())
       break;
@@ -147,17 +147,17 @@ NoGuidance ServerLine::fetch_guidance(GuidanceOptions wanted,
     const std::string outcome = answer.guidance ? "" : "none, ";
     messages_ << "guidance for the placement of '" << line.problem->name << "': " << outcome
               << answer.message << '\n';
-    if (first_reason == NoGuidance::None)
+    if (first_reason == guided::NoGuidance::None)
       first_reason = answer.why_not;
   }
   return first_reason;
 }
 
-QueryGuidance ServerLine::choose(const Problem& problem) const {
-  return guidance_ ? guidance_->choose(problem) : QueryGuidance{.why_not = why_unguided_};
+guided::QueryGuidance ServerLine::choose(const Problem& problem) const {
+  return guidance_ ? guidance_->choose(problem) : guided::QueryGuidance{.why_not = why_unguided_};
 }
 
-void ServerLine::add(const PlannedProblem& planned) {
+void ServerLine::add(const guided::PlannedProblem& planned) {
   if (guidance_)
     guidance_->add(planned);
 }

@@ -35,17 +35,18 @@ class ServerLine {
 
   /// Asks for guidance for every placement of the problems, and says what came of it.
   /// \return why guidance that the options require is missing.
-  NoGuidance fetch_guidance(GuidanceOptions wanted, const std::vector<ProblemLine>& lines);
+  guided::NoGuidance fetch_guidance(guided::GuidanceOptions wanted,
+                                    const std::vector<ProblemLine>& lines);
 
   /// Whether a server refused the robot, for example because its label belongs to another one. That
   /// may come out only in finish(): the server may come up later than this.
   bool is_robot_refused() const noexcept { return is_robot_refused_; }
 
   /// How the next problem shall be planned; without guidance uniformly. Never waits.
-  QueryGuidance choose(const Problem& problem) const;
+  guided::QueryGuidance choose(const Problem& problem) const;
 
   /// A problem was attempted: the choice for those after it learns from it.
-  void add(const PlannedProblem& planned);
+  void add(const guided::PlannedProblem& planned);
 
   /// Puts the attempt into the outbox; says so if it cannot be made or kept.
   void report(const std::function<Attempt()>& make_attempt);
@@ -72,7 +73,7 @@ class ServerLine {
   std::ostream& messages_;
   const std::function<bool()>& stop_;
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had
-  std::unique_ptr<GuidanceCache> guidance_;
+  std::unique_ptr<guided::GuidanceCache> guidance_;
   std::optional<Error> trouble_;  // why the robot is not registered
   bool is_robot_refused_ = false;
   std::string why_unguided_;  // of every query, while there is no guidance_

@@ -91,7 +91,7 @@ struct GuidanceWish {
 
 std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Robot& robot,
                                             const FetchRequest& request, const GuidanceWish& wish) {
-  planner::GuidanceOptions wanted;
+  guided::GuidanceOptions wanted;
   wanted.task = request.task;
   wanted.robot = robot.digest();
   wanted.dof = robot.chain().dof();
@@ -109,7 +109,7 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
     status = reply.status;
     return reply;
   };
-  planner::GuidanceAnswer answer = planner::fetch_guidance(fetch, wanted, request.T_task_base);
+  guided::GuidanceAnswer answer = guided::fetch_guidance(fetch, wanted, request.T_task_base);
   if (!answer.guidance)
     raise_status(status, request, answer.message);
   return std::make_shared<GuidanceHandle>(robot.digest(), std::move(answer));

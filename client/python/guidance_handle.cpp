@@ -4,7 +4,7 @@ namespace kinship::python {
 
 std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
     const SampledDistribution& distribution) {
-  planner::GuidanceOptions wanted;
+  guided::GuidanceOptions wanted;
   wanted.task = distribution.value()->task;
   wanted.robot = distribution.value()->robot;
   wanted.dof = distribution.mixture().dimension();
@@ -16,7 +16,7 @@ std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
     reply.distribution = *distribution.value();
     return reply;
   };
-  planner::GuidanceAnswer answer = planner::fetch_guidance(fetch, wanted, std::nullopt);
+  guided::GuidanceAnswer answer = guided::fetch_guidance(fetch, wanted, std::nullopt);
   if (!answer.guidance)
     throw Failure(ErrorCode::InvalidInput, answer.message);
   return std::make_shared<GuidanceHandle>(wanted.robot, std::move(answer));
@@ -29,10 +29,10 @@ double GuidanceHandle::guided_part() const {
 
 SamplingMode GuidanceHandle::choose(const Problem& problem) const {
   const std::scoped_lock lock(mutex_);
-  return answer_.sampling->choose(planner::sampling_mode_seed(problem));
+  return answer_.sampling->choose(guided::sampling_mode_seed(problem));
 }
 
-void GuidanceHandle::add(const planner::PlannedProblem& planned) {
+void GuidanceHandle::add(const guided::PlannedProblem& planned) {
   const std::scoped_lock lock(mutex_);
   answer_.sampling->add(planned.result.sampling_mode, planned.outcome,
                         planned.result.collision_checks);

@@ -15,7 +15,7 @@ namespace kinship::python {
 class GuidanceHandle {
  public:
   /// \param answer  with guidance.
-  GuidanceHandle(const Digest& robot, planner::GuidanceAnswer answer)
+  GuidanceHandle(const Digest& robot, guided::GuidanceAnswer answer)
       : robot_(robot), answer_(std::move(answer)) {}
 
   /// A distribution alone: without stored ways, and without control.
@@ -23,17 +23,17 @@ class GuidanceHandle {
   static std::shared_ptr<GuidanceHandle> of_distribution(const SampledDistribution& distribution);
 
   const Digest& robot() const noexcept { return robot_; }
-  const planner::Guidance& guidance() const noexcept { return *answer_.guidance; }
+  const guided::Guidance& guidance() const noexcept { return *answer_.guidance; }
   const std::string& message() const noexcept { return answer_.message; }
 
   double guided_part() const;
   SamplingMode choose(const Problem& problem) const;
-  void add(const planner::PlannedProblem& planned);
+  void add(const guided::PlannedProblem& planned);
 
  private:
   const Digest robot_;
-  planner::GuidanceAnswer answer_;  // but for its chooser never changed
-  mutable std::mutex mutex_;        // guards the chooser
+  guided::GuidanceAnswer answer_;  // but for its chooser never changed
+  mutable std::mutex mutex_;       // guards the chooser
 };
 
 }  // namespace kinship::python

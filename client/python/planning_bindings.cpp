@@ -30,8 +30,8 @@ using AnyGuidance = std::variant<SharedGuidance, std::shared_ptr<SampledDistribu
 struct Plan {
   std::shared_ptr<Robot> robot;
   Problem problem;
-  planner::PlanSettings settings;
-  planner::PlannedProblem planned;
+  guided::PlanSettings settings;
+  guided::PlannedProblem planned;
 };
 
 /// What a planner asks before every check. It runs without the interpreter's lock, which is taken
@@ -65,8 +65,8 @@ SharedGuidance guidance_for(const Robot& robot, const std::optional<AnyGuidance>
   return guidance;
 }
 
-planner::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& problem,
-                                const std::string& sampling_mode) {
+guided::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& problem,
+                               const std::string& sampling_mode) {
   if (!guidance)
     return {.why_not = "no guidance was given"};
   return {.guidance = &guidance->guidance(),
@@ -82,7 +82,7 @@ std::vector<std::string> doubts_of(const Robot& robot, const Plan& made) {
       !touching.empty())
     doubts.push_back(std::move(touching));
   for (std::string& sentence :
-       planner::GeometryWarnings(robot.chain(), robot.shapes()).find(made.problem, made.planned))
+       guided::GeometryWarnings(robot.chain(), robot.shapes()).find(made.problem, made.planned))
     doubts.push_back(std::move(sentence));
   return doubts;
 }
@@ -90,34 +90,34 @@ std::vector<std::string> doubts_of(const Robot& robot, const Plan& made) {
 /// Either a clearance, which is proven, or a resolution, which is not.
 /// \throws Failure(InvalidInput) if both are given, or one is out of its limits.
 void read_proof(std::optional<double> clearance, std::optional<double> resolution,
-                planner::PlanSettings& settings) {
+                guided::PlanSettings& settings) {
   if (clearance && resolution)
     throw Failure(invalid_input(
         "plan: takes clearance, which is proven, or resolution, with which nothing is, not both"));
   if (clearance)
     collision::check_clearance("clearance", *clearance);
   if (resolution &&
-      !(*resolution >= planner::kLeastResolution && *resolution <= planner::kLargestResolution))
+      !(*resolution >= guided::kLeastResolution && *resolution <= guided::kLargestResolution))
     throw Failure(invalid_input("resolution is " + number_text(*resolution) + ", must be from " +
-                                number_text(planner::kLeastResolution) + " to " +
-                                number_text(planner::kLargestResolution)));
+                                number_text(guided::kLeastResolution) + " to " +
+                                number_text(guided::kLargestResolution)));
   settings.clearance_m = resolution ? 0 : clearance.value_or(settings.clearance_m);
   settings.resolution = resolution.value_or(settings.resolution);
 }
 
 Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
                 const std::optional<AnyGuidance>& guided_by, std::optional<std::uint64_t> seed,
-                const std::string& sampling_mode, const planner::PlanSettings& settings) {
+                const std::string& sampling_mode, const guided::PlanSettings& settings) {
   Plan made{robot, problem, settings, {}};
   if (seed)
     made.problem.seed = *seed;
   const SharedGuidance guidance = guidance_for(*robot, guided_by);
-  const planner::QueryGuidance query = query_of(guidance, made.problem, sampling_mode);
+  const guided::QueryGuidance query = query_of(guidance, made.problem, sampling_mode);
   std::vector<std::string> doubts;
   {
     const py::gil_scoped_release unlocked;
-    made.planned = planner::plan_problem(*robot->planned(), made.problem, query, made.settings,
-                                         InterruptCheck());
+    made.planned = guided::plan_problem(*robot->planned(), made.problem, query, made.settings,
+                                        InterruptCheck());
     doubts = doubts_of(*robot, made);
   }
   if (made.planned.interrupted)
@@ -137,13 +137,13 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
 json::NamedAttempt attempt_for(const Plan& self, const std::string& task,
                                const std::string& machine) {
   json::NamedAttempt named;
-  named.attempt = planner::make_attempt({self.robot->digest(), machine, task}, self.problem,
-                                        self.planned, self.settings);
+  named.attempt = guided::make_attempt({self.robot->digest(), machine, task}, self.problem,
+                                       self.planned, self.settings);
   const Problem& problem = self.problem;
   const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty() &&
                        problem.scene.clouds.empty() && problem.attached.empty();
   if (!is_open || problem.constraint)
-    named.attempt.scene = planner::record_scene(self.robot->chain(), problem).value_or_throw();
+    named.attempt.scene = guided::record_scene(self.robot->chain(), problem).value_or_throw();
   return named;
 }
 
@@ -276,23 +276,23 @@ void bind_planning(py::module_& module) {
          const std::string& sampling_mode, const std::string& planner, std::uint64_t max_checks,
          std::optional<double> clearance, std::optional<double> resolution,
          std::uint64_t shortcut_checks, int max_goals, double limit_slack) {
-        planner::PlanSettings settings;
+        guided::PlanSettings settings;
         settings.max_checks = max_checks;
         read_proof(clearance, resolution, settings);
         settings.shortcut_checks = shortcut_checks;
         settings.max_goals = max_goals;
         settings.limit_slack = limit_slack;
         if (!planner.empty())
-          settings.planner = planner::parse_planner(planner).value_or_throw();
+          settings.planner = guided::parse_planner(planner).value_or_throw();
         return plan_query(robot, problem, guidance, seed, sampling_mode, settings);
       },
       py::arg("robot"), py::arg("problem"), py::arg("guidance") = py::none(), py::kw_only(),
       py::arg("seed") = py::none(), py::arg("sampling_mode") = "", py::arg("planner") = "",
-      py::arg("max_checks") = planner::PlanSettings{}.max_checks, py::arg("clearance") = py::none(),
+      py::arg("max_checks") = guided::PlanSettings{}.max_checks, py::arg("clearance") = py::none(),
       py::arg("resolution") = py::none(),
-      py::arg("shortcut_checks") = planner::PlanSettings{}.shortcut_checks,
-      py::arg("max_goals") = planner::PlanSettings{}.max_goals,
-      py::arg("limit_slack") = planner::PlanSettings{}.limit_slack,
+      py::arg("shortcut_checks") = guided::PlanSettings{}.shortcut_checks,
+      py::arg("max_goals") = guided::PlanSettings{}.max_goals,
+      py::arg("limit_slack") = guided::PlanSettings{}.limit_slack,
       R"(Plans a problem as kinship-plan does; other threads run meanwhile, and Ctrl-C ends it.
 
 guidance         of Client.guidance(), or a Distribution; None: uniform

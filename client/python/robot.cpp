@@ -74,14 +74,14 @@ Eigen::MatrixXd Robot::inverse(const Eigen::Isometry3d& T_base_frame, const std:
   return solver_.solve(T_base_tip, options).configurations;
 }
 
-std::shared_ptr<const planner::PlannedRobot> Robot::planned() const {
+std::shared_ptr<const guided::PlannedRobot> Robot::planned() const {
   if (!shapes_)
     throw Failure(shapes_.error());
   if (const auto error = geometry::find_missing_solids(chain_, *shapes_))
     throw Failure(*error);
   const std::scoped_lock lock(mutex_);
   if (!planned_)
-    planned_ = std::make_shared<const planner::PlannedRobot>(chain_, *shapes_);
+    planned_ = std::make_shared<const guided::PlannedRobot>(chain_, *shapes_);
   return planned_;
 }
 

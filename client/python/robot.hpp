@@ -51,7 +51,7 @@ class Robot {
 
   /// What planning and all its worlds share, made when it is first asked for.
   /// \throws Failure if its collision geometry is not known.
-  std::shared_ptr<const planner::PlannedRobot> planned() const;
+  std::shared_ptr<const guided::PlannedRobot> planned() const;
 
   /// Its collision geometry, which must be known, as after planned().
   const geometry::RobotShapes& shapes() const { return shapes_.value(); }
@@ -66,7 +66,7 @@ class Robot {
   Result<geometry::RobotShapes> shapes_;
   inverse::Solver solver_;
   mutable std::mutex mutex_;  // guards what follows
-  mutable std::shared_ptr<const planner::PlannedRobot> planned_;
+  mutable std::shared_ptr<const guided::PlannedRobot> planned_;
 };
 
 }  // namespace kinship::python

@@ -39,10 +39,10 @@ namespace {
 constexpr double kStep = 0.05;
 constexpr std::uint64_t kSeed = 1;
 
-planner::PlanSettings proven() { return {}; }
+guided::PlanSettings proven() { return {}; }
 
-planner::PlanSettings by_steps() {
-  planner::PlanSettings settings;
+guided::PlanSettings by_steps() {
+  guided::PlanSettings settings;
   settings.resolution = kStep;
   settings.clearance_m = 0;
   return settings;
@@ -54,16 +54,16 @@ struct Times {
   int proven_solved = 0, steps_solved = 0;
   std::uint64_t refuted = 0;
 
-  void plan(const planner::PlannedRobot& robot, const Problem& problem, bool proves) {
+  void plan(const guided::PlannedRobot& robot, const Problem& problem, bool proves) {
     const double before_s = thread_cpu_s();
-    const planner::PlannedProblem planned = planner::plan_problem(
+    const guided::PlannedProblem planned = guided::plan_problem(
         robot, problem, {}, proves ? proven() : by_steps(), [] { return false; });
     (proves ? proven_s : steps_s).push_back(thread_cpu_s() - before_s);
     (proves ? proven_solved : steps_solved) += planned.result.solved ? 1 : 0;
     refuted += planned.result.refuted_edges;
   }
 
-  void add(const planner::PlannedRobot& robot, const Problem& problem) {
+  void add(const guided::PlannedRobot& robot, const Problem& problem) {
     constexpr int kTimes = 4;  // the first of each warms up
     for (int i = 0; i < kTimes; ++i)
       for (const bool proves : {i % 2 == 0, i % 2 != 0}) {
@@ -125,7 +125,7 @@ void plan_station(experiments::Station station, int instances) {
         models::load_robot(
             {.source = std::filesystem::path(test::source_dir()) / "robots/models" / name})
             .value_or_throw();
-    const planner::PlannedRobot planned(robot.chain, robot.shapes);
+    const guided::PlannedRobot planned(robot.chain, robot.shapes);
     for (int i = 0; i < instances; ++i)
       all.add(planned, experiments::draw_station_problem(
                            station, robot, experiments::placement_at(station, name),

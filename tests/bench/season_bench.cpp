@@ -55,7 +55,7 @@ SeasonOutcome play(const Season& season) {
   SeasonOutcome outcome;
   for (std::uint64_t seed = 1; seed <= kSeasons; ++seed) {
     std::mt19937_64 generator(seed);
-    planner::SamplingModeChooser chooser({}, {});
+    guided::SamplingModeChooser chooser({}, {});
     for (int i = 0; i < kQueries; ++i) {
       const bool is_after = i >= kChange;
       const SamplingMode mode = chooser.choose(generator());

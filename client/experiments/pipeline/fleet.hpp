@@ -14,7 +14,7 @@ namespace kinship::experiments {
 struct StudyMember {
   StudyRobot placed;
   models::LoadedRobot robot;
-  planner::PlannedRobot planned;  ///< the same as planning wants it
+  guided::PlannedRobot planned;  ///< the same as planning wants it
   Digest digest;
   DrawInstance draw;
 

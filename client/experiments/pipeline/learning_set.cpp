@@ -122,18 +122,18 @@ class Recording {
   }
 
   Attempt plan(std::uint32_t index) const {
-    planner::PlanSettings settings = study_.settings;
+    guided::PlanSettings settings = study_.settings;
     settings.overshoot = 1;
     settings.shortcut_checks = kLearningShortcutChecks;
     const Problem problem = read_instance(member_, seed_, index);
-    const planner::PlannedProblem planned = planner::plan_problem(
-        member_.planned, problem, planner::QueryGuidance{}, settings, [] { return false; });
+    const guided::PlannedProblem planned = guided::plan_problem(
+        member_.planned, problem, guided::QueryGuidance{}, settings, [] { return false; });
     if (!planned.attempted)
       throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
-    const planner::Reporter reporter{member_.digest, "experiments", study_.name};
-    Attempt attempt = planner::make_attempt(reporter, problem, planned, settings);
+    const guided::Reporter reporter{member_.digest, "experiments", study_.name};
+    Attempt attempt = guided::make_attempt(reporter, problem, planned, settings);
     attempt.report_uuid = uuid_of(study_.name, member_.label(), index);
-    attempt.scene = planner::SceneRecords().record(member_.robot.chain, problem).value_or_throw();
+    attempt.scene = guided::SceneRecords().record(member_.robot.chain, problem).value_or_throw();
     if (attempt.path)
       attempt.path = rounded(*attempt.path, member_.robot.chain);
     return attempt;

@@ -5,19 +5,19 @@
 
 namespace kinship::experiments {
 
-std::optional<planner::Guidance> oracle_guidance(const StudyMember& member, const Problem& problem,
-                                                 const planner::PlanSettings& settings,
-                                                 double deviation) {
+std::optional<guided::Guidance> oracle_guidance(const StudyMember& member, const Problem& problem,
+                                                const guided::PlanSettings& settings,
+                                                double deviation) {
   constexpr std::uint64_t kShortcutChecks = 1000;
-  planner::PlanSettings shortened = settings;
+  guided::PlanSettings shortened = settings;
   shortened.shortcut_checks = kShortcutChecks;
-  const planner::PlannedProblem planned =
-      planner::plan_problem(member.planned, problem, {}, shortened, [] { return false; });
+  const guided::PlannedProblem planned =
+      guided::plan_problem(member.planned, problem, {}, shortened, [] { return false; });
   if (!planned.result.waypoints)
     return std::nullopt;
   const Eigen::MatrixXd along = planning::densified(*planned.result.waypoints, deviation);
   const Eigen::Index dof = along.rows();
-  planner::Guidance guidance;
+  guided::Guidance guidance;
   guidance.distribution_id = Digest{};
   guidance.mixture =
       Mixture(Eigen::VectorXd::Constant(along.cols(), 1.0 / static_cast<double>(along.cols())),

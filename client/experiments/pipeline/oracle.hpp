@@ -13,8 +13,8 @@ namespace kinship::experiments {
 /// found by uniform planning with the same goals. What it is worth bounds what samples can be worth
 /// in the same planner. \param deviation  of each joint about the path, joint units. \return
 /// nothing if the query was not solved; what finding the path cost is not told.
-std::optional<planner::Guidance> oracle_guidance(const StudyMember& member, const Problem& problem,
-                                                 const planner::PlanSettings& settings,
-                                                 double deviation);
+std::optional<guided::Guidance> oracle_guidance(const StudyMember& member, const Problem& problem,
+                                                const guided::PlanSettings& settings,
+                                                double deviation);
 
 }  // namespace kinship::experiments

@@ -10,16 +10,16 @@ namespace {
 
 QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& problem,
                    QueryKey key) {
-  planner::QueryGuidance query;
+  guided::QueryGuidance query;
   if (cell.guidance)
     query = {.guidance = &*cell.guidance, .sampling_mode = SamplingMode::Guided};
-  std::optional<planner::Guidance> oracle;
+  std::optional<guided::Guidance> oracle;
   if (cell.oracle_deviation)
     oracle = oracle_guidance(member, problem, cell.settings, *cell.oracle_deviation);
   if (oracle)
     query = {.guidance = &*oracle, .sampling_mode = SamplingMode::Guided};
-  const planner::PlannedProblem planned =
-      planner::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
+  const guided::PlannedProblem planned =
+      guided::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
   if (!planned.attempted)
     throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
   const ProblemResult& result = planned.result;
@@ -67,7 +67,7 @@ bool guide_by(std::optional<Guide> guide, const StudyMember& member, const Fetch
   if ((has_mixture(*guide) && !fetched.distribution.mixture) ||
       (has_ways(*guide) && fetched.experience.paths.empty()))
     return false;
-  planner::Guidance& guidance = cell.guidance.emplace();
+  guided::Guidance& guidance = cell.guidance.emplace();
   guidance.guide = *guide;
   guidance.guided_fraction = share;
   guidance.distribution_id = fetched.distribution.id;

@@ -15,8 +15,8 @@ namespace kinship::experiments {
 struct Cell {
   std::size_t robot = 0;  ///< index into the fleet
   std::string name;       ///< unique among the robot's cells; in QueryKey::guidance
-  planner::PlanSettings settings;
-  std::optional<planner::Guidance> guidance;  ///< missing: uniform
+  guided::PlanSettings settings;
+  std::optional<guided::Guidance> guidance;  ///< missing: uniform
   /// Guided by an answer to each query itself (oracle.hpp), so far about it; joint units.
   std::optional<double> oracle_deviation = {};
 };

@@ -166,7 +166,7 @@ SideStudy roadmap(const Study& study) {
   SideStudy side{"roadmap", "Repetition Roadmap over the components, then the trees", {}, {}};
   side.cells = cells_of_pairs(study, "Repetition Roadmap", "default", study.name);
   for (WishedCell& cell : side.cells)
-    cell.planner = planner::PlannerKind::Roadmap;
+    cell.planner = guided::PlannerKind::Roadmap;
   return side;
 }
 

@@ -17,7 +17,7 @@ struct WishedCell {
   DistributionWish wish;
   double overshoot = 1;
   double share = 1;  ///< of guided samples
-  planner::PlannerKind planner = planner::PlannerKind::ByProblem;
+  guided::PlannerKind planner = guided::PlannerKind::ByProblem;
   std::optional<Guide> guide = Guide::Mixture;  ///< missing: what the server found by rehearsal
   std::optional<double> oracle_deviation = {};  ///< see Cell; wishes for no profile then
   std::optional<double> retreat_m = {};         ///< missing: as planners have it

@@ -25,14 +25,14 @@ namespace kinship::experiments {
 namespace {
 
 /// Uniform planning, named after its overshoot.
-Cell uniform_cell(std::size_t robot, planner::PlanSettings settings, double overshoot) {
+Cell uniform_cell(std::size_t robot, guided::PlanSettings settings, double overshoot) {
   settings.overshoot = overshoot;
   settings.shortcut_checks = 0;
   return {robot, uniform_name(overshoot), settings, std::nullopt};
 }
 
 /// Uniform cells of a robot: with the overshoot that guided cells have, and plain.
-std::vector<Cell> uniform_cells(std::size_t robot, const planner::PlanSettings& settings) {
+std::vector<Cell> uniform_cells(std::size_t robot, const guided::PlanSettings& settings) {
   std::vector<Cell> cells = {uniform_cell(robot, settings, settings.overshoot)};
   if (settings.overshoot != 1)
     cells.push_back(uniform_cell(robot, settings, 1));
@@ -85,7 +85,7 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
   for (std::size_t robot = 0; robot < session.fleet().size(); ++robot)
     cells.push_back(uniform_cell(robot, study.settings, study.settings.overshoot));
   for (const WishedCell& wished : side.cells) {
-    planner::PlanSettings settings = study.settings;
+    guided::PlanSettings settings = study.settings;
     settings.overshoot = wished.overshoot;
     settings.planner.kind = wished.planner;
     if (wished.retreat_m)
@@ -266,7 +266,7 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
   again.resume = true;
   StudySession session(study, again, messages);
   session.learn();
-  planner::PlanSettings settings = study.settings;
+  guided::PlanSettings settings = study.settings;
   settings.overshoot = tuning.overshoot.value_or(study.settings.overshoot);
   std::vector<Cell> cells;
   nlohmann::ordered_json compared{{"uniform", uniform_name(settings.overshoot)},

@@ -39,7 +39,7 @@ struct Study {
   std::vector<StudyRobot> robots;
   /// Of every query; the overshoot may be chosen on tuning instances. By steps, so that a check
   /// means the same to all planners.
-  planner::PlanSettings settings = {.clearance_m = 0};
+  guided::PlanSettings settings = {.clearance_m = 0};
   double guided_share = 1;      ///< of samples in guided queries; chosen on tuning instances
   bool is_constrained = false;  ///< its problems keep to a task space region
   std::uint32_t learning_instances = 0;

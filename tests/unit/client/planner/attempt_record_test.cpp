@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::planner::attempt_record_test {
+namespace kinship::guided::attempt_record_test {
 namespace {
 
 const Reporter kReporter = {Digest{}, "cell 3", "box_to_shelf"};
@@ -93,4 +93,4 @@ TEST(AttemptRecord, SaysHowWasPlannedAndUnderWhichUuid) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::attempt_record_test
+}  // namespace kinship::guided::attempt_record_test

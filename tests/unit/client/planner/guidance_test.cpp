@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace kinship::planner::guidance_test {
+namespace kinship::guided::guidance_test {
 namespace {
 
 constexpr Eigen::Index kDof = 2;
@@ -217,4 +217,4 @@ TEST(GuidanceCache, DoesNotAskAgainWhenNobodyAnswered) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::guidance_test
+}  // namespace kinship::guided::guidance_test

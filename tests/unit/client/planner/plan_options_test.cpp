@@ -69,7 +69,7 @@ TEST(PlanOptions, TakesEverythingByName) {
   const PlanOptions& options = answer.options();
   EXPECT_EQ(options.robot.source, "arm.urdf");
   EXPECT_EQ(options.problems, "p.jsonl");
-  EXPECT_EQ(options.settings.planner.kind, PlannerKind::Cbirrt2);
+  EXPECT_EQ(options.settings.planner.kind, guided::PlannerKind::Cbirrt2);
   EXPECT_EQ(options.guidance, GuidanceMode::Auto);
   EXPECT_TRUE(options.report);
   EXPECT_TRUE(options.json);

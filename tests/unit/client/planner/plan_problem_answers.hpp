@@ -6,7 +6,7 @@
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 /// How the tests of plan_problem ask, and what they look for in an answer.
-namespace kinship::planner::plan_problem_test {
+namespace kinship::guided::plan_problem_test {
 
 using test::planar_robot;
 using test::wall_problem;
@@ -46,4 +46,4 @@ inline Guidance guidance_towards(const Eigen::VectorXd& q) {
   return guidance;
 }
 
-}  // namespace kinship::planner::plan_problem_test
+}  // namespace kinship::guided::plan_problem_test

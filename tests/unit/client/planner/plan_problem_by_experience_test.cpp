@@ -8,7 +8,7 @@
 #include "robots/planning/path_vertices.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
-namespace kinship::planner::plan_problem_by_experience_test {
+namespace kinship::guided::plan_problem_by_experience_test {
 namespace {
 
 using test::planar_robot;
@@ -94,4 +94,4 @@ TEST(PlanProblemByExperience, WhereTheStraightLineIsFreeNoTrackIsFollowed) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::plan_problem_by_experience_test
+}  // namespace kinship::guided::plan_problem_by_experience_test

@@ -7,7 +7,7 @@
 #include "tests/unit/client/planner/plan_problem_answers.hpp"
 
 /// Each planner, and what it makes of a constraint.
-namespace kinship::planner::plan_problem_test {
+namespace kinship::guided::plan_problem_test {
 namespace {
 
 /// The wall's problem without the wall, the transfer frame on the line x = const of its start.
@@ -145,4 +145,4 @@ TEST(PlanProblem, AStartOrGoalOutsideTheConstraintIsSaid) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::plan_problem_test
+}  // namespace kinship::guided::plan_problem_test

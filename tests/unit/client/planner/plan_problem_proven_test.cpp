@@ -5,7 +5,7 @@
 
 #include "tests/unit/client/planner/plan_problem_answers.hpp"
 
-namespace kinship::planner::plan_problem_test {
+namespace kinship::guided::plan_problem_test {
 namespace {
 
 TEST(PlanProblemProven, APathIsProvenUnlessStepsAreAskedFor) {
@@ -62,4 +62,4 @@ TEST(PlanProblemProven, WhatIsTooNearIsNamedAmongWhatTouches) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::plan_problem_test
+}  // namespace kinship::guided::plan_problem_test

@@ -8,7 +8,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/client/planner/plan_problem_answers.hpp"
 
-namespace kinship::planner::plan_problem_test {
+namespace kinship::guided::plan_problem_test {
 namespace {
 
 TEST(PlanProblem, ThePathLeadsFromStartToGoalFreeAtTheResolution) {
@@ -483,4 +483,4 @@ TEST(PlanProblem, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::plan_problem_test
+}  // namespace kinship::guided::plan_problem_test

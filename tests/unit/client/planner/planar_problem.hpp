@@ -8,7 +8,7 @@
 #include "robots/kinematics/urdf.hpp"
 
 /// A small planar arm and a problem for it: from one side of a wall to the other.
-namespace kinship::planner::test {
+namespace kinship::guided::test {
 
 inline std::string joint_xml(const std::string& name, const std::string& parent,
                              const std::string& child, double x, const std::string& limits) {
@@ -64,4 +64,4 @@ inline Problem wall_problem() {
   return problem;
 }
 
-}  // namespace kinship::planner::test
+}  // namespace kinship::guided::test

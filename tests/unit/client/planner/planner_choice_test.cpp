@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::planner::planner_choice_test {
+namespace kinship::guided::planner_choice_test {
 namespace {
 
 PlannerKind kind_for(PlannerKind wanted, bool is_constrained) {
@@ -44,4 +44,4 @@ TEST(PlannerChoice, WhatAPlannerCannotDoIsRefusedWithWhatCan) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::planner_choice_test
+}  // namespace kinship::guided::planner_choice_test

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace kinship::planner::arm_choice_test {
+namespace kinship::guided::arm_choice_test {
 namespace {
 
 constexpr std::uint64_t kQueries = 20'000;
@@ -195,4 +195,4 @@ TEST(SamplingModeSeed, IsTheSameForTheSameQueryOnly) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::arm_choice_test
+}  // namespace kinship::guided::arm_choice_test

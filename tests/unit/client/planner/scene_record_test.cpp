@@ -7,7 +7,7 @@
 #include "tests/support/box_mesh.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
-namespace kinship::planner::scene_record_test {
+namespace kinship::guided::scene_record_test {
 namespace {
 
 const kinematics::Chain& chain() {
@@ -126,4 +126,4 @@ TEST(SceneRecord, AMeshThatWasNotReadIsAnError) {
 }
 
 }  // namespace
-}  // namespace kinship::planner::scene_record_test
+}  // namespace kinship::guided::scene_record_test
