@@ -87,7 +87,7 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
     advice = distribution->advice;
   GuidanceAnswer answer;
   Guidance& guidance = answer.guidance.emplace();
-  guidance.guided_fraction = planner::guided_fraction(advice, sampling);
+  guidance.guided_fraction = guided::guided_fraction(advice, sampling);
   guidance.guide = guide;
   if (distribution != nullptr) {
     guidance.distribution_id = distribution->id;

@@ -44,7 +44,7 @@ class Advised : public testing::Test {
     std::mt19937_64 generator(5);
     std::uniform_real_distribution<double> noise(-0.1, 0.1);
     for (std::size_t i = 0; i < kProblems; ++i) {
-      Problem problem = planner::test::wall_problem();
+      Problem problem = guided::test::wall_problem();
       problem.name = "wall " + std::to_string(i);
       problem.seed = i;
       std::get<BoxShape>(problem.scene.objects[0].shape).size.x() = kWall_m;
@@ -72,7 +72,7 @@ class Advised : public testing::Test {
     std::mt19937_64 generator(6);
     std::uniform_real_distribution<double> noise(-0.25, 0.25);
     constexpr Eigen::Index kEach = 8;
-    const Problem problem = planner::test::wall_problem();
+    const Problem problem = guided::test::wall_problem();
     const Eigen::Vector4d start = problem.start, goal = problem.goal_configurations.col(0);
     const Eigen::Vector4d astray(2.3, 2.3, -2.3, 2.3);
     for (std::size_t i = 0; i < kMisleading; ++i) {
@@ -157,8 +157,8 @@ class Advised : public testing::Test {
   const std::string urdf_ = directory_ / "planar.urdf";
   const std::string problems_ = directory_ / "problems.jsonl";
   const std::string log_ = directory_ / "plan.log";
-  const RobotDescription description_ = planner::test::planar_description();
-  const Digest robot_ = planner::test::planar_robot().chain.digest();
+  const RobotDescription description_ = guided::test::planar_description();
+  const Digest robot_ = guided::test::planar_robot().chain.digest();
 };
 
 TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {

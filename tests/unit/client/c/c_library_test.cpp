@@ -152,7 +152,7 @@ TEST_F(CLibraryOffline, WhatBreaksARuleIsRefusedWithNameAndValue) {
 }
 
 TEST_F(CLibraryOffline, HeldJointsAndAxesArePartOfARobot) {
-  const RobotDescription planar = planner::test::planar_description();
+  const RobotDescription planar = guided::test::planar_description();
   kinship_held_joint held = {"j4", 0.5};
   description_.urdf = planar.urdf.c_str();
   description_.base_link = "base";

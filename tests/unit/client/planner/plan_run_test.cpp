@@ -31,7 +31,7 @@ class PlanRun : public testing::Test {
  protected:
   PlanRun() {
     std::filesystem::create_directories(folder_);
-    const RobotDescription description = test::planar_description();
+    const RobotDescription description = guided::test::planar_description();
     std::ofstream(folder_ / "planar.urdf") << description.urdf;
     options_.robot.source = folder_ / "planar.urdf";
     options_.robot.label = "planar";
@@ -41,7 +41,7 @@ class PlanRun : public testing::Test {
   }
 
   static std::string line(const std::string& name) {
-    Problem problem = test::wall_problem();
+    Problem problem = guided::test::wall_problem();
     problem.name = name;
     return json::to_json(problem) + "\n";
   }
@@ -72,7 +72,7 @@ TEST_F(PlanRun, SaysWhichGoalIsMovedOntoALimitAndWhichLinksAnSrdfNamesInVain) {
   options_.robot.srdf = folder_ / "planar.srdf";
   std::ofstream(options_.robot.srdf)
       << "<robot name='planar'><disable_collisions link1='camera' link2='lens'/></robot>";
-  Problem problem = test::wall_problem();
+  Problem problem = guided::test::wall_problem();
   problem.name = "near";
   problem.goal_configurations(3, 0) = 2.80005;
   EXPECT_EQ(run(json::to_json(problem) + "\n"), kDone);
@@ -147,7 +147,7 @@ TEST_F(PlanRun, UnsolvedIsAnAnswer) {
 }
 
 TEST_F(PlanRun, FailsIfNoLineCouldBeAttempted) {
-  Problem other_robots = test::wall_problem();
+  Problem other_robots = guided::test::wall_problem();
   other_robots.start = Eigen::VectorXd::Zero(6);
   other_robots.goal_configurations = Eigen::MatrixXd::Zero(6, 1);
   const std::string misfit = json::to_json(other_robots) + "\n";
@@ -310,7 +310,7 @@ TEST_F(PlanRunWithoutServer, WithoutReportingNoOutboxIsOpened) {
 }
 
 TEST_F(PlanRun, AnObstacleOutOfReachIsWarnedOfOnce) {
-  Problem problem = test::wall_problem();
+  Problem problem = guided::test::wall_problem();
   SceneObject far{"moon", SphereShape{1}};
   far.T_task_object.translation().x() = 500;
   problem.scene.objects.push_back(far);
@@ -323,7 +323,7 @@ TEST_F(PlanRun, AnObstacleOutOfReachIsWarnedOfOnce) {
 }
 
 TEST_F(PlanRun, ARobotThatIsOnlyDrawnIsRefusedUnlessToldOtherwise) {
-  std::string urdf = test::planar_description().urdf;
+  std::string urdf = guided::test::planar_description().urdf;
   for (std::size_t at = 0; (at = urdf.find("collision>", at)) != std::string::npos;)
     urdf.replace(at, 10, "visual>");
   std::ofstream(options_.robot.source) << urdf;

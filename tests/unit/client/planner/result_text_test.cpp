@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::guided::result_text_test {
+namespace kinship::planner::result_text_test {
 namespace {
 
 ProblemResult solved_result() {
@@ -51,4 +51,4 @@ TEST(ResultText, NamesABrokenLineOnce) {
 }
 
 }  // namespace
-}  // namespace kinship::guided::result_text_test
+}  // namespace kinship::planner::result_text_test
