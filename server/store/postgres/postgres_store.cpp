@@ -18,20 +18,21 @@
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/presence.hpp"
 #include "server/store/postgres/report_writer.hpp"
-#include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
 #include "server/store/postgres/rows/fit_lease_rows.hpp"
 #include "server/store/postgres/rows/listings.hpp"
 #include "server/store/postgres/rows/path_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
-#include "server/store/postgres/rows/robot_removal.hpp"
 #include "server/store/postgres/rows/scene_rows.hpp"
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
+#include "server/store/tables/retirement.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
+#include "server/store/tables/tasks.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -138,25 +139,11 @@ class PostgresStore : public Store {
 
   Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
                                     const AuditEntry* audit) override {
-    RemovedRobot removed;
-    while (true) {
-      // What a transaction that is undone has counted is not counted.
-      RemovedRobot next;
-      const Result<bool> is_out = writes_.write([&](Connection& connection) {
-        next = removed;
-        return continue_removal(connection, robot, next, audit);
+    return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
+      return writes_.write([&](Connection& connection) {
+        return continue_removal(connection, robot, removed, retirement_in(connection), audit);
       });
-      if (!is_out)
-        return is_out.error();
-      removed = std::move(next);
-      if (*is_out)
-        return removed;
-      if (stop.stop_requested())
-        return Error{ErrorCode::Unavailable, "robot " + robot.short_hex() +
-                                                 ": the server is stopping after " +
-                                                 std::to_string(removed.removal.paths) +
-                                                 " paths were retired; ask again for the rest"};
-    }
+    });
   }
 
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
@@ -266,23 +253,11 @@ class PostgresStore : public Store {
         writes_.write([&](Connection& connection) { return begin_reset(connection, task, audit); });
     if (!reset)
       return reset.error();
-    Retirement retired;
-    retired.task = task;
-    while (true) {
-      Retirement next;
-      const bool goes_on = writes_.write([&](Connection& connection) {
-        next = retired;
-        return continue_reset(connection, *reset, next, audit);
+    return reset_in_steps(task, stop, [&](const Retirement& retired) {
+      return writes_.write([&](Connection& connection) {
+        return continue_reset(connection, *reset, retired, retirement_in(connection), audit);
       });
-      retired = std::move(next);
-      if (!goes_on)
-        return retired;
-      if (stop.stop_requested())
-        return Error{ErrorCode::Unavailable, "task '" + retired.task +
-                                                 "': the server is stopping after " +
-                                                 std::to_string(retired.paths) +
-                                                 " paths were retired; ask again for the others"};
-    }
+    });
   }
 
   AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {

@@ -31,7 +31,6 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
-#include "server/store/sqlite/rows/robot_removal.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/sqlite/rows/shared_rows.hpp"
@@ -39,17 +38,14 @@
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
+#include "server/store/tables/retirement.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
+#include "server/store/tables/tasks.hpp"
 
 namespace kinship::store {
 namespace {
-
-/// For what is made of many transactions.
-Error stopped_after(std::uint64_t paths, const std::string& what) {
-  return {ErrorCode::Unavailable, what + ": the server is stopping after " + std::to_string(paths) +
-                                      " paths were retired; ask again for the others"};
-}
 
 class SqliteStore : public Store {
  public:
@@ -135,22 +131,11 @@ class SqliteStore : public Store {
 
   Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
                                     const AuditEntry* audit) override {
-    RemovedRobot removed;
-    while (true) {
-      // What a transaction that is undone has counted is not counted.
-      RemovedRobot next;
-      const Result<bool> is_out = write([&](Batch& batch) {
-        next = removed;
-        return continue_removal(batch, robot, next, audit);
+    return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
+      return write([&](Batch& batch) {
+        return continue_removal(batch.database(), robot, removed, retirement_in(batch), audit);
       });
-      if (!is_out)
-        return is_out.error();
-      removed = std::move(next);
-      if (*is_out)
-        return removed;
-      if (stop.stop_requested())
-        return stopped_after(removed.removal.paths, "robot " + robot.short_hex());
-    }
+    });
   }
 
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
@@ -260,12 +245,11 @@ class SqliteStore : public Store {
         write([&](Batch& batch) { return begin_reset(batch.database(), task, audit); });
     if (!reset)
       return reset.error();
-    Retirement retired;
-    retired.task = task;
-    while (write([&](Batch& batch) { return continue_reset(batch, *reset, retired, audit); }))
-      if (stop.stop_requested())
-        return stopped_after(retired.paths, "task '" + retired.task + "'");
-    return retired;
+    return reset_in_steps(task, stop, [&](const Retirement& retired) {
+      return write([&](Batch& batch) {
+        return continue_reset(batch.database(), *reset, retired, retirement_in(batch), audit);
+      });
+    });
   }
 
   AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {

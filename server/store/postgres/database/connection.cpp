@@ -131,10 +131,12 @@ const Dialect& Connection::dialect() const noexcept {
       // SHARE, go on with the other robots.
       .lock_robots = "LOCK TABLE robot IN SHARE ROW EXCLUSIVE MODE",
       .for_update = " FOR UPDATE",
+      .lock_experience = " FOR NO KEY UPDATE",
       .mark_changed = ", changed_in = pg_current_xact_id()",
       .note_gone_robot =
           "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
           " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
+      .newest_attempts_first = "arrived_in DESC, id DESC",
       .is_quarantined_distribution = "FALSE"};
   return kDialect;
 }

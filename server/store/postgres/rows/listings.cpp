@@ -1,12 +1,9 @@
 #include "server/store/postgres/rows/listings.hpp"
 
-#include <map>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "server/store/values/pages.hpp"
-#include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store::postgres {
@@ -22,37 +19,6 @@ Page<Entry> page_of(const Rows& rows, std::int64_t limit, Read read, CursorOf cu
     if (!page.add(read(row), cursor_of(row)))
       break;
   return page.take();
-}
-
-/// The robots of these tasks, by task.
-std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
-    Connection& connection, const std::vector<std::int64_t>& task_ids) {
-  constexpr int kDigest = 11, kLabel = 12, kTask = 13;
-  const Rows rows = connection.query(
-      "SELECT " + std::string(kTaskRobotColumns) +
-          ", digest, label, task_id FROM experience JOIN robot ON robot.id = robot_id "
-          "WHERE task_id = ANY ($1)",
-      task_ids);
-  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots;
-  for (const Row row : rows)
-    if (const std::string_view label = row.column_text(kLabel); !is_removed_label(label))
-      robots[row.column_integer(kTask)].push_back(
-          read_task_robot(row, id_of<Digest>(row.column_blob(kDigest)), label));
-  return robots;
-}
-
-/// \param tasks  ids and names.
-Page<TaskSummary> read_tasks(Connection& connection, const Rows& tasks, std::int64_t limit) {
-  std::vector<std::int64_t> ids;
-  for (const Row task : tasks)
-    ids.push_back(task.column_integer(0));
-  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots = robots_of_tasks(connection, ids);
-  return page_of<TaskSummary>(
-      tasks, limit,
-      [&](const Row& task) {
-        return summary_of(task.column_text(1), std::move(robots[task.column_integer(0)]));
-      },
-      [](const Row& task) { return std::string(task.column_text(1)); });
 }
 
 /// The ids of the newest paths before $1, at most $2: of all along the table; of some robots and
@@ -86,36 +52,6 @@ std::string newest_distributions(const PairFilter& filter, Parameters& parameter
 }
 
 }  // namespace
-
-Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
-                                  std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  return page_of<RobotSummary>(
-      connection.query("SELECT " + std::string(kRobotSummaryColumns) +
-                           "FROM robot WHERE label > $1 AND label NOT LIKE 'removed %' "
-                           "ORDER BY label LIMIT $2",
-                       cursor, rows + 1),
-      rows, read_robot_summary<Row>,
-      [](const Row& row) { return std::string(row.column_text(1)); });
-}
-
-Page<TaskSummary> page_of_tasks(Connection& connection, std::string_view cursor,
-                                std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  return read_tasks(
-      connection,
-      connection.query("SELECT id, name FROM task WHERE name > $1 ORDER BY name LIMIT $2", cursor,
-                       rows + 1),
-      rows);
-}
-
-std::optional<TaskSummary> summary_of_task(Connection& connection, std::string_view task) {
-  Page<TaskSummary> page = read_tasks(
-      connection, connection.query("SELECT id, name FROM task WHERE name = $1", task), 1);
-  if (page.rows.empty())
-    return std::nullopt;
-  return std::move(page.rows.front());
-}
 
 Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
                                 std::string_view cursor, std::size_t limit) {

@@ -14,15 +14,6 @@
 /// \throws Failure(InvalidInput) for a cursor of another listing.
 namespace kinship::store::postgres {
 
-Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
-                                  std::size_t limit);
-
-/// In a snapshot.
-Page<TaskSummary> page_of_tasks(Connection& connection, std::string_view cursor, std::size_t limit);
-
-/// In a snapshot.
-std::optional<TaskSummary> summary_of_task(Connection& connection, std::string_view task);
-
 /// Newest first; retired paths too.
 Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
                                 std::string_view cursor, std::size_t limit);

@@ -1,7 +1,5 @@
 #include "server/store/postgres/rows/retirement.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,31 +57,17 @@ std::int64_t retire(Connection& connection, const ExperienceKey& key,
   return retired;
 }
 
-Digest digest_of_robot(Connection& connection, std::int64_t robot_id) {
-  const Rows rows = connection.query("SELECT digest FROM robot WHERE id = $1", robot_id);
-  return rows.empty() ? Digest() : id_of<Digest>(rows.front().column_blob(0));
-}
-
-void add_robot(Retirement& retired, const Digest& robot) {
-  const auto place = std::ranges::lower_bound(retired.robots, robot);
-  if (place == retired.robots.end() || *place != robot)
-    retired.robots.insert(place, robot);
-}
-
 }  // namespace
 
 Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
                                const AuditEntry* audit) {
   std::optional<ReportedPath> reported = find_reported(connection, report_uuid);
   if (!reported)
-    return Error{ErrorCode::NotFound, "path " + report_uuid.text() + ": no such report"};
+    return no_such_report(report_uuid);
   lock_pair(connection, reported->key);
   reported = find_reported(connection, report_uuid);  // as it is under the lock
   if (!reported->path_id)
-    return Error{ErrorCode::InvalidInput,
-                 "path " + report_uuid.text() +
-                     (reported->is_solved ? ": it was not kept, there were as many as may be"
-                                          : ": this report brought no path")};
+    return report_without_path(report_uuid, reported->is_solved);
   Retirement retired;
   retired.task = reported->task;
   const std::int64_t before = count_paths_of(connection, retired.task);
@@ -96,49 +80,18 @@ Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
   return retired;
 }
 
-Result<TaskReset> begin_reset(Connection& connection, std::string_view task,
-                              const AuditEntry* audit) {
-  const Rows rows = connection.query(
-      "SELECT id, (SELECT coalesce(max(id), 0) FROM path) FROM task WHERE name = $1", task);
-  if (rows.empty())
-    return Error{ErrorCode::NotFound, "task '" + std::string(task) + "': no such task"};
-  note_act(connection, audit, AuditOutcome::Begun,
-           describe_paths(task, count_paths_of(connection, task)));
-  return TaskReset{rows.front().column_integer(0), rows.front().column_integer(1)};
-}
-
-bool continue_reset(Connection& connection, const TaskReset& reset, Retirement& retired,
-                    const AuditEntry* audit) {
-  std::int64_t left = kPathsOfAStep;
-  for (const ExperienceKey& key : lock_pairs_of_task(connection, reset.task_id)) {
-    const std::int64_t gone = retire_some(connection, key, reset.last_path_id, left);
-    if (gone > 0)
-      add_robot(retired, digest_of_robot(connection, key.robot_id));
-    left -= gone;
-    if (left <= 0)
-      break;
-  }
-  const std::int64_t gone = kPathsOfAStep - left;
-  retired.paths += static_cast<std::uint64_t>(gone);
-  if (gone > 0)
-    return true;
-  note_act(connection, audit, AuditOutcome::Done, {},
-           describe_paths(retired.task, count_paths_of(connection, retired.task)) + ", " +
-               std::to_string(retired.paths) + " retired");
-  return false;
-}
-
-std::int64_t retire_some(Connection& connection, const ExperienceKey& key, std::int64_t last_id,
-                         std::int64_t limit) {
-  std::vector<std::int64_t> paths;
-  for (const Row row : connection.query(
-           "(SELECT id FROM path WHERE task_id = $1 AND robot_id = $2 AND id <= $3"
-           "  AND retired_ms IS NULL AND damaged_ms IS NULL LIMIT $4)"
-           " UNION ALL (SELECT id FROM path WHERE damaged_ms IS NOT NULL AND retired_ms IS NULL"
-           "  AND replaced_by IS NULL AND task_id = $1 AND robot_id = $2 AND id <= $3) LIMIT $4",
-           key.task_id, key.robot_id, last_id, limit))
-    paths.push_back(row.column_integer(0));
-  return paths.empty() ? 0 : retire(connection, key, paths);
+RetireSome retirement_in(Connection& connection) {
+  return [&connection](const ExperienceKey& key, std::int64_t limit, std::int64_t last_id) {
+    std::vector<std::int64_t> paths;
+    for (const Row row : connection.query(
+             "(SELECT id FROM path WHERE task_id = $1 AND robot_id = $2 AND id <= $3"
+             "  AND retired_ms IS NULL AND damaged_ms IS NULL LIMIT $4)"
+             " UNION ALL (SELECT id FROM path WHERE damaged_ms IS NOT NULL AND retired_ms IS NULL"
+             "  AND replaced_by IS NULL AND task_id = $1 AND robot_id = $2 AND id <= $3) LIMIT $4",
+             key.task_id, key.robot_id, last_id, limit))
+      paths.push_back(row.column_integer(0));
+    return paths.empty() ? std::int64_t{0} : retire(connection, key, paths);
+  };
 }
 
 }  // namespace kinship::store::postgres

@@ -46,6 +46,7 @@ Database::~Database() = default;
 
 const Dialect& Database::dialect() const noexcept {
   static constexpr Dialect kDialect = {
+      .newest_attempts_first = "id DESC",
       .is_quarantined_distribution =
           "EXISTS (SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)",
       .quarantine_distribution =

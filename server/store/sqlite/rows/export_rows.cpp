@@ -11,6 +11,7 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/pages.hpp"
 
@@ -18,16 +19,18 @@ namespace kinship::store {
 namespace {
 
 /// Nothing if its robot is removed, or it lies on a damaged page.
-std::optional<AttemptSummary> read_summary(Database& database, RobotNames& names, std::int64_t id) {
+std::optional<AttemptSummary> read_summary(Database& database,
+                                           const std::map<std::int64_t, RobotName>& names,
+                                           std::int64_t id) {
   try {
     AttemptRow row = select_attempt(database, id);
     name_robot_and_task(database, row);
     if (row.is_robot_removed)
       return std::nullopt;
-    const RobotNames::Name* const robot = names.find(row.robot_id);
+    const auto robot = names.find(row.robot_id);
     return AttemptSummary{row.attempt.report_uuid,
                           row.attempt.robot,
-                          robot ? robot->label : "",
+                          robot == names.end() ? "" : robot->second.label,
                           std::move(row.attempt.task),
                           std::move(row.attempt.machine),
                           std::move(row.attempt.record),
@@ -109,7 +112,7 @@ Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Di
                                       std::string_view task, std::string_view cursor,
                                       std::size_t limit) {
   const auto rows = static_cast<std::int64_t>(std::max<std::size_t>(limit, 1));
-  RobotNames names(database);
+  const std::map<std::int64_t, RobotName> names = select_robot_names(database);
   Page<AttemptSummary> page;
   std::int64_t last_id = parse_rising_cursor(cursor);
   while (true) {

@@ -12,7 +12,6 @@
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/pages.hpp"
-#include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
@@ -28,24 +27,6 @@ Page<Row> read_page(Statement& query, std::int64_t rows, Read read, CursorOf cur
     if (!page.add(read(query), cursor_of(query)))
       break;
   return page.take();
-}
-
-std::vector<TaskRobotSummary> robots_of_task(Database& database, RobotNames& names,
-                                             std::int64_t task_id) {
-  const auto query = database.cached("SELECT " + std::string(kTaskRobotColumns) +
-                                     "FROM experience WHERE task_id = ?");
-  query->bind(1, task_id);
-  std::vector<TaskRobotSummary> robots;
-  while (query->step())
-    if (const RobotNames::Name* const robot = names.find(query->column_integer(0));
-        robot != nullptr && !is_removed_label(robot->label))
-      robots.push_back(read_task_robot(*query, robot->digest, robot->label));
-  return robots;
-}
-
-/// \param row  of task id and name.
-TaskSummary read_task(Database& database, RobotNames& names, const Statement& row) {
-  return summary_of(row.column_text(1), robots_of_task(database, names, row.column_integer(0)));
 }
 
 /// The filters that a listing was asked for, as SQL; numbered parameters ?1 robot, ?2 task.
@@ -131,37 +112,6 @@ std::optional<PathSummary> select_path_summary(Database& database, std::int64_t 
 }
 
 }  // namespace
-
-Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  const auto query = database.cached(
-      "SELECT " + std::string(kRobotSummaryColumns) +
-      "FROM robot WHERE label > ? AND base_link <> '' AND label NOT GLOB 'removed *' "
-      "ORDER BY label LIMIT ?");
-  query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
-  return read_page<RobotSummary>(
-      *query, rows, read_robot_summary<Statement>,
-      [](const Statement& row) { return std::string(row.column_text(1)); });
-}
-
-Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  RobotNames names(database);
-  const auto query =
-      database.cached("SELECT id, name FROM task WHERE name > ? ORDER BY name LIMIT ?");
-  query->bind_all(cursor, rows + 1);
-  return read_page<TaskSummary>(
-      *query, rows, [&](const Statement& row) { return read_task(database, names, row); },
-      [](const Statement& row) { return std::string(row.column_text(1)); });
-}
-
-std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task) {
-  const auto query = database.cached("SELECT id, name FROM task WHERE name = ?");
-  if (!query->bind(1, task).step())
-    return std::nullopt;
-  RobotNames names(database);
-  return read_task(database, names, *query);
-}
 
 Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
                                 std::string_view task, std::string_view cursor, std::size_t limit) {

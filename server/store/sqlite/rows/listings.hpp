@@ -13,12 +13,6 @@
 /// \throws Failure(InvalidInput) for a cursor of another listing.
 namespace kinship::store {
 
-Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit);
-
-Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit);
-
-std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task);
-
 /// Newest first; retired paths too.
 Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
                                 std::string_view task, std::string_view cursor, std::size_t limit);
