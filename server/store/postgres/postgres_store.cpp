@@ -21,12 +21,11 @@
 #include "server/store/postgres/rows/export_rows.hpp"
 #include "server/store/postgres/rows/fit_lease_rows.hpp"
 #include "server/store/postgres/rows/listings.hpp"
-#include "server/store/postgres/rows/path_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
-#include "server/store/postgres/rows/scene_rows.hpp"
 #include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/contents.hpp"
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/experience.hpp"
 #include "server/store/tables/retirement.hpp"
@@ -185,8 +184,7 @@ class PostgresStore : public Store {
   SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
     SharedRead read = readers_.read_snapshot(
         [&](Connection& connection) { return select_shared(connection, reports, max_bytes); });
-    set_aside_later(
-        {.paths = std::move(read.damaged_paths), .scenes = std::move(read.damaged_scenes)});
+    set_aside_later(std::move(read.damaged));
     return std::move(read.found);
   }
 
@@ -221,11 +219,8 @@ class PostgresStore : public Store {
 
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
-    constexpr std::size_t kMaxPaths = 1'000'000;
-    PathRange bounded = range;
-    bounded.limit = std::min(range.limit, kMaxPaths);
-    PathsRead read = fit_reads_.paths(robot, task, bounded);
-    set_aside_later({.paths = std::move(read.damaged), .scenes = {}});
+    PathsRead read = fit_reads_.paths(robot, task, range);
+    set_aside_later({.paths = std::move(read.damaged)});
     return std::move(read.paths);
   }
 
@@ -237,7 +232,7 @@ class PostgresStore : public Store {
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     SceneRead read = fit_reads_.scene(scene_id);
     if (read.damaged)
-      set_aside_later({.paths = {}, .scenes = {scene_id}});
+      set_aside_later({.scenes = {scene_id}});
     return std::move(read.scene);
   }
 
@@ -340,7 +335,7 @@ class PostgresStore : public Store {
   }
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
-    DamageNoticed noticed;
+    DamagedRows noticed;
     std::optional<Attempt> attempt = readers_.read_snapshot([&](Connection& connection) {
       noticed = {};
       return postgres::find_attempt(connection, report_uuid, noticed);
@@ -352,7 +347,7 @@ class PostgresStore : public Store {
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                 std::string_view cursor, std::size_t limit,
                                 std::size_t max_bytes) const override {
-    DamageNoticed noticed;
+    DamagedRows noticed;
     Page<Attempt> page = readers_.read_snapshot([&](Connection& connection) {
       noticed = {};
       return export_page(connection, {robot, task}, cursor, limit, max_bytes, noticed);
@@ -402,14 +397,11 @@ class PostgresStore : public Store {
     writer_->submit(std::move(item));
   }
 
-  void set_aside_later(DamageNoticed noticed) const {
+  void set_aside_later(DamagedRows noticed) const {
     if (noticed.paths.empty() && noticed.scenes.empty())
       return;
-    write_later([noticed = std::move(noticed)](Connection& connection) {
-      set_aside_paths(connection, noticed.paths);
-      for (const std::int64_t scene : noticed.scenes)
-        set_aside_scene(connection, scene);
-    });
+    write_later(
+        [noticed = std::move(noticed)](Connection& connection) { set_aside(connection, noticed); });
   }
 
   /// What the database says, or said last.

@@ -215,24 +215,18 @@ class SqliteStore : public Store {
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
-    if (!key)
-      return {};
-    constexpr std::size_t kMaxPaths = 1'000'000;
-    return undamaged(select_paths(
-        *reader, *key, {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms}));
+    return undamaged(select_paths(*reader, robot, task, range));
   }
 
   std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
                                      std::uint64_t /*generation*/) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
-    return key ? select_path_ids(*reader, *key) : std::vector<std::int64_t>();
+    return select_path_ids(*reader, robot, task);
   }
 
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return undamaged(select_scene(*reader, scene_id), scene_id);
+    return undamaged(select_current_scene(*reader, scene_id), scene_id);
   }
 
   Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
@@ -333,7 +327,7 @@ class SqliteStore : public Store {
       for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
         row->attempt.path = std::move(stored.path);
     if (row->scene_id)
-      row->attempt.scene = undamaged(select_scene(*reader, *row->scene_id), *row->scene_id);
+      row->attempt.scene = undamaged(select_current_scene(*reader, *row->scene_id), *row->scene_id);
     return std::move(row->attempt);
   }
 

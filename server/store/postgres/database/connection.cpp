@@ -137,6 +137,8 @@ const Dialect& Connection::dialect() const noexcept {
           "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
           " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
       .newest_attempts_first = "arrived_in DESC, id DESC",
+      .is_quarantined_path = "(path.damaged_ms IS NOT NULL)",
+      .is_quarantined_scene = "(scene.damaged_ms IS NOT NULL)",
       .is_quarantined_distribution = "FALSE"};
   return kDialect;
 }

@@ -17,7 +17,7 @@ namespace {
 /// Paths and scenes by their ids, each read once.
 class Contents {
  public:
-  Contents(Connection& connection, DamageNoticed& noticed)
+  Contents(Connection& connection, DamagedRows& noticed)
       : connection_(&connection), noticed_(&noticed) {}
 
   /// Reads what these attempts name, in place of the paths that were read before.
@@ -71,7 +71,7 @@ class Contents {
   }
 
   Connection* connection_;
-  DamageNoticed* noticed_;
+  DamagedRows* noticed_;
   std::map<std::int64_t, Path> paths_;
   std::map<std::int64_t, RecordedScene> scenes_;
 };
@@ -93,7 +93,7 @@ std::size_t size_of_portion(std::span<const ArrivedAttempt> attempts, std::size_
 /// An export as it grows.
 class Export {
  public:
-  Export(Connection& connection, std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed)
+  Export(Connection& connection, std::size_t limit, std::size_t max_bytes, DamagedRows& noticed)
       : contents_(connection, noticed),
         page_(static_cast<std::int64_t>(std::max<std::size_t>(limit, 1))),
         max_bytes_(max_bytes) {}
@@ -160,7 +160,7 @@ Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& 
 }
 
 std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_uuid,
-                                    DamageNoticed& noticed) {
+                                    DamagedRows& noticed) {
   std::optional<ArrivedAttempt> arrived = select_arrived(connection, report_uuid);
   if (!arrived)
     return std::nullopt;
@@ -170,7 +170,7 @@ std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_u
 }
 
 Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
-                          std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed) {
+                          std::size_t limit, std::size_t max_bytes, DamagedRows& noticed) {
   constexpr std::int64_t kCandidates = 256;
   Arrival last = parse_arrival_cursor(cursor);
   Export exported(connection, limit, max_bytes, noticed);

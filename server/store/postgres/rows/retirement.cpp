@@ -94,4 +94,24 @@ RetireSome retirement_in(Connection& connection) {
   };
 }
 
+void set_aside(Connection& connection, const DamagedRows& damaged) {
+  connection.query(
+      "SELECT 1 FROM experience WHERE (task_id, robot_id) IN"
+      " (SELECT found.task_id, found.robot_id FROM unnest($1) AS wanted (id) CROSS JOIN LATERAL"
+      "  (SELECT task_id, robot_id FROM path WHERE path.id = wanted.id OFFSET 0) AS found)"
+      " ORDER BY task_id, robot_id FOR NO KEY UPDATE",
+      damaged.paths);
+  connection.query(
+      "WITH aside AS (UPDATE path SET damaged_ms = $2 WHERE id = ANY($1) AND damaged_ms IS NULL"
+      "  RETURNING task_id, robot_id, retired_ms),"
+      " lost AS (SELECT task_id, robot_id, count(*) AS paths FROM aside WHERE retired_ms IS NULL"
+      "  GROUP BY task_id, robot_id)"
+      " UPDATE experience SET changed_in = pg_current_xact_id(), generation = generation + 1, "
+      "paths = experience.paths - lost.paths"
+      " FROM lost WHERE experience.task_id = lost.task_id AND experience.robot_id = lost.robot_id",
+      damaged.paths, now_ms());
+  connection.query("UPDATE scene SET damaged_ms = $2 WHERE id = ANY($1) AND damaged_ms IS NULL",
+                   damaged.scenes, now_ms());
+}
+
 }  // namespace kinship::store::postgres

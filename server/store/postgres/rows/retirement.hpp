@@ -4,6 +4,7 @@
 #include "proto/types/result.hpp"
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
 #include "server/store/tables/retirement.hpp"
 
 /// Paths that people take out of every fit, and the entries of the audit log that say so, in the
@@ -17,5 +18,10 @@ Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
 /// Retires paths in the caller's transaction. The reports that brought them, or were answered with
 /// them, are remembered.
 RetireSome retirement_in(Connection& connection);
+
+/// Quarantines paths, and scenes until a report brings them anew under their ids. Paths are out of
+/// the counts and of every reading, and the generation is raised; one that is quarantined already
+/// stays so, one that is retired was out of the counts before. In a writing transaction.
+void set_aside(Connection& connection, const DamagedRows& damaged);
 
 }  // namespace kinship::store::postgres

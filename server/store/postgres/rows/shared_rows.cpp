@@ -144,7 +144,7 @@ std::map<std::int64_t, Path> select_shared_paths(Connection& connection,
     if (std::optional<StoredPath> stored = read_path(row))
       paths.emplace(stored->id, std::move(stored->path));
     else
-      noted.damaged_paths.push_back(row.column_integer(PathColumn::kId));
+      noted.damaged.paths.push_back(row.column_integer(PathColumn::kId));
   return paths;
 }
 
@@ -161,7 +161,7 @@ std::map<std::int64_t, RecordedScene> select_shared_scenes(Connection& connectio
     if (std::optional<RecordedScene> scene = read_scene_columns(row))
       scenes.emplace(row.column_integer(0), std::move(*scene));
     else
-      noted.damaged_scenes.push_back(row.column_integer(0));
+      noted.damaged.scenes.push_back(row.column_integer(0));
   return scenes;
 }
 

@@ -12,6 +12,7 @@
 
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
 
 /// Reports as another store is told of them, see Store. A cursor is of the order in which
 /// transactions began, and a feed ends before the first that is still open: several servers commit
@@ -25,11 +26,6 @@ Feed<Uuid> feed_of_retirements(Connection& connection, std::string_view cursor, 
 
 std::set<Uuid> select_known(Connection& connection, std::span<const Uuid> reports);
 
-/// Reports as read, and the ids of paths and scenes that turned out damaged on the way.
-struct SharedRead {
-  SharedReports found;
-  std::vector<std::int64_t> damaged_paths, damaged_scenes;
-};
 /// All of it in one snapshot.
 SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
                          std::size_t max_bytes);

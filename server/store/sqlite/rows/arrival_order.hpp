@@ -12,11 +12,6 @@
 /// cursor that nothing is committed behind.
 namespace kinship::store {
 
-/// What turned out damaged while attempts were read: ids of rows.
-struct DamagedRows {
-  std::vector<std::int64_t> paths, scenes, attempts;
-};
-
 /// The next attempts by id, those that are not set aside: of a robot, a task, both, or all of them.
 std::vector<std::int64_t> next_attempts(Database& database, const std::optional<Digest>& robot,
                                         std::string_view task, std::int64_t after_id,

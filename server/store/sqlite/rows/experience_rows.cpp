@@ -49,17 +49,6 @@ void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t pa
       .run();
 }
 
-std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
-                                             std::string_view task) {
-  const auto query = database.cached(
-      "SELECT experience.task_id, experience.robot_id FROM experience "
-      "JOIN task ON task.id = experience.task_id JOIN robot ON robot.id = experience.robot_id "
-      "WHERE task.name = ? AND robot.digest = ?");
-  if (!query->bind_all(task, Bytes(robot.bytes)).step())
-    return std::nullopt;
-  return ExperienceKey{query->column_integer(0), query->column_integer(1)};
-}
-
 std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
                                              std::string_view task, const ExperienceKey& first) {
   std::string sql = "SELECT task_id, robot_id FROM experience WHERE (task_id, robot_id) >= (?, ?)";

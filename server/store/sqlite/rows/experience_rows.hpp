@@ -22,10 +22,6 @@ void add_to_experience(Database& database, const ExperienceKey& key, const PairC
 /// Takes paths out of the count.
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths);
 
-/// Nothing if nobody reported an attempt of the robot for the task.
-std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
-                                             std::string_view task);
-
 /// The rows of a robot and a task, each empty for all, by task and robot; from `first` on.
 std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
                                              std::string_view task,

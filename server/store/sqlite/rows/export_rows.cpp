@@ -70,7 +70,7 @@ std::optional<Attempt> read_candidate(Database& database, std::int64_t id, Expor
   if (row->attempt.path.has_value() != (row->attempt.record.outcome == Outcome::Solved))
     return std::nullopt;
   if (row->scene_id) {
-    SceneRead read = select_scene(database, *row->scene_id);
+    SceneRead read = select_current_scene(database, *row->scene_id);
     if (read.damaged)
       noted.damaged.scenes.push_back(*row->scene_id);
     row->attempt.scene = std::move(read.scene);

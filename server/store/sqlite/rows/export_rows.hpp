@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "server/store/sqlite/database/database.hpp"
-#include "server/store/sqlite/rows/arrival_order.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
 
 namespace kinship::store {
 

@@ -89,7 +89,7 @@ std::optional<SharedReport> read_shared(Database& database, const Uuid& report_u
   if (shared.attempt.path.has_value() != (shared.attempt.record.outcome == Outcome::Solved))
     return std::nullopt;
   if (row->scene_id) {
-    SceneRead scene = select_scene(database, *row->scene_id);
+    SceneRead scene = select_current_scene(database, *row->scene_id);
     if (scene.damaged)
       noted.damaged.scenes.push_back(*row->scene_id);
     shared.attempt.scene = std::move(scene.scene);

@@ -8,7 +8,7 @@
 #include "proto/types/uuid.hpp"
 #include "server/store/shared_report.hpp"
 #include "server/store/sqlite/database/database.hpp"
-#include "server/store/sqlite/rows/arrival_order.hpp"
+#include "server/store/tables/contents.hpp"
 
 /// Reports as another store is told of them, see Store.
 namespace kinship::store {
@@ -20,11 +20,6 @@ Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
 
 std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports);
 
-/// Reports as read, and what of them turned out damaged on the way.
-struct SharedRead {
-  SharedReports found;
-  DamagedRows damaged;
-};
 SharedRead select_shared(Database& database, std::span<const Uuid> reports, std::size_t max_bytes);
 
 }  // namespace kinship::store
