@@ -7,7 +7,7 @@
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/rows/batch_reading.hpp"
 #include "server/store/postgres/rows/batch_writing.hpp"
-#include "server/store/postgres/rows/shared_rows.hpp"
+#include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store::postgres {

@@ -24,8 +24,6 @@
 #include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/report_room.hpp"
-#include "server/store/sqlite/rows/attempt_rows.hpp"
-#include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
@@ -33,7 +31,6 @@
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
-#include "server/store/sqlite/rows/shared_rows.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/audit.hpp"
@@ -313,22 +310,14 @@ class SqliteStore : public Store {
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    const ReportRows report = find_report(*reader, report_uuid);
-    if (!report.row && report.damaged.empty())
+    DamagedRows damaged;
+    Result<Attempt> attempt = store::find_attempt(*reader, report_uuid, damaged);
+    set_aside_later(std::move(damaged));
+    if (attempt)
+      return std::move(*attempt);
+    if (attempt.error().code == ErrorCode::NotFound)
       return std::nullopt;
-    std::optional<AttemptRow> row = select_named(*reader, report.row);
-    if (!row) {
-      if (report.row)
-        set_aside_later(AsideKind::Attempt, {*report.row});
-      throw Failure(ErrorCode::Storage, "report " + report_uuid.text() +
-                                            ": its row is damaged; report it again to mend it");
-    }
-    if (row->path_id)
-      for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
-        row->attempt.path = std::move(stored.path);
-    if (row->scene_id)
-      row->attempt.scene = undamaged(select_current_scene(*reader, *row->scene_id), *row->scene_id);
-    return std::move(row->attempt);
+    throw Failure(attempt.error());
   }
 
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,

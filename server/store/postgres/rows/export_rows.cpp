@@ -161,12 +161,13 @@ Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& 
 
 std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_uuid,
                                     DamagedRows& noticed) {
-  std::optional<ArrivedAttempt> arrived = select_arrived(connection, report_uuid);
-  if (!arrived)
+  const std::vector<ArrivedAttempt> arrived =
+      select_arrived(connection, std::span(&report_uuid, 1));
+  if (arrived.empty())
     return std::nullopt;
   Contents contents(connection, noticed);
-  contents.read(std::span(&*arrived, 1));
-  return contents.whole(std::move(*arrived));
+  contents.read(arrived);
+  return contents.whole(arrived.front());
 }
 
 Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
@@ -183,6 +184,36 @@ Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std:
     if (!exported.add(next))
       return exported.page().full();
   }
+}
+
+SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
+                         std::size_t max_bytes) {
+  std::map<Uuid, ArrivedAttempt> known;
+  for (ArrivedAttempt& arrived : select_arrived(connection, reports))
+    if (!arrived.is_robot_removed)
+      known.emplace(arrived.attempt.report_uuid, std::move(arrived));
+  SharedRead read;
+  std::vector<ArrivedAttempt> taken;
+  std::size_t bytes = 0;
+  for (const Uuid& report : reports) {
+    if (read.found.looked_at > 0 && bytes > max_bytes)
+      break;
+    ++read.found.looked_at;
+    const auto found = known.find(report);
+    if (found == known.end())
+      continue;
+    bytes += found->second.waypoint_bytes + found->second.scene_bytes;
+    taken.push_back(found->second);
+  }
+  Contents contents(connection, read.damaged);
+  contents.read(taken);
+  for (const ArrivedAttempt& arrived : taken) {
+    SharedReport shared{contents.whole(arrived), arrived.body, arrived.received_ms,
+                        arrived.is_retired};
+    if (shared.attempt.path.has_value() == (shared.attempt.record.outcome == Outcome::Solved))
+      read.found.reports.push_back(std::move(shared));
+  }
+  return read;
 }
 
 }  // namespace kinship::store::postgres

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -25,5 +26,9 @@ std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_u
 /// export; see ArrivalPage.
 Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
                           std::size_t limit, std::size_t max_bytes, DamagedRows& noticed);
+
+/// As Store::read_reports() says.
+SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
+                         std::size_t max_bytes);
 
 }  // namespace kinship::store::postgres

@@ -1,10 +1,13 @@
 #include "server/store/postgres/rows/retirement.hpp"
 
+#include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
-#include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/postgres/rows/arrivals.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
@@ -37,24 +40,66 @@ std::optional<ReportedPath> find_reported(Connection& connection, const Uuid& re
                       .robot = id_of<Digest>(row.column_blob(5))};
 }
 
-/// Of a pair that is locked. A damaged path was in fits before it was found damaged: it is retired
-/// as any other, but was taken out of the count already.
+void lock_pair(Connection& connection, const ExperienceKey& key) {
+  connection.query(
+      "SELECT 1 FROM experience WHERE task_id = $1 AND robot_id = $2"
+      " FOR NO KEY UPDATE",
+      key.task_id, key.robot_id);
+}
+
+/// What a retirement does to a locked row: both generations rise.
+/// \param paths  that were counted until now.
+void note_retirement(Connection& connection, const ExperienceKey& key, std::int64_t paths) {
+  connection.query(
+      "UPDATE experience SET changed_in = pg_current_xact_id(), generation = generation + 1,"
+      " retired_generation = generation + 1, paths = paths - $3"
+      " WHERE task_id = $1 AND robot_id = $2",
+      key.task_id, key.robot_id, paths);
+}
+
+/// Of a pair that is locked: retires paths, and remembers all reports of their content. A damaged
+/// path was in fits before it was found damaged: it is retired as any other, but was taken out of
+/// the count already.
+/// \param which  of the ids of paths; $1 is the time.
 /// \return how many were not retired before.
-std::int64_t retire(Connection& connection, const ExperienceKey& key,
-                    const std::vector<std::int64_t>& paths) {
+std::int64_t retire(Connection& connection, const ExperienceKey& key, const std::string& which,
+                    const Parameters& parameters) {
   const Rows rows = connection.query(
-      "WITH gone AS (UPDATE path SET retired_ms = $2 WHERE id = ANY($1) AND retired_ms IS NULL"
-      "  RETURNING id, report_uuid, damaged_ms),"
-      " remembered AS (INSERT INTO retired_report (report_uuid, retired_ms)"
-      "  SELECT report_uuid, $2 FROM gone UNION"
-      "  SELECT attempt.report_uuid, $2 FROM attempt JOIN gone ON attempt.path_id = gone.id"
-      "  WHERE attempt.status = 2 ON CONFLICT (report_uuid) DO NOTHING)"
-      " SELECT count(*), count(*) FILTER (WHERE damaged_ms IS NULL) FROM gone",
-      paths, now_ms());
+      "WITH gone AS (UPDATE path SET retired_ms = $1 WHERE retired_ms IS NULL AND id " + which +
+          "  RETURNING id, report_uuid, damaged_ms),"
+          " remembered AS (INSERT INTO retired_report (report_uuid, retired_ms)"
+          "  SELECT report_uuid, $1 FROM gone UNION"
+          "  SELECT attempt.report_uuid, $1 FROM attempt JOIN gone ON attempt.path_id = gone.id"
+          "  WHERE attempt.status = 2 ON CONFLICT (report_uuid) DO NOTHING)"
+          " SELECT count(*), count(*) FILTER (WHERE damaged_ms IS NULL) FROM gone",
+      parameters);
   const std::int64_t retired = rows.front().column_integer(0);
   if (retired > 0)
     note_retirement(connection, key, rows.front().column_integer(1));
   return retired;
+}
+
+std::int64_t retire(Connection& connection, const ExperienceKey& key,
+                    const std::vector<std::int64_t>& paths) {
+  return retire(connection, key, "= ANY($2)", Parameters(now_ms(), paths));
+}
+
+/// The paths of reports, or what replaced them.
+std::int64_t retire_paths_of(Connection& connection, const ExperienceKey& key,
+                             const std::vector<Bytes>& reports) {
+  return retire(connection, key,
+                "IN (SELECT coalesce(named.replaced_by, named.id) FROM attempt"
+                "   JOIN path AS named ON named.id = attempt.path_id WHERE attempt.task_id = $2"
+                "   AND attempt.robot_id = $3 AND attempt.report_uuid = ANY ($4))",
+                Parameters(now_ms(), key.task_id, key.robot_id, reports));
+}
+
+/// Where some of these are not there: waits for whoever is writing reports (kBeforeReports), and
+/// keeps others from it. Of two that look for what the other one writes neither would find it.
+void wait_for_arrivals(Connection& connection, std::span<const Uuid> reports) {
+  const std::set<Uuid> asked(reports.begin(), reports.end());
+  if (select_known(connection, reports).size() < asked.size())
+    connection.query("SELECT pg_advisory_xact_lock(20261126) IS NULL");
 }
 
 }  // namespace
@@ -78,6 +123,42 @@ Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
   note_act(connection, audit, AuditOutcome::Done, describe_paths(retired.task, before),
            in_number(count_paths_of(connection, retired.task), "path"));
   return retired;
+}
+
+std::vector<Retirement> retire_reports(Connection& connection, std::span<const Uuid> reports) {
+  const std::vector<Bytes> uuids = bytes_of(reports);
+  wait_for_arrivals(connection, reports);
+  std::map<std::string, Retirement> retired;  // by task
+  // Locked before anything is written, in the order of the key as everybody does.
+  const Rows pairs = connection.query(
+      "SELECT attempt.task_id, attempt.robot_id, task.name, robot.digest FROM attempt"
+      " JOIN task ON task.id = task_id JOIN robot ON robot.id = robot_id"
+      " WHERE report_uuid = ANY ($1) GROUP BY 1, 2, 3, 4 ORDER BY 1, 2",
+      uuids);
+  for (const Row pair : pairs)
+    lock_pair(connection, {pair.column_integer(0), pair.column_integer(1)});
+  // Also what was there is written, so that the answer waits for a standby.
+  connection.query(
+      "INSERT INTO retired_report (report_uuid, retired_ms)"
+      " SELECT DISTINCT unnest($1::bytea[]), $2::bigint ON CONFLICT (report_uuid)"
+      " DO UPDATE SET retired_ms = retired_report.retired_ms",
+      uuids, now_ms());
+  for (const Row pair : pairs) {
+    const std::int64_t paths =
+        retire_paths_of(connection, {pair.column_integer(0), pair.column_integer(1)}, uuids);
+    if (paths == 0)
+      continue;
+    Retirement& of_task = retired[std::string(pair.column_text(2))];
+    of_task.task = pair.column_text(2);
+    of_task.paths += static_cast<std::uint64_t>(paths);
+    of_task.robots.push_back(id_of<Digest>(pair.column_blob(3)));
+  }
+  std::vector<Retirement> by_task;
+  for (auto& [task, retirement] : retired) {
+    std::ranges::sort(retirement.robots);
+    by_task.push_back(std::move(retirement));
+  }
+  return by_task;
 }
 
 RetireSome retirement_in(Connection& connection) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <span>
+#include <string_view>
+#include <vector>
+
 #include "proto/types/audit.hpp"
 #include "proto/types/result.hpp"
 #include "server/store/postgres/database/connection.hpp"
@@ -14,6 +18,14 @@ namespace kinship::store::postgres {
 /// As Store::retire_path() says.
 Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
                                const AuditEntry* audit);
+
+/// As Store::retire_reports() says. Locks rows of `experience` in the order of the key.
+std::vector<Retirement> retire_reports(Connection& connection, std::span<const Uuid> reports);
+
+/// Asked before reports are written, before it is looked which of them are retired and before
+/// anything else is locked: until the commit no reports are retired that are not there yet.
+inline constexpr std::string_view kBeforeReports =
+    "SELECT pg_advisory_xact_lock_shared(20261126) IS NULL";
 
 /// Retires paths in the caller's transaction. The reports that brought them, or were answered with
 /// them, are remembered.
