@@ -299,13 +299,13 @@ class SqliteStore : public Store {
   Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                std::string_view cursor, std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return page_of_paths(*reader, robot, task, cursor, limit);
+    return page_of_paths(*reader, {robot, task}, cursor, limit);
   }
 
   Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot, std::string_view task,
                                      std::string_view cursor, std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return page_of_attempts(*reader, robot, task, cursor, limit);
+    return page_of_attempts(*reader, {robot, task}, cursor, limit);
   }
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
@@ -324,7 +324,7 @@ class SqliteStore : public Store {
                                 std::string_view cursor, std::size_t limit,
                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
+    ExportRead read = export_page(*reader, {robot, task}, cursor, limit, max_bytes);
     set_aside_later(std::move(read.damaged));
     return std::move(read.page);
   }
@@ -333,7 +333,7 @@ class SqliteStore : public Store {
                                                std::string_view task, std::string_view cursor,
                                                std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return page_of_distributions(*reader, robot, task, cursor, limit);
+    return page_of_distributions(*reader, {robot, task}, cursor, limit);
   }
 
   Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,

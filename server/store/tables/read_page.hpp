@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 
 #include "server/store/session.hpp"
@@ -18,6 +20,22 @@ Page<Entry> read_page(Rows rows, std::int64_t limit, Read read, CursorOf cursor_
     if (!page.add(read(row), cursor_of(row)))
       break;
   return page.take();
+}
+
+/// The same of a feed. \param cursor  that it was asked for with.
+template <typename Entry, typename Read, typename CursorOf>
+Feed<Entry> read_feed(Rows rows, std::string_view cursor, std::size_t limit, Read read,
+                      CursorOf cursor_of) {
+  Feed<Entry> feed;
+  feed.cursor = cursor;
+  for (const Row& row : rows) {
+    feed.has_more = feed.rows.size() == limit;
+    if (feed.has_more)
+      break;
+    feed.rows.push_back(read(row));
+    feed.cursor = cursor_of(row);
+  }
+  return feed;
 }
 
 }  // namespace kinship::store

@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "server/store/tables/read_page.hpp"
 #include "server/store/values/pages.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
@@ -39,6 +40,7 @@ constexpr std::string_view kReportIsRetired =
     "  WHERE retired_report.report_uuid = attempt.report_uuid OFFSET 0)"
     " OR coalesce(path.retired_ms IS NOT NULL AND length(path.waypoints) > 1, FALSE) ";
 
+template <Columns Row>
 ArrivedAttempt read_arrived(const Row& row) {
   ArrivedAttempt arrived;
   arrived.arrival = {row.column_integer(0), row.column_integer(1), row.column_integer(2) != 0};
@@ -60,7 +62,7 @@ ArrivedAttempt read_arrived(const Row& row) {
 
 /// The next $3 after ($1, $2): of all along an index; of some robots and tasks each brings its own.
 /// \param condition  on an attempt, that it has to fulfil too.
-std::string next_arrivals(const PairFilter& filter, Parameters& parameters,
+std::string next_arrivals(const PairFilter& filter, std::vector<Parameter>& parameters,
                           const std::string& condition = "") {
   const std::string next =
       "(arrived_in, id) > ($1::text::xid8, $2)" + condition + " ORDER BY arrived_in, id LIMIT $3";
@@ -75,21 +77,13 @@ std::string next_arrivals(const PairFilter& filter, Parameters& parameters,
 /// Behind which nothing is on its way any more.
 constexpr std::string_view kIsSettled = " AND arrived_in < pg_snapshot_xmin(pg_current_snapshot())";
 
-/// Of rows that begin with transaction and id, one more than asked for.
-/// \param read  makes a row of the feed of a row.
-template <typename Entry, typename Read>
-Feed<Entry> feed_of(const Rows& rows, std::string_view cursor, std::size_t limit, Read read) {
-  Feed<Entry> feed;
-  feed.cursor = cursor;
-  for (const Row row : rows) {
-    if (feed.rows.size() == limit) {
-      feed.has_more = true;
-      return feed;
-    }
-    feed.rows.push_back(read(row));
-    feed.cursor = cursor_of({row.column_integer(0), row.column_integer(1)});
-  }
-  return feed;
+/// \param row  begins with transaction and id.
+std::string cursor_behind(const store::Row& row) {
+  return cursor_of({row.column_integer(0), row.column_integer(1)});
+}
+
+std::vector<Parameter> next_of(const Arrival& after, std::int64_t count) {
+  return {Parameter(after.transaction), Parameter(after.id), Parameter(count)};
 }
 
 }  // namespace
@@ -122,15 +116,14 @@ std::vector<Bytes> bytes_of(std::span<const Uuid> reports) {
 
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFilter& filter,
                                            const Arrival& after, std::int64_t count) {
-  Parameters parameters(after.transaction, after.id, count);
+  std::vector<Parameter> parameters = next_of(after, count);
   const std::string page = next_arrivals(filter, parameters);
-  const Rows rows =
-      connection.query(std::string(kArrivedColumns) + std::string(kRecordColumns) + "FROM (" +
-                           page + std::string(kAttemptOfPage) + std::string(kNames) +
-                           std::string(kPathOfAttempt) + "ORDER BY attempt.arrived_in, attempt.id",
-                       parameters);
   std::vector<ArrivedAttempt> arrived;
-  for (const Row row : rows)
+  for (const store::Row& row : connection.query_with(
+           std::string(kArrivedColumns) + std::string(kRecordColumns) + "FROM (" + page +
+               std::string(kAttemptOfPage) + std::string(kNames) + std::string(kPathOfAttempt) +
+               "ORDER BY attempt.arrived_in, attempt.id",
+           parameters))
     arrived.push_back(read_arrived(row));
   return arrived;
 }
@@ -164,29 +157,33 @@ std::set<Uuid> select_known(Connection& connection, std::span<const Uuid> report
 
 Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view task,
                                      std::string_view cursor, std::size_t limit) {
-  const Arrival after = parse_arrival_cursor(cursor);
-  Parameters parameters(after.transaction, after.id, static_cast<std::int64_t>(limit) + 1);
-  const std::string page = next_arrivals({{}, task}, parameters, std::string(kIsSettled));
-  const Rows rows = connection.query(
-      "SELECT attempt.arrived_in::text::bigint, attempt.id, attempt.report_uuid," +
-          std::string(kReportIsRetired) + "FROM (" + page + std::string(kAttemptOfPage) +
-          std::string(kPathOfAttempt) + "ORDER BY attempt.arrived_in, attempt.id",
-      parameters);
-  return feed_of<ArrivedReport>(rows, cursor, limit, [](const Row& row) {
-    return ArrivedReport{id_of<Uuid>(row.column_blob(2)), row.column_integer(3) != 0};
-  });
+  const PairFilter filter{.task = task};
+  std::vector<Parameter> parameters =
+      next_of(parse_arrival_cursor(cursor), static_cast<std::int64_t>(limit) + 1);
+  const std::string page = next_arrivals(filter, parameters, std::string(kIsSettled));
+  return read_feed<ArrivedReport>(
+      connection.query_with(
+          "SELECT attempt.arrived_in::text::bigint, attempt.id, attempt.report_uuid," +
+              std::string(kReportIsRetired) + "FROM (" + page + std::string(kAttemptOfPage) +
+              std::string(kPathOfAttempt) + "ORDER BY attempt.arrived_in, attempt.id",
+          parameters),
+      cursor, limit,
+      [](const store::Row& row) {
+        return ArrivedReport{id_of<Uuid>(row.column_blob(2)), row.column_integer(3) != 0};
+      },
+      cursor_behind);
 }
 
 Feed<Uuid> feed_of_retirements(Connection& connection, std::string_view cursor, std::size_t limit) {
-  const Arrival after = parse_arrival_cursor(cursor);
-  const Rows rows = connection.query(
-      // By another name: the rows are to come in the order of the column, which an index has.
-      "SELECT arrived_in::text::bigint AS place, id, report_uuid FROM retired_report"
-      " WHERE (arrived_in, id) > ($1::text::xid8, $2)" +
-          std::string(kIsSettled) + " ORDER BY arrived_in, id LIMIT $3",
-      after.transaction, after.id, static_cast<std::int64_t>(limit) + 1);
-  return feed_of<Uuid>(rows, cursor, limit,
-                       [](const Row& row) { return id_of<Uuid>(row.column_blob(2)); });
+  return read_feed<Uuid>(
+      connection.query_with(
+          // By another name: the rows are to come in the order of the column, which an index has.
+          "SELECT arrived_in::text::bigint AS place, id, report_uuid FROM retired_report"
+          " WHERE (arrived_in, id) > ($1::text::xid8, $2)" +
+              std::string(kIsSettled) + " ORDER BY arrived_in, id LIMIT $3",
+          next_of(parse_arrival_cursor(cursor), static_cast<std::int64_t>(limit) + 1)),
+      cursor, limit, [](const store::Row& row) { return id_of<Uuid>(row.column_blob(2)); },
+      cursor_behind);
 }
 
 }  // namespace kinship::store::postgres

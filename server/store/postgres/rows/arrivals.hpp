@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/pair_filter.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/pair_filter.hpp"
 
 /// Attempts in the order in which their transactions began. Several servers commit at once, so an
 /// attempt may become visible behind one that was seen before; it cannot any more where every

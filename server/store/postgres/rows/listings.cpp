@@ -1,29 +1,18 @@
 #include "server/store/postgres/rows/listings.hpp"
 
 #include <string>
-#include <utility>
+#include <vector>
 
+#include "server/store/tables/read_page.hpp"
 #include "server/store/values/pages.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store::postgres {
 namespace {
 
-/// A page of the first rows of a statement that gives one more.
-/// \param read       makes an entry of a row.
-/// \param cursor_of  the cursor that continues after it.
-template <typename Entry, typename Read, typename CursorOf>
-Page<Entry> page_of(const Rows& rows, std::int64_t limit, Read read, CursorOf cursor_of) {
-  PageFiller<Entry> page(limit);
-  for (const Row row : rows)
-    if (!page.add(read(row), cursor_of(row)))
-      break;
-  return page.take();
-}
-
 /// The ids of the newest paths before $1, at most $2: of all along the table; of some robots and
 /// tasks each brings its own, read from its indexes.
-std::string newest_paths(const PairFilter& filter, Parameters& parameters) {
+std::string newest_paths(const PairFilter& filter, std::vector<Parameter>& parameters) {
   if (filter.is_empty())
     return "SELECT id FROM path WHERE id < $1 AND damaged_ms IS NULL ORDER BY id DESC LIMIT $2";
   const std::string of_pair =
@@ -38,7 +27,7 @@ std::string newest_paths(const PairFilter& filter, Parameters& parameters) {
 
 /// The same of distributions. In the order of one index alone, so that no other one is read to its
 /// end for what is not there: the rows below, of which those of others are left out.
-std::string newest_distributions(const PairFilter& filter, Parameters& parameters) {
+std::string newest_distributions(const PairFilter& filter, std::vector<Parameter>& parameters) {
   std::string columns, ids, falling, are_asked_for;
   for (const PairFilter::Column& column : filter.columns(parameters)) {
     columns += column.name + ", ";
@@ -57,38 +46,41 @@ Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter
                                 std::string_view cursor, std::size_t limit) {
   constexpr int kId = 22;  // behind the record
   const std::int64_t rows = rows_of_page(limit);
-  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
+                                       Parameter(rows + 1)};
   const std::string page = newest_paths(filter, parameters);
-  return page_of<PathSummary>(
-      connection.query("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
-                           ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
-                           ") AS page CROSS JOIN LATERAL (SELECT * FROM path AS found"
-                           " WHERE found.id = page.id OFFSET 0) AS path "
-                           "JOIN robot ON robot.id = path.robot_id "
-                           "JOIN task ON task.id = path.task_id "
-                           "CROSS JOIN LATERAL (SELECT * FROM attempt AS found"
-                           " WHERE found.report_uuid = path.report_uuid OFFSET 0) AS attempt "
-                           "ORDER BY path.id DESC",
-                       parameters),
-      rows, read_path_summary<Row>,
-      [](const Row& row) { return std::to_string(row.column_integer(kId)); });
+  return read_page<PathSummary>(
+      connection.query_with("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
+                                ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
+                                ") AS page CROSS JOIN LATERAL (SELECT * FROM path AS found"
+                                " WHERE found.id = page.id OFFSET 0) AS path "
+                                "JOIN robot ON robot.id = path.robot_id "
+                                "JOIN task ON task.id = path.task_id "
+                                "CROSS JOIN LATERAL (SELECT * FROM attempt AS found"
+                                " WHERE found.report_uuid = path.report_uuid OFFSET 0) AS attempt "
+                                "ORDER BY path.id DESC",
+                            parameters),
+      rows, read_path_summary<store::Row>,
+      [](const store::Row& row) { return std::to_string(row.column_integer(kId)); });
 }
 
 Page<DistributionSummary> page_of_distributions(Connection& connection, const PairFilter& filter,
                                                 std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
+                                       Parameter(rows + 1)};
   const std::string page = newest_distributions(filter, parameters);
-  return page_of<DistributionSummary>(
-      connection.query("SELECT " + std::string(kDistributionSummaryColumns) + "FROM (" + page +
-                           ") AS page CROSS JOIN LATERAL (SELECT * FROM distribution AS found"
-                           " WHERE found.id = page.id OFFSET 0) AS distribution "
-                           "JOIN robot ON robot.id = distribution.robot_id "
-                           "JOIN task ON task.id = distribution.task_id "
-                           "ORDER BY distribution.id DESC",
-                       parameters),
-      rows, read_distribution_summary<Row>,
-      [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });
+  return read_page<DistributionSummary>(
+      connection.query_with("SELECT " + std::string(kDistributionSummaryColumns) + "FROM (" + page +
+                                ") AS page CROSS JOIN LATERAL (SELECT * FROM distribution AS found"
+                                " WHERE found.id = page.id OFFSET 0) AS distribution "
+                                "JOIN robot ON robot.id = distribution.robot_id "
+                                "JOIN task ON task.id = distribution.task_id "
+                                "ORDER BY distribution.id DESC",
+                            parameters),
+      rows, read_distribution_summary<store::Row>, [](const store::Row& row) {
+        return std::to_string(row.column_integer(kIdOfDistributionSummary));
+      });
 }
 
 }  // namespace kinship::store::postgres

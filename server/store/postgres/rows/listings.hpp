@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/pair_filter.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/pair_filter.hpp"
 
 /// The pages of admin listings. A cursor is the sort key of the last row shown, so a page costs
 /// the same wherever it is, and rows that come or go meanwhile neither repeat nor hide others.

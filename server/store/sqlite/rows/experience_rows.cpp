@@ -49,22 +49,14 @@ void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t pa
       .run();
 }
 
-std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
-                                             std::string_view task, const ExperienceKey& first) {
-  std::string sql = "SELECT task_id, robot_id FROM experience WHERE (task_id, robot_id) >= (?, ?)";
-  if (!task.empty())
-    sql += " AND task_id = (SELECT id FROM task WHERE name = ?3)";
-  if (robot)
-    sql += " AND robot_id = (SELECT id FROM robot WHERE digest = ?4)";
-  const auto query = database.cached(sql + " ORDER BY task_id, robot_id");
-  query->bind_all(first.task_id, first.robot_id);
-  if (!task.empty())
-    query->bind(3, task);
-  if (robot)
-    query->bind(4, Bytes(robot->bytes));
+std::vector<ExperienceKey> select_experience(Database& database, const PairFilter& filter) {
+  std::vector<Parameter> parameters;
+  const std::string sql = "SELECT task_id, robot_id FROM experience WHERE TRUE" +
+                          filter.condition("experience", parameters) +
+                          " ORDER BY task_id, robot_id";
   std::vector<ExperienceKey> keys;
-  while (query->step())
-    keys.push_back({query->column_integer(0), query->column_integer(1)});
+  for (const Row& row : database.query_with(sql, parameters))
+    keys.push_back({row.column_integer(0), row.column_integer(1)});
   return keys;
 }
 

@@ -9,6 +9,7 @@
 #include "server/store/rules/batch_changes.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/pair_filter.hpp"
 
 /// One row per robot and task that somebody reported: its generations and its sums.
 namespace kinship::store {
@@ -22,9 +23,7 @@ void add_to_experience(Database& database, const ExperienceKey& key, const PairC
 /// Takes paths out of the count.
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths);
 
-/// The rows of a robot and a task, each empty for all, by task and robot; from `first` on.
-std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
-                                             std::string_view task,
-                                             const ExperienceKey& first = {});
+/// The rows of a robot and a task, each empty for all, by task and robot.
+std::vector<ExperienceKey> select_experience(Database& database, const PairFilter& filter);
 
 }  // namespace kinship::store

@@ -59,17 +59,16 @@ std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
-    return next_of(database, select_experience(database, {}, ""), after_id, count);
+    return next_of(database, select_experience(database, {}), after_id, count);
   }
 }
 
 /// The next attempts by id, those that are not set aside: of a robot, a task, both, or all of them.
-std::vector<std::int64_t> next_attempts(Database& database, const std::optional<Digest>& robot,
-                                        std::string_view task, std::int64_t after_id,
-                                        std::int64_t count) {
-  return robot || !task.empty()
-             ? next_of(database, select_experience(database, robot, task), after_id, count)
-             : next_of_all(database, after_id, count);
+std::vector<std::int64_t> next_attempts(Database& database, const PairFilter& filter,
+                                        std::int64_t after_id, std::int64_t count) {
+  return filter.is_empty()
+             ? next_of_all(database, after_id, count)
+             : next_of(database, select_experience(database, filter), after_id, count);
 }
 
 /// Nothing if its robot is removed, or it lies on a damaged page.
@@ -208,9 +207,8 @@ std::optional<SharedReport> read_shared(Database& database, const Uuid& report_u
 
 }  // namespace
 
-ExportRead export_page(Database& database, const std::optional<Digest>& robot,
-                       std::string_view task, std::string_view cursor, std::size_t limit,
-                       std::size_t max_bytes) {
+ExportRead export_page(Database& database, const PairFilter& filter, std::string_view cursor,
+                       std::size_t limit, std::size_t max_bytes) {
   constexpr std::int64_t kCandidates = 64;
   const std::size_t rows = std::max<std::size_t>(limit, 1);
   ExportRead read;
@@ -218,7 +216,7 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
   std::size_t bytes = 0;
   while (true) {
     const std::vector<std::int64_t> candidates =
-        next_attempts(database, robot, task, last_id, kCandidates);
+        next_attempts(database, filter, last_id, kCandidates);
     if (candidates.empty())
       return read;
     for (const std::int64_t id : candidates) {
@@ -236,16 +234,15 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
   }
 }
 
-Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Digest>& robot,
-                                      std::string_view task, std::string_view cursor,
-                                      std::size_t limit) {
+Page<AttemptSummary> page_of_attempts(Database& database, const PairFilter& filter,
+                                      std::string_view cursor, std::size_t limit) {
   const auto rows = static_cast<std::int64_t>(std::max<std::size_t>(limit, 1));
   const std::map<std::int64_t, RobotName> names = select_robot_names(database);
   Page<AttemptSummary> page;
   std::int64_t last_id = parse_rising_cursor(cursor);
   while (true) {
     const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
-    const std::vector<std::int64_t> ids = next_attempts(database, robot, task, last_id, more);
+    const std::vector<std::int64_t> ids = next_attempts(database, filter, last_id, more);
     if (ids.empty())
       return page;
     for (const std::int64_t id : ids) {
@@ -279,9 +276,8 @@ Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
                                      std::string_view cursor, std::size_t limit) {
   Feed<ArrivedReport> feed;
   feed.cursor = cursor;
-  std::vector<std::int64_t> ids =
-      next_attempts(database, std::nullopt, task, parse_rising_cursor(cursor),
-                    static_cast<std::int64_t>(limit) + 1);
+  std::vector<std::int64_t> ids = next_attempts(
+      database, {.task = task}, parse_rising_cursor(cursor), static_cast<std::int64_t>(limit) + 1);
   feed.has_more = ids.size() > limit;
   if (feed.has_more)
     ids.resize(limit);

@@ -58,7 +58,7 @@ bool is_in_use(Database& database, const ExperienceKey& key, std::int64_t id) {
 
 /// The robot and task of a path whose row may not be readable, as long as it is not retired.
 std::optional<ExperienceKey> key_in_use(Database& database, std::int64_t id) {
-  for (const ExperienceKey& key : select_experience(database, {}, ""))
+  for (const ExperienceKey& key : select_experience(database, {}))
     if (is_in_use(database, key, id))
       return key;
   return std::nullopt;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/tables/read_page.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/pages.hpp"
@@ -80,20 +81,12 @@ void note_same_content(Database& database, std::int64_t path_id, const Uuid& rep
 }
 
 Feed<Uuid> page_of_retirements(Database& database, std::string_view cursor, std::size_t limit) {
-  Feed<Uuid> feed;
-  feed.cursor = cursor;
-  const auto query = database.cached(
-      "SELECT id, report_uuid FROM retired_report WHERE id > ? ORDER BY id LIMIT ?");
-  query->bind_all(parse_rising_cursor(cursor), static_cast<std::int64_t>(limit) + 1);
-  while (query->step()) {
-    if (feed.rows.size() == limit) {
-      feed.has_more = true;
-      return feed;
-    }
-    feed.rows.push_back(id_of<Uuid>(query->column_blob(1)));
-    feed.cursor = std::to_string(query->column_integer(0));
-  }
-  return feed;
+  return read_feed<Uuid>(
+      database.query(
+          "SELECT id, report_uuid FROM retired_report WHERE id > $1 ORDER BY id LIMIT $2",
+          parse_rising_cursor(cursor), limit + 1),
+      cursor, limit, [](const Row& row) { return id_of<Uuid>(row.column_blob(1)); },
+      [](const Row& row) { return std::to_string(row.column_integer(0)); });
 }
 
 }  // namespace kinship::store

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "proto/types/digest.hpp"
-#include "server/store/postgres/database/parameters.hpp"
+#include "server/store/session.hpp"
 
-namespace kinship::store::postgres {
+namespace kinship::store {
 
 /// Says which robots and tasks a statement reads, each empty for all.
 struct PairFilter {
@@ -21,12 +21,12 @@ struct PairFilter {
   struct Column {
     std::string name, id;
   };
-  /// task_id and robot_id, of what it asks for, which is added to the parameters.
-  std::vector<Column> columns(Parameters& parameters) const;
+  /// task_id and robot_id, of what it asks for, which is added to the parameters; they borrow it.
+  std::vector<Column> columns(std::vector<Parameter>& parameters) const;
 
   /// Adds what it asks for to the parameters.
   /// \return " AND <table>.task_id = ... AND <table>.robot_id = ...", of what it asks for.
-  std::string condition(const std::string& table, Parameters& parameters) const;
+  std::string condition(const std::string& table, std::vector<Parameter>& parameters) const;
 };
 
-}  // namespace kinship::store::postgres
+}  // namespace kinship::store
