@@ -59,6 +59,7 @@ class Row {
   virtual ~Row() = default;
 
   virtual bool next() = 0;  ///< false: there is none
+  virtual int columns() const noexcept = 0;
 
   virtual std::int64_t column_integer(int column) const = 0;  ///< booleans too
   virtual double column_real(int column) const = 0;

@@ -48,6 +48,7 @@ class AnswerRow final : public store::Row {
  public:
   explicit AnswerRow(Rows rows) : rows_(std::move(rows)) {}
   bool next() override { return ++row_ < rows_.size(); }
+  int columns() const noexcept override { return rows_.columns(); }
   std::int64_t column_integer(int column) const override {
     return rows_[row_].column_integer(column);
   }
