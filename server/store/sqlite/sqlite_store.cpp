@@ -9,15 +9,12 @@
 #include <utility>
 
 #include "proto/types/names.hpp"
-#include "server/store/sqlite/damage_item.hpp"
-#include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/files/disk_space.hpp"
-#include "server/store/sqlite/files/library_version.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -27,7 +24,6 @@
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"

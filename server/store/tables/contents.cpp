@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "server/store/values/scene_columns.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 namespace kinship::store {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "server/store/tables/audit.hpp"
-#include "server/store/tables/read_page.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/mesh_solids_blob.hpp"
 #include "server/store/values/robot_columns.hpp"

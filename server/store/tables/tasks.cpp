@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/tables/read_page.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"

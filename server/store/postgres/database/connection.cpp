@@ -2,11 +2,14 @@
 
 #include <libpq-fe.h>
 #include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 
@@ -67,6 +70,20 @@ class AnswerRow final : public store::Row {
 };
 
 }  // namespace
+
+Interrupt::Interrupt() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (descriptor_ < 0)
+    throw Failure(ErrorCode::Internal, "no descriptor is left for an eventfd");
+}
+
+Interrupt::~Interrupt() { close(descriptor_); }
+
+bool Interrupt::is_raised() const noexcept {
+  pollfd waited{.fd = descriptor_, .events = POLLIN, .revents = 0};
+  return poll(&waited, 1, 0) > 0;
+}
+
+void Interrupt::raise() noexcept { static_cast<void>(eventfd_write(descriptor_, 1)); }
 
 Connection::Connection(const ConnectionString& where, const ConnectionOptions& options)
     : where_(where), options_(options) {

@@ -2,8 +2,7 @@
 
 #include <charconv>
 
-#include "server/store/tables/read_page.hpp"
-#include "server/store/values/pages.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
-#include "server/store/tables/pair_filter.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// Attempts in the order in which their transactions began. Several servers commit at once, so an
 /// attempt may become visible behind one that was seen before; it cannot any more where every

@@ -1,4 +1,4 @@
-#include "server/store/postgres/rows/batch_reading.hpp"
+#include "server/store/postgres/rows/batch.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "server/store/postgres/rows/arrivals.hpp"
-#include "server/store/values/pages.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/path_content.hpp"
-#include "server/store/values/scene_columns.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 namespace kinship::store::postgres {
 namespace {

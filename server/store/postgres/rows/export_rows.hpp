@@ -9,7 +9,7 @@
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
 #include "server/store/tables/contents.hpp"
-#include "server/store/tables/pair_filter.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// Whole attempts, with their paths and scenes. All of it reads one snapshot.
 namespace kinship::store::postgres {

@@ -9,7 +9,7 @@
 #include "server/store/rules/batch_changes.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
-#include "server/store/tables/pair_filter.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// One row per robot and task that somebody reported: its generations and its sums.
 namespace kinship::store {

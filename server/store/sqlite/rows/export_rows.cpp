@@ -8,12 +8,12 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/retired_reports.hpp"
+#include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/pages.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {

@@ -8,7 +8,7 @@
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
 #include "server/store/tables/contents.hpp"
-#include "server/store/tables/pair_filter.hpp"
+#include "server/store/tables/pages.hpp"
 
 namespace kinship::store {
 

@@ -10,9 +10,8 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
-#include "server/store/tables/read_page.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/pages.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {

@@ -5,7 +5,7 @@
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
-#include "server/store/tables/pair_filter.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// The pages of admin listings. A cursor is the sort key of the last row shown, so a page costs
 /// the same wherever it is, and rows that come or go meanwhile neither repeat nor hide others.

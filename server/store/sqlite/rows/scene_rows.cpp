@@ -3,7 +3,7 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/scene_columns.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 namespace kinship::store {
 namespace {
