@@ -310,7 +310,7 @@ class SqliteStore : public Store {
     Result<Attempt> attempt = store::find_attempt(*reader, report_uuid, damaged);
     set_aside_later(std::move(damaged));
     if (attempt)
-      return std::move(*attempt);
+      return std::move(attempt).value();
     if (attempt.error().code == ErrorCode::NotFound)
       return std::nullopt;
     throw Failure(attempt.error());

@@ -154,8 +154,9 @@ Result<RemovedRobot> remove_in_steps(
     Result<Step<RemovedRobot>> next = step(removed);
     if (!next)
       return next.error();
-    removed = std::move(next->counted);
-    if (next->is_last)
+    Step<RemovedRobot> done = std::move(next).value();
+    removed = std::move(done.counted);
+    if (done.is_last)
       return removed;
     if (stop.stop_requested())
       return stopped_after(removed.removal.paths, "robot " + robot.short_hex());
