@@ -59,6 +59,7 @@ class Row {
   virtual ~Row() = default;
 
   virtual bool next() = 0;  ///< false: there is none
+  virtual int columns() const noexcept = 0;
 
   virtual std::int64_t column_integer(int column) const = 0;  ///< booleans too
   virtual double column_real(int column) const = 0;
@@ -108,13 +109,19 @@ class Rows {
 /// SQL that the engines say differently; each empty where an engine has no such thing.
 struct Dialect {
   // For other servers of the same database:
-  std::string_view lock_robots;      ///< keeps them from changing robots
-  std::string_view for_update;       ///< of a SELECT: locks the rows
-  std::string_view mark_changed;     ///< of an UPDATE: when the row was changed
-  std::string_view note_gone_robot;  ///< before the robot $1 is deleted
-  // For damage that SQLite meets:
-  std::string_view is_quarantined_distribution;  ///< an expression on table distribution
-  std::string_view quarantine_distribution;      ///< of row $1, at time $2
+  std::string_view lock_robots = {};  ///< keeps them from changing robots
+  std::string_view for_update = {};   ///< of a SELECT: locks the rows
+  std::string_view lock_experience =
+      {};                              ///< the same of table experience, whose keys stay readable
+  std::string_view mark_changed = {};  ///< of an UPDATE: when the row was changed
+  std::string_view note_gone_robot = {};        ///< before the robot $1 is deleted
+  std::string_view newest_attempts_first = {};  ///< of an ORDER BY
+  // For damage; the first three are expressions on the table:
+  std::string_view is_quarantined_path = {};
+  std::string_view is_quarantined_scene = {};
+  std::string_view is_quarantined_distribution = {};
+  std::string_view quarantine_distribution = {};  ///< of row $1, at time $2
+  std::string_view by_task_robot = {};            ///< behind table path: reads an index alone
 };
 
 /// A connection to a database, used by one thread at a time. Statements are prepared once for each

@@ -119,10 +119,11 @@ void expect_no_engine(const std::string& room, const std::set<std::string>& allo
   for (const Include& include : all_includes()) {
     if (!include.file.starts_with(room))
       continue;
-    if (include.target.starts_with("server/store/"))
+    if (include.target.starts_with("server/store/")) {
       EXPECT_TRUE(std::ranges::any_of(
           allowed, [&](const std::string& each) { return include.target.starts_with(each); }))
           << include.file << " includes " << include.target;
+    }
     const std::string external = external_library_of(include.target);
     EXPECT_TRUE(external != "SQLite" && external != "libpq")
         << include.file << " includes " << include.target;

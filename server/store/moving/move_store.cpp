@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "server/store/moving/copying.hpp"
-#include "server/store/moving/postgres_side.hpp"
-#include "server/store/moving/sqlite_side.hpp"
+#include "server/store/moving/side.hpp"
 #include "server/store/open_store.hpp"
 #include "server/store/values/move_marks.hpp"
 

@@ -50,7 +50,7 @@ MovedTable experience() {
   return table;
 }
 
-/// One that was replaced in SQLite has its first id and the content of the last (sqlite_scenes): in
+/// One that was replaced in SQLite has its first id and the content of the last (SqliteScenes): in
 /// PostgreSQL a content has one row, which is mended.
 MovedTable scenes() {
   const std::string in_use =
@@ -265,6 +265,13 @@ std::size_t MovedTable::column(const std::string& wanted) const {
   if (found == columns.end())
     throw std::logic_error("table " + name + " has no column " + wanted);
   return static_cast<std::size_t>(found - columns.begin());
+}
+
+std::string listed(const MovedTable& table, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i)
+    text += (i == 0 ? "" : ", ") + table.columns[i].name;
+  return text;
 }
 
 std::span<const MovedTable> moved_tables() {

@@ -1,12 +1,35 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 /// The tables that make up a store, in words that hold for both engines.
 namespace kinship::store::moving {
+
+/// What stands in a column: nothing, a number, or the bytes of a text or blob.
+using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// A row of a table as both engines have it: the cells of its columns, the key first.
+using MovedRow = std::vector<Cell>;
+
+/// What tells that a row with an id has changed, without its blobs: the id and what may change.
+using LightRow = std::array<std::int64_t, 4>;
+
+/// The experience of a robot with a task.
+struct Pair {
+  std::int64_t task_id = 0;
+  std::int64_t robot_id = 0;
+};
+
+inline std::int64_t integer_of(const MovedRow& row, std::size_t column) {
+  const auto* const value = std::get_if<std::int64_t>(&row[column]);
+  return value == nullptr ? 0 : *value;
+}
 
 enum class CellType { Integer, Real, Text, Blob };
 
@@ -41,6 +64,9 @@ struct MovedTable {
 
   std::size_t column(const std::string& name) const;  ///< its place. \throws std::logic_error
 };
+
+/// The names of the first columns, with commas between.
+std::string listed(const MovedTable& table, std::size_t count);
 
 /// All of them; what refers to another one comes after it.
 std::span<const MovedTable> moved_tables();

@@ -1,15 +1,13 @@
-#include "server/store/moving/postgres_side.hpp"
+#include "server/store/moving/side.hpp"
 
 #include <chrono>
 #include <utility>
 
-#include "server/store/moving/postgres_cells.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/opening/primary.hpp"
-#include "server/store/tables/audit.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/move_marks.hpp"
 
@@ -19,11 +17,62 @@ namespace {
 constexpr std::string_view kClaim = "moving_run";
 constexpr std::string_view kArrival = "moving_arrival";  // the transaction that all rows came in
 
-std::string listed(const MovedTable& table, std::size_t count) {
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i)
-    text += (i == 0 ? "" : ", ") + table.columns[i].name;
-  return text;
+/// What one type of array is made of. Texts and reals are never NULL in these tables.
+template <typename Element, typename Make>
+std::vector<Element> elements_of(std::span<const MovedRow> rows, std::size_t column, Make make) {
+  std::vector<Element> elements;
+  elements.reserve(rows.size());
+  for (const MovedRow& row : rows)
+    elements.push_back(make(row[column]));
+  return elements;
+}
+
+std::optional<std::int64_t> integer_in(const Cell& cell) {
+  const auto* const value = std::get_if<std::int64_t>(&cell);
+  return value == nullptr ? std::nullopt : std::optional(*value);
+}
+
+std::optional<Bytes> bytes_in(const Cell& cell) {
+  const auto* const value = std::get_if<std::string>(&cell);
+  if (value == nullptr)
+    return std::nullopt;
+  return Bytes(reinterpret_cast<const std::uint8_t*>(value->data()), value->size());
+}
+
+/// "bigint[]" for integers.
+const char* array_type_of(CellType type) {
+  switch (type) {
+    case CellType::Integer:
+      return "bigint[]";
+    case CellType::Real:
+      return "double precision[]";
+    case CellType::Text:
+      return "text[]";
+    case CellType::Blob:
+      break;
+  }
+  return "bytea[]";
+}
+
+/// Adds a column of rows as one array.
+void add_column(postgres::Parameters& parameters, std::span<const MovedRow> rows,
+                std::size_t column, CellType type) {
+  switch (type) {
+    case CellType::Integer:
+      parameters.add(elements_of<std::optional<std::int64_t>>(rows, column, integer_in));
+      return;
+    case CellType::Real:
+      parameters.add(elements_of<double>(rows, column,
+                                         [](const Cell& cell) { return std::get<double>(cell); }));
+      return;
+    case CellType::Text:
+      parameters.add(elements_of<std::string>(
+          rows, column, [](const Cell& cell) { return std::get<std::string>(cell); }));
+      return;
+    case CellType::Blob:
+      parameters.add(elements_of<std::optional<Bytes>>(rows, column, bytes_in));
+      return;
+  }
 }
 
 /// "unnest($1::bigint[], $2::bytea[])" of the first columns.
@@ -85,55 +134,14 @@ class PostgresSide : public Side {
     read();
   }
 
-  std::vector<MovedRow> all(const MovedTable& table) override {
-    return rows_of(
-        run("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
-            (table.postgres_condition.empty() ? "" : " WHERE ") + table.postgres_condition),
-        table);
-  }
-
-  MovedRow experience_of(const Pair& pair) override {
-    const MovedTable& table = moved_table("experience");
-    const postgres::Rows rows = run("SELECT " + listed(table, table.columns.size()) +
-                                        " FROM experience WHERE task_id = $1 AND robot_id = $2",
-                                    pair.task_id, pair.robot_id);
-    return rows.empty() ? MovedRow() : read_row(rows.front(), table);
-  }
-
   std::vector<MovedRow> of_ids(const MovedTable& table,
                                std::span<const std::int64_t> ids) override {
-    return rows_of(run("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
-                           " WHERE id = ANY($1) ORDER BY id",
-                       std::vector<std::int64_t>(ids.begin(), ids.end())),
-                   table);
-  }
-
-  std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
-    const postgres::Rows found = table.reading == Reading::ByPair
-                                     ? run(table.postgres_light, pair.task_id, pair.robot_id)
-                                     : run(table.postgres_light);
-    std::vector<LightRow> rows;
-    rows.reserve(static_cast<std::size_t>(found.size()));
-    for (const postgres::Row row : found) {
-      LightRow& light = rows.emplace_back();
-      for (int column = 0; column < found.columns(); ++column)
-        light.at(static_cast<std::size_t>(column)) = row.column_integer(column);
-    }
+    std::vector<MovedRow> rows;
+    for (const postgres::Row row : run("SELECT " + listed(table, table.columns.size()) + " FROM " +
+                                           table.name + " WHERE id = ANY($1) ORDER BY id",
+                                       std::vector<std::int64_t>(ids.begin(), ids.end())))
+      rows.push_back(read_row(row, table));
     return rows;
-  }
-
-  std::string setting(std::string_view key) override {
-    const postgres::Rows rows = run("SELECT value FROM setting WHERE key = $1", key);
-    return rows.empty() ? "" : std::string(rows.front().column_text(0));
-  }
-
-  void put_setting(std::string_view key, const std::optional<std::string>& value) override {
-    if (value)
-      run("INSERT INTO setting VALUES ($1, $2)"
-          " ON CONFLICT (key) DO UPDATE SET value = excluded.value",
-          key, *value);
-    else
-      run("DELETE FROM setting WHERE key = $1", key);
   }
 
   std::string served_by() override {
@@ -154,13 +162,6 @@ class PostgresSide : public Side {
                            " FROM run")
                            .front()
                            .column_text(0));
-  }
-
-  bool has_content() override {
-    return run("SELECT EXISTS (SELECT FROM robot) OR EXISTS (SELECT FROM attempt) OR"
-               " EXISTS (SELECT FROM audit) OR EXISTS (SELECT FROM retired_report)")
-               .front()
-               .column_integer(0) != 0;
   }
 
   void in_transaction(const std::function<void()>& write) override {
@@ -215,8 +216,6 @@ class PostgresSide : public Side {
     put_setting(kArrival, std::nullopt);
   }
 
-  void add_audit(const AuditEntry& entry) override { insert_audit(*connection_, entry); }
-
   /// Our tables, and with them that this is one of ours: a move begins anew with the schema.
   void remove_all() override {
     claim_.clear();
@@ -230,22 +229,21 @@ class PostgresSide : public Side {
   }
 
  private:
-  /// What fails says in which store.
-  template <typename... Values>
-  postgres::Rows run(std::string_view sql, const Values&... values) {
-    try {
-      return connection_->query(sql, values...);
-    } catch (const postgres::PostgresError& error) {
-      throw Failure(error.code(), "store '" + name_ + "': " + error.what());
-    }
+  Selection selection_of(const MovedTable& table) const override {
+    const std::string& condition = table.postgres_condition;
+    return {listed(table, table.columns.size()), table.name, condition.empty() ? "TRUE" : condition,
+            table.postgres_light};
+  }
+  postgres::Connection& session() override { return *connection_; }
+  std::optional<Failure> naming_store(const Failure& failure) const override {
+    if (dynamic_cast<const postgres::PostgresError*>(&failure) == nullptr)
+      return std::nullopt;
+    return Failure(failure.code(), "store '" + name_ + "': " + failure.what());
   }
 
-  static std::vector<MovedRow> rows_of(const postgres::Rows& found, const MovedTable& table) {
-    std::vector<MovedRow> rows;
-    rows.reserve(static_cast<std::size_t>(found.size()));
-    for (const postgres::Row row : found)
-      rows.push_back(read_row(row, table));
-    return rows;
+  template <typename... Values>
+  postgres::Rows run(std::string_view sql, const Values&... values) {
+    return named([&] { return connection_->query(sql, values...); });
   }
 
   void in_one(postgres::Transaction::Kind kind, const std::function<void()>& write) {

@@ -1,14 +1,13 @@
-#include "server/store/moving/sqlite_side.hpp"
+#include "server/store/moving/side.hpp"
 
 #include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
-#include "server/store/moving/read_cell.hpp"
-#include "server/store/moving/sqlite_scenes.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
@@ -16,8 +15,6 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/tables/audit.hpp"
-#include "server/store/tables/settings.hpp"
 
 namespace kinship::store::moving {
 namespace {
@@ -38,12 +35,40 @@ std::string selected_columns(const MovedTable& table) {
   return joined_with_commas(columns);
 }
 
-MovedRow read_row(const Statement& row, const MovedTable& table) {
-  MovedRow cells;
-  cells.reserve(table.columns.size());
-  for (int column = 0; column < std::ssize(table.columns); ++column)
-    cells.push_back(read_cell(row, column, table.columns[static_cast<std::size_t>(column)].type));
-  return cells;
+/// Scenes of an SQLite store that were damaged and came again, under a new id, as one each: under
+/// its first id, with the content of the last.
+class SqliteScenes {
+ public:
+  explicit SqliteScenes(Database& database);
+
+  std::int64_t first_of(std::int64_t id) const;
+  std::int64_t last_of(std::int64_t id) const;
+
+ private:
+  std::map<std::int64_t, std::int64_t> replaced_by_;
+  std::map<std::int64_t, std::int64_t> first_;  // of the last ones
+};
+
+SqliteScenes::SqliteScenes(Database& database) {
+  const auto query = database.cached(
+      "SELECT id, replaced_by FROM set_aside WHERE kind = 3 AND replaced_by > id ORDER BY id");
+  while (query->step())
+    replaced_by_[query->column_integer(0)] = query->column_integer(1);
+  for (const auto& [id, next] : replaced_by_)
+    first_.emplace(last_of(id), id);  // by falling age: the first that leads there stays
+}
+
+std::int64_t SqliteScenes::last_of(std::int64_t id) const {
+  // A row is replaced by a later one, so this ends.
+  for (auto next = replaced_by_.find(id); next != replaced_by_.end(); next = replaced_by_.find(id))
+    id = next->second;
+  return id;
+}
+
+std::int64_t SqliteScenes::first_of(std::int64_t id) const {
+  const std::int64_t last = last_of(id);
+  const auto found = first_.find(last);
+  return found == first_.end() ? last : found->second;
 }
 
 void bind_cell(Statement& statement, int index, const Cell& cell, CellType type) {
@@ -98,7 +123,7 @@ class SqliteSide : public Side {
     lock_ = lock_store(file_);
     if (!fs::exists(file_))
       make_empty_store();
-    naming_store([&] {
+    named([&] {
       make_wal_durable(file_);
       database_ = open_migrated(file_, embedded_migrations());
       // What a power cut takes of the last seconds is copied again.
@@ -112,41 +137,16 @@ class SqliteSide : public Side {
   Uuid epoch() override { return Uuid::parse(setting("epoch")).value_or(Uuid{}); }
 
   void in_snapshot(const std::function<void()>& read) override {
-    naming_store([&] {
+    named([&] {
       const Transaction snapshot(*database_, Transaction::Kind::Read);
       read();
     });
   }
 
-  std::vector<MovedRow> all(const MovedTable& table) override {
-    const std::string from = table.sqlite_from.empty() ? table.name : table.sqlite_from;
-    const std::string condition = table.sqlite_condition.empty() ? "TRUE" : table.sqlite_condition;
-    std::vector<MovedRow> rows;
-    naming_store([&] {
-      const auto query = database_->cached("SELECT " + selected_columns(table) + " FROM " + from +
-                                           " WHERE " + condition);
-      while (query->step())
-        rows.push_back(read_row(*query, table));
-    });
-    return rows;
-  }
-
-  MovedRow experience_of(const Pair& pair) override {
-    const MovedTable& table = moved_table("experience");
-    MovedRow row;
-    naming_store([&] {
-      const auto query = database_->cached("SELECT " + selected_columns(table) +
-                                           " FROM experience WHERE task_id = ? AND robot_id = ?");
-      if (query->bind_all(pair.task_id, pair.robot_id).step())
-        row = read_row(*query, table);
-    });
-    return row;
-  }
-
   std::vector<MovedRow> of_ids(const MovedTable& table,
                                std::span<const std::int64_t> ids) override {
     std::vector<MovedRow> rows;
-    naming_store([&] {
+    named([&] {
       const SqliteScenes scenes(*database_);
       const bool is_scene = table.name == "scene";
       const auto query = database_->cached("SELECT " + selected_columns(table) + " FROM " +
@@ -166,28 +166,14 @@ class SqliteSide : public Side {
   }
 
   std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
-    std::vector<LightRow> rows;
-    naming_store([&] {
+    std::vector<LightRow> rows = Side::light(table, pair);
+    if (table.name == "scene") {
       const SqliteScenes scenes(*database_);
-      const auto query = database_->cached(table.sqlite_light);
-      if (table.reading == Reading::ByPair)
-        query->bind_all(pair.task_id, pair.robot_id);
-      while (query->step()) {
-        LightRow& row = rows.emplace_back();
-        for (int column = 0; column < std::ssize(row); ++column)
-          row[static_cast<std::size_t>(column)] = query->column_integer(column);
-        if (table.name == "scene")
-          row[0] = scenes.first_of(row[0]);
-      }
-    });
+      for (LightRow& row : rows)
+        row[0] = scenes.first_of(row[0]);
+    }
     std::ranges::sort(rows);
     return rows;
-  }
-
-  std::string setting(std::string_view key) override { return read_setting(*database_, key); }
-
-  void put_setting(std::string_view key, const std::optional<std::string>& value) override {
-    write_setting(*database_, key, value);
   }
 
   std::string served_by() override {
@@ -209,16 +195,11 @@ class SqliteSide : public Side {
 
   std::string writes_seen() override { return {}; }  // the lock keeps others out
 
-  bool has_content() override {
-    return !setting("epoch").empty() ||
-           database_->integer(
-               "SELECT EXISTS (SELECT 1 FROM robot) OR EXISTS (SELECT 1 FROM attempt) OR"
-               " EXISTS (SELECT 1 FROM audit) OR EXISTS (SELECT 1 FROM retired_report)") != 0;
-  }
+  bool has_content() override { return !setting("epoch").empty() || Side::has_content(); }
 
   void in_transaction(const std::function<void()>& write) override {
     if (is_target_)
-      return naming_store([&] { in_transaction_of(*database_, write); });
+      return named([&] { in_transaction_of(*database_, write); });
     // Of a source only its mark is written, and only while nobody has it open.
     if (!lock_)
       throw Failure(ErrorCode::Unavailable, "store '" + name_ + "': a server has it open");
@@ -233,10 +214,10 @@ class SqliteSide : public Side {
   void in_last_transaction(const std::function<void()>& write) override {
     if (!is_target_)
       return in_transaction(write);
-    naming_store([&] { database_->execute("PRAGMA synchronous = FULL"); });
+    named([&] { database_->execute("PRAGMA synchronous = FULL"); });
     in_transaction(write);
     bool is_whole = false;
-    naming_store([&] { is_whole = checkpoint(*database_, CheckpointKind::Whole); });
+    named([&] { is_whole = checkpoint(*database_, CheckpointKind::Whole); });
     if (!is_whole)
       throw Failure(ErrorCode::Storage,
                     "store '" + name_ + "': another program reads it and keeps its WAL");
@@ -285,8 +266,6 @@ class SqliteSide : public Side {
         " WHERE attempt.report_uuid = path.report_uuid AND attempt.path_id = path.id)");
   }
 
-  void add_audit(const AuditEntry& entry) override { insert_audit(*database_, entry); }
-
   void remove_all() override {
     database_.reset();
     for (const char* const companion : kCompanions)
@@ -309,23 +288,27 @@ class SqliteSide : public Side {
     transaction.commit();
   }
 
-  template <typename Read>
-  void naming_store(Read read) const {
-    try {
-      read();
-    } catch (const SqliteError& error) {
-      throw Failure(ErrorCode::Storage,
-                    "store '" + name_ + "': " + error.what() +
-                        (error.is_damage() ? "; a part of it is damaged and cannot be moved: stop "
+  Selection selection_of(const MovedTable& table) const override {
+    const std::string& condition = table.sqlite_condition;
+    return {selected_columns(table), table.sqlite_from.empty() ? table.name : table.sqlite_from,
+            condition.empty() ? "TRUE" : condition, table.sqlite_light};
+  }
+  Database& session() override { return *database_; }
+  std::optional<Failure> naming_store(const Failure& failure) const override {
+    const auto* const error = dynamic_cast<const SqliteError*>(&failure);
+    if (error == nullptr)
+      return std::nullopt;
+    return Failure(ErrorCode::Storage,
+                   "store '" + name_ + "': " + error->what() +
+                       (error->is_damage() ? "; a part of it is damaged and cannot be moved: stop "
                                              "its server, 'kinshipd repair --store " +
                                                  name_ + "', then go on"
                                            : ""));
-    }
   }
 
   /// Whole or not at all: who goes on after a full disk finds no half of a schema.
   void make_empty_store() const {
-    naming_store([&] {
+    named([&] {
       files::NewFile file(file_, kNewDatabase);
       checkpoint(*open_migrated(file.part(), embedded_migrations()), CheckpointKind::Whole);
       file.publish();

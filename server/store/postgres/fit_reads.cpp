@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/tables/experience.hpp"
 
 namespace kinship::store::postgres {
 namespace {

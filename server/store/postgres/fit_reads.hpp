@@ -17,9 +17,8 @@
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/replica.hpp"
-#include "server/store/postgres/rows/path_rows.hpp"
-#include "server/store/postgres/rows/scene_rows.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
 
 namespace kinship::store::postgres {
 

@@ -10,28 +10,26 @@
 #include "proto/types/names.hpp"
 #include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
-#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/durable_writes.hpp"
 #include "server/store/postgres/fit_reads.hpp"
-#include "server/store/postgres/opening/begin_store.hpp"
 #include "server/store/postgres/opening/history.hpp"
+#include "server/store/postgres/opening/opening.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/presence.hpp"
 #include "server/store/postgres/report_writer.hpp"
-#include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/postgres/rows/arrivals.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
 #include "server/store/postgres/rows/fit_lease_rows.hpp"
 #include "server/store/postgres/rows/listings.hpp"
-#include "server/store/postgres/rows/path_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
-#include "server/store/postgres/rows/robot_removal.hpp"
-#include "server/store/postgres/rows/scene_rows.hpp"
-#include "server/store/postgres/rows/shared_rows.hpp"
-#include "server/store/postgres/rows/store_totals.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/contents.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
+#include "server/store/tables/retirement.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
+#include "server/store/tables/tasks.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -138,25 +136,11 @@ class PostgresStore : public Store {
 
   Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
                                     const AuditEntry* audit) override {
-    RemovedRobot removed;
-    while (true) {
-      // What a transaction that is undone has counted is not counted.
-      RemovedRobot next;
-      const Result<bool> is_out = writes_.write([&](Connection& connection) {
-        next = removed;
-        return continue_removal(connection, robot, next, audit);
+    return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
+      return writes_.write([&](Connection& connection) {
+        return continue_removal(connection, robot, removed, retirement_in(connection), audit);
       });
-      if (!is_out)
-        return is_out.error();
-      removed = std::move(next);
-      if (*is_out)
-        return removed;
-      if (stop.stop_requested())
-        return Error{ErrorCode::Unavailable, "robot " + robot.short_hex() +
-                                                 ": the server is stopping after " +
-                                                 std::to_string(removed.removal.paths) +
-                                                 " paths were retired; ask again for the rest"};
-    }
+    });
   }
 
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
@@ -198,8 +182,7 @@ class PostgresStore : public Store {
   SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
     SharedRead read = readers_.read_snapshot(
         [&](Connection& connection) { return select_shared(connection, reports, max_bytes); });
-    set_aside_later(
-        {.paths = std::move(read.damaged_paths), .scenes = std::move(read.damaged_scenes)});
+    set_aside_later(std::move(read.damaged));
     return std::move(read.found);
   }
 
@@ -234,11 +217,8 @@ class PostgresStore : public Store {
 
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
-    constexpr std::size_t kMaxPaths = 1'000'000;
-    PathRange bounded = range;
-    bounded.limit = std::min(range.limit, kMaxPaths);
-    PathsRead read = fit_reads_.paths(robot, task, bounded);
-    set_aside_later({.paths = std::move(read.damaged), .scenes = {}});
+    PathsRead read = fit_reads_.paths(robot, task, range);
+    set_aside_later({.paths = std::move(read.damaged)});
     return std::move(read.paths);
   }
 
@@ -250,7 +230,7 @@ class PostgresStore : public Store {
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     SceneRead read = fit_reads_.scene(scene_id);
     if (read.damaged)
-      set_aside_later({.paths = {}, .scenes = {scene_id}});
+      set_aside_later({.scenes = {scene_id}});
     return std::move(read.scene);
   }
 
@@ -266,23 +246,11 @@ class PostgresStore : public Store {
         writes_.write([&](Connection& connection) { return begin_reset(connection, task, audit); });
     if (!reset)
       return reset.error();
-    Retirement retired;
-    retired.task = task;
-    while (true) {
-      Retirement next;
-      const bool goes_on = writes_.write([&](Connection& connection) {
-        next = retired;
-        return continue_reset(connection, *reset, next, audit);
+    return reset_in_steps(task, stop, [&](const Retirement& retired) {
+      return writes_.write([&](Connection& connection) {
+        return continue_reset(connection, *reset, retired, retirement_in(connection), audit);
       });
-      retired = std::move(next);
-      if (!goes_on)
-        return retired;
-      if (stop.stop_requested())
-        return Error{ErrorCode::Unavailable, "task '" + retired.task +
-                                                 "': the server is stopping after " +
-                                                 std::to_string(retired.paths) +
-                                                 " paths were retired; ask again for the others"};
-    }
+    });
   }
 
   AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
@@ -365,7 +333,7 @@ class PostgresStore : public Store {
   }
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
-    DamageNoticed noticed;
+    DamagedRows noticed;
     std::optional<Attempt> attempt = readers_.read_snapshot([&](Connection& connection) {
       noticed = {};
       return postgres::find_attempt(connection, report_uuid, noticed);
@@ -377,7 +345,7 @@ class PostgresStore : public Store {
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                 std::string_view cursor, std::size_t limit,
                                 std::size_t max_bytes) const override {
-    DamageNoticed noticed;
+    DamagedRows noticed;
     Page<Attempt> page = readers_.read_snapshot([&](Connection& connection) {
       noticed = {};
       return export_page(connection, {robot, task}, cursor, limit, max_bytes, noticed);
@@ -427,14 +395,11 @@ class PostgresStore : public Store {
     writer_->submit(std::move(item));
   }
 
-  void set_aside_later(DamageNoticed noticed) const {
+  void set_aside_later(DamagedRows noticed) const {
     if (noticed.paths.empty() && noticed.scenes.empty())
       return;
-    write_later([noticed = std::move(noticed)](Connection& connection) {
-      set_aside_paths(connection, noticed.paths);
-      for (const std::int64_t scene : noticed.scenes)
-        set_aside_scene(connection, scene);
-    });
+    write_later(
+        [noticed = std::move(noticed)](Connection& connection) { set_aside(connection, noticed); });
   }
 
   /// What the database says, or said last.

@@ -5,9 +5,8 @@
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
-#include "server/store/postgres/rows/batch_reading.hpp"
-#include "server/store/postgres/rows/batch_writing.hpp"
-#include "server/store/postgres/rows/shared_rows.hpp"
+#include "server/store/postgres/rows/batch.hpp"
+#include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store::postgres {

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/store/postgres/database/interrupt.hpp"
+#include "server/store/postgres/database/connection.hpp"
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/report_queue.hpp"

@@ -1,14 +1,26 @@
 #include "server/store/rules/report_resolver.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <string>
 #include <utility>
 
-#include "server/store/values/receipt_texts.hpp"
+#include "proto/types/conversations.hpp"
 
 namespace kinship::store {
 namespace {
+
+/// Refused, and why.
+Receipt refused(const Uuid& report_uuid, const std::string& why) {
+  return {report_uuid, ReceiptStatus::Refused, "attempt " + report_uuid.text() + ": " + why};
+}
+
+/// Why a report's path was not kept.
+std::string beyond_cap_text(std::uint64_t max_paths) {
+  return "recorded, but its path is not kept: its robot and task have " +
+         std::to_string(max_paths) + " paths, the most that are kept (--max-paths-per-pair)";
+}
 
 /// What became of an attempt's path.
 struct AttemptPath {

@@ -42,6 +42,24 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
 
 }  // namespace
 
+void DamagedReports::note(const Uuid& report_uuid, const std::string& why, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (reports_.size() >= kMaxReports)
+    reports_.clear();
+  reports_[report_uuid] = {why, now + kRemembered};
+}
+
+std::optional<std::string> DamagedReports::find(const Uuid& report_uuid, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  const auto found = reports_.find(report_uuid);
+  if (found == reports_.end())
+    return std::nullopt;
+  if (now < found->second.until)
+    return found->second.why;
+  reports_.erase(found);
+  return std::nullopt;
+}
+
 ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
                        Store::ReportsDone done, std::uint64_t max_paths)
     : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {

@@ -1,18 +1,47 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "server/store/sqlite/damaged_reports.hpp"
+#include "proto/types/uuid.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/opening/history.hpp"
+#include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/store.hpp"
 #include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
+
+/// The reports that could not be written because of damage, and why. Their clients send them again
+/// and again: for a while they are answered without a look at the disk, and without a second try of
+/// the batch that they came with. May be shared between threads.
+class DamagedReports {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  void note(const Uuid& report_uuid, const std::string& why, Clock::time_point now = Clock::now());
+  /// Why it could not be written; nothing if that is long ago.
+  std::optional<std::string> find(const Uuid& report_uuid, Clock::time_point now = Clock::now());
+
+  static constexpr std::chrono::seconds kRemembered{10};
+  static constexpr std::size_t kMaxReports = 4096;  ///< beyond it the memory begins anew
+
+ private:
+  struct Noted {
+    std::string why;
+    Clock::time_point until;
+  };
+  std::mutex mutex_;
+  std::map<Uuid, Noted> reports_;  // guarded by mutex_
+};
 
 /// A client's batch of attempts on its way through the writer. One bad attempt is refused alone.
 class ReportItem : public WriteItem {
@@ -50,6 +79,26 @@ class ReportItem : public WriteItem {
   std::size_t bytes_ = 0;
   std::uint64_t max_paths_ = 0;
   Store::ReportsDone done_;
+};
+
+/// Sets aside what a reader found damaged; if it fails, the next reader finds it again.
+class DamageItem : public WriteItem {
+ public:
+  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
+      : kind_(kind), rows_(std::move(rows)) {}
+
+  void apply(Batch& batch) override {
+    if (kind_ == AsideKind::Path)
+      set_aside(batch, rows_);
+    else
+      for (const std::int64_t row : rows_)
+        put_aside(batch.database(), kind_, row);
+  }
+  void finish(const Error* /*error*/) override {}
+
+ private:
+  AsideKind kind_;
+  std::vector<std::int64_t> rows_;
 };
 
 }  // namespace kinship::store

@@ -9,47 +9,36 @@
 #include <utility>
 
 #include "proto/types/names.hpp"
-#include "server/store/sqlite/damage_item.hpp"
-#include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/files/disk_space.hpp"
-#include "server/store/sqlite/files/library_version.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/report_room.hpp"
-#include "server/store/sqlite/rows/attempt_rows.hpp"
-#include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
-#include "server/store/sqlite/rows/robot_removal.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
-#include "server/store/sqlite/rows/shared_rows.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
+#include "server/store/tables/retirement.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
+#include "server/store/tables/tasks.hpp"
 
 namespace kinship::store {
 namespace {
-
-/// For what is made of many transactions.
-Error stopped_after(std::uint64_t paths, const std::string& what) {
-  return {ErrorCode::Unavailable, what + ": the server is stopping after " + std::to_string(paths) +
-                                      " paths were retired; ask again for the others"};
-}
 
 class SqliteStore : public Store {
  public:
@@ -135,22 +124,11 @@ class SqliteStore : public Store {
 
   Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
                                     const AuditEntry* audit) override {
-    RemovedRobot removed;
-    while (true) {
-      // What a transaction that is undone has counted is not counted.
-      RemovedRobot next;
-      const Result<bool> is_out = write([&](Batch& batch) {
-        next = removed;
-        return continue_removal(batch, robot, next, audit);
+    return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
+      return write([&](Batch& batch) {
+        return continue_removal(batch.database(), robot, removed, retirement_in(batch), audit);
       });
-      if (!is_out)
-        return is_out.error();
-      removed = std::move(next);
-      if (*is_out)
-        return removed;
-      if (stop.stop_requested())
-        return stopped_after(removed.removal.paths, "robot " + robot.short_hex());
-    }
+    });
   }
 
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
@@ -230,24 +208,18 @@ class SqliteStore : public Store {
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
-    if (!key)
-      return {};
-    constexpr std::size_t kMaxPaths = 1'000'000;
-    return undamaged(select_paths(
-        *reader, *key, {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms}));
+    return undamaged(select_paths(*reader, robot, task, range));
   }
 
   std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
                                      std::uint64_t /*generation*/) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
-    return key ? select_path_ids(*reader, *key) : std::vector<std::int64_t>();
+    return select_path_ids(*reader, robot, task);
   }
 
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return undamaged(select_scene(*reader, scene_id), scene_id);
+    return undamaged(select_current_scene(*reader, scene_id), scene_id);
   }
 
   Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
@@ -260,12 +232,11 @@ class SqliteStore : public Store {
         write([&](Batch& batch) { return begin_reset(batch.database(), task, audit); });
     if (!reset)
       return reset.error();
-    Retirement retired;
-    retired.task = task;
-    while (write([&](Batch& batch) { return continue_reset(batch, *reset, retired, audit); }))
-      if (stop.stop_requested())
-        return stopped_after(retired.paths, "task '" + retired.task + "'");
-    return retired;
+    return reset_in_steps(task, stop, [&](const Retirement& retired) {
+      return write([&](Batch& batch) {
+        return continue_reset(batch.database(), *reset, retired, retirement_in(batch), audit);
+      });
+    });
   }
 
   AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
@@ -324,40 +295,32 @@ class SqliteStore : public Store {
   Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                std::string_view cursor, std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return page_of_paths(*reader, robot, task, cursor, limit);
+    return page_of_paths(*reader, {robot, task}, cursor, limit);
   }
 
   Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot, std::string_view task,
                                      std::string_view cursor, std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return page_of_attempts(*reader, robot, task, cursor, limit);
+    return page_of_attempts(*reader, {robot, task}, cursor, limit);
   }
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    const ReportRows report = find_report(*reader, report_uuid);
-    if (!report.row && report.damaged.empty())
+    DamagedRows damaged;
+    Result<Attempt> attempt = store::find_attempt(*reader, report_uuid, damaged);
+    set_aside_later(std::move(damaged));
+    if (attempt)
+      return std::move(attempt).value();
+    if (attempt.error().code == ErrorCode::NotFound)
       return std::nullopt;
-    std::optional<AttemptRow> row = select_named(*reader, report.row);
-    if (!row) {
-      if (report.row)
-        set_aside_later(AsideKind::Attempt, {*report.row});
-      throw Failure(ErrorCode::Storage, "report " + report_uuid.text() +
-                                            ": its row is damaged; report it again to mend it");
-    }
-    if (row->path_id)
-      for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
-        row->attempt.path = std::move(stored.path);
-    if (row->scene_id)
-      row->attempt.scene = undamaged(select_scene(*reader, *row->scene_id), *row->scene_id);
-    return std::move(row->attempt);
+    throw Failure(attempt.error());
   }
 
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                 std::string_view cursor, std::size_t limit,
                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
+    ExportRead read = export_page(*reader, {robot, task}, cursor, limit, max_bytes);
     set_aside_later(std::move(read.damaged));
     return std::move(read.page);
   }
@@ -366,7 +329,7 @@ class SqliteStore : public Store {
                                                std::string_view task, std::string_view cursor,
                                                std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    return page_of_distributions(*reader, robot, task, cursor, limit);
+    return page_of_distributions(*reader, {robot, task}, cursor, limit);
   }
 
   Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,

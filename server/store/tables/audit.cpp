@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/tables/read_page.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/summary_columns.hpp"

@@ -3,9 +3,11 @@
 #include <utility>
 
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/mesh_solids_blob.hpp"
 #include "server/store/values/robot_columns.hpp"
+#include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
 namespace {
@@ -255,6 +257,27 @@ RobotsRead select_robots(Session& session) {
       read.damaged.emplace_back(row.column_text(1));
   }
   return read;
+}
+
+Page<RobotSummary> page_of_robots(Session& session, std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  return read_page<RobotSummary>(
+      // Without base link: a repair of SQLite knew its name alone.
+      session.query("SELECT " + std::string(kRobotSummaryColumns) +
+                        "FROM robot WHERE label > $1 AND base_link <> ''"
+                        " AND label NOT LIKE 'removed %' ORDER BY label LIMIT $2",
+                    cursor, rows + 1),
+      rows, read_robot_summary<Row>,
+      [](const Row& row) { return std::string(row.column_text(1)); });
+}
+
+std::map<std::int64_t, RobotName> select_robot_names(Session& session) {
+  std::map<std::int64_t, RobotName> names;
+  for (const Row& row : session.query("SELECT id, digest FROM robot ORDER BY digest"))
+    names[row.column_integer(0)].digest = id_of<Digest>(row.column_blob(1));
+  for (const Row& row : session.query("SELECT id, label FROM robot ORDER BY label"))
+    names[row.column_integer(0)].label = row.column_text(1);
+  return names;
 }
 
 }  // namespace kinship::store

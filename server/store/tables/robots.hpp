@@ -54,4 +54,16 @@ struct RobotsRead {
 };
 RobotsRead select_robots(Session& session);
 
+/// By label, without removed ones. \param cursor  the label of the last robot shown.
+Page<RobotSummary> page_of_robots(Session& session, std::string_view cursor, std::size_t limit);
+
+/// What a robot is called.
+struct RobotName {
+  Digest digest;
+  std::string label;
+};
+/// Of all robots, removed ones too, by their internal ids. From indexes: a damaged row has its
+/// name.
+std::map<std::int64_t, RobotName> select_robot_names(Session& session);
+
 }  // namespace kinship::store

@@ -1,6 +1,50 @@
 #include "server/store/tables/tasks.hpp"
 
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/tables/pages.hpp"
+#include "server/store/tables/robots.hpp"
+#include "server/store/values/robot_columns.hpp"
+#include "server/store/values/summary_columns.hpp"
+
 namespace kinship::store {
+namespace {
+
+/// The robots of some tasks, without removed ones, by task.
+/// \param which  a condition on table task.
+std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
+    Session& session, const std::string& which, std::span<const Parameter> parameters) {
+  constexpr int kRobot = 0, kTask = 11;
+  const std::map<std::int64_t, RobotName> names = select_robot_names(session);
+  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots;
+  for (const Row& row : session.query_with(
+           "SELECT " + std::string(kTaskRobotColumns) +
+               ", task_id FROM experience WHERE task_id IN (SELECT id FROM task WHERE " + which +
+               ")",
+           parameters))
+    if (const auto name = names.find(row.column_integer(kRobot));
+        name != names.end() && !is_removed_label(name->second.label))
+      robots[row.column_integer(kTask)].push_back(
+          read_task_robot(row, name->second.digest, name->second.label));
+  return robots;
+}
+
+Page<TaskSummary> read_tasks(Session& session, const std::string& which,
+                             std::span<const Parameter> parameters, std::int64_t limit) {
+  auto robots = robots_of_tasks(session, which, parameters);
+  return read_page<TaskSummary>(
+      session.query_with("SELECT id, name FROM task WHERE " + which, parameters), limit,
+      [&](const Row& task) {
+        return summary_of(task.column_text(1), std::move(robots[task.column_integer(0)]));
+      },
+      [](const Row& task) { return std::string(task.column_text(1)); });
+}
+
+}  // namespace
 
 std::int64_t ensure_task(Session& session, std::string_view task) {
   constexpr std::string_view kFind = "SELECT id FROM task WHERE name = $1";
@@ -8,6 +52,19 @@ std::int64_t ensure_task(Session& session, std::string_view task) {
     return *id;
   session.query("INSERT INTO task (name) VALUES ($1) ON CONFLICT (name) DO NOTHING", task);
   return session.find_integer(kFind, task).value();
+}
+
+Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  return read_tasks(session, "name > $1 ORDER BY name LIMIT $2",
+                    std::array{Parameter(cursor), Parameter(rows + 1)}, rows);
+}
+
+std::optional<TaskSummary> summary_of_task(Session& session, std::string_view task) {
+  Page<TaskSummary> page = read_tasks(session, "name = $1", std::array{Parameter(task)}, 1);
+  if (page.rows.empty())
+    return std::nullopt;
+  return std::move(page.rows.front());
 }
 
 }  // namespace kinship::store

@@ -1,12 +1,22 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
-#include "server/store/values/history_point.hpp"
+#include "proto/types/uuid.hpp"
 
 namespace kinship::store {
+
+/// A point of a store's history: the run that wrote it, and how far that had come by then. What
+/// the position counts is the engine's.
+struct HistoryPoint {
+  Uuid run;
+  std::uint64_t position = 0;
+
+  bool operator==(const HistoryPoint&) const = default;
+};
 
 /// Of a new store: 244 random bits.
 Digest random_key();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -15,5 +16,21 @@ inline constexpr std::string_view kMovedTo = "moved_to";        ///< where its c
 /// \throws Failure(Unavailable) that says what to do, if either is there.
 void refuse_moving_store(const std::string& name, const std::string& moving_from,
                          const std::string& moved_to);
+
+inline constexpr const char* kHowToCarryOver =
+    "; serve it with the program that wrote it, 'kinship paths export' there and 'kinship paths "
+    "import' into a new store";
+
+/// "2; this binary knows up to 1; ...", after "has schema".
+inline std::string newer_schema(std::int64_t version, std::int64_t newest) {
+  return std::to_string(version) + "; this binary knows up to " + std::to_string(newest) +
+         kHowToCarryOver;
+}
+
+/// After "was made by".
+inline std::string another_migration(std::int64_t version) {
+  return "another text of migration " + std::to_string(version) + " than this binary has" +
+         kHowToCarryOver;
+}
 
 }  // namespace kinship::store

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "proto/types/recorded_scene.hpp"
 #include "server/store/values/bytes.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 
@@ -31,5 +33,24 @@ std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encodi
 /// The checksum of a scene's row. The content's digest is under it: a scene that stands under
 /// another's digest would be taken for it.
 std::uint32_t scene_crc(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene);
+
+inline constexpr std::string_view kSceneColumns =
+    "id, content_sha256, size, encoding, crc32c, scene ";
+
+/// \param row  of kSceneColumns.
+template <Columns Row>
+bool has_right_scene_crc(const Row& row) {
+  return scene_crc(row.column_blob(1), row.column_integer(2), row.column_integer(3),
+                   row.column_blob(5)) == row.column_integer(4);
+}
+
+/// Nothing if it is damaged.
+/// \param row  of kSceneColumns.
+template <Columns Row>
+std::optional<RecordedScene> read_scene_columns(const Row& row) {
+  if (!has_right_scene_crc(row))
+    return std::nullopt;
+  return decode_scene(row.column_integer(2), row.column_integer(3), row.column_blob(5));
+}
 
 }  // namespace kinship::store

@@ -2,11 +2,14 @@
 
 #include <libpq-fe.h>
 #include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 
@@ -48,6 +51,7 @@ class AnswerRow final : public store::Row {
  public:
   explicit AnswerRow(Rows rows) : rows_(std::move(rows)) {}
   bool next() override { return ++row_ < rows_.size(); }
+  int columns() const noexcept override { return rows_.columns(); }
   std::int64_t column_integer(int column) const override {
     return rows_[row_].column_integer(column);
   }
@@ -66,6 +70,20 @@ class AnswerRow final : public store::Row {
 };
 
 }  // namespace
+
+Interrupt::Interrupt() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (descriptor_ < 0)
+    throw Failure(ErrorCode::Internal, "no descriptor is left for an eventfd");
+}
+
+Interrupt::~Interrupt() { close(descriptor_); }
+
+bool Interrupt::is_raised() const noexcept {
+  pollfd waited{.fd = descriptor_, .events = POLLIN, .revents = 0};
+  return poll(&waited, 1, 0) > 0;
+}
+
+void Interrupt::raise() noexcept { static_cast<void>(eventfd_write(descriptor_, 1)); }
 
 Connection::Connection(const ConnectionString& where, const ConnectionOptions& options)
     : where_(where), options_(options) {
@@ -131,10 +149,14 @@ const Dialect& Connection::dialect() const noexcept {
       // SHARE, go on with the other robots.
       .lock_robots = "LOCK TABLE robot IN SHARE ROW EXCLUSIVE MODE",
       .for_update = " FOR UPDATE",
+      .lock_experience = " FOR NO KEY UPDATE",
       .mark_changed = ", changed_in = pg_current_xact_id()",
       .note_gone_robot =
           "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
           " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
+      .newest_attempts_first = "arrived_in DESC, id DESC",
+      .is_quarantined_path = "(path.damaged_ms IS NOT NULL)",
+      .is_quarantined_scene = "(scene.damaged_ms IS NOT NULL)",
       .is_quarantined_distribution = "FALSE"};
   return kDialect;
 }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "server/store/postgres/database/connection_string.hpp"
-#include "server/store/postgres/database/interrupt.hpp"
 #include "server/store/postgres/database/parameters.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/rows.hpp"
@@ -20,6 +19,24 @@
 struct pg_conn;
 
 namespace kinship::store::postgres {
+
+/// Ends what waits for a database: once raised, every wait of the connections that were given it
+/// ends at once. May be shared between threads.
+class Interrupt {
+ public:
+  /// \throws Failure(Internal) if the system has no descriptor left.
+  Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+  ~Interrupt();
+
+  void raise() noexcept;
+  bool is_raised() const noexcept;
+  int descriptor() const noexcept { return descriptor_; }  ///< readable once it is raised
+
+ private:
+  int descriptor_;
+};
 
 /// A statement with its parameters.
 struct Request {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "server/store/postgres/database/postgres_error.hpp"
-#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/tables/settings.hpp"

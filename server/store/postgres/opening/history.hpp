@@ -8,7 +8,7 @@
 
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
-#include "server/store/values/history_point.hpp"
+#include "server/store/values/history_seal.hpp"
 
 namespace kinship::store::postgres {
 

@@ -9,7 +9,7 @@
 #include "server/store/tables/audit.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
-#include "server/store/values/schema_texts.hpp"
+#include "server/store/values/move_marks.hpp"
 
 namespace kinship::store::postgres {
 namespace {

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "server/store/postgres/database/postgres_error.hpp"
-#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/opening/opening.hpp"
 
 namespace kinship::store::postgres {

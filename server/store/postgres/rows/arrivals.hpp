@@ -3,14 +3,16 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/pair_filter.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// Attempts in the order in which their transactions began. Several servers commit at once, so an
 /// attempt may become visible behind one that was seen before; it cannot any more where every
@@ -39,14 +41,27 @@ struct ArrivedAttempt {
   std::size_t waypoint_bytes = 0;            ///< of its path, 8 a waypoint and joint
   std::optional<std::int64_t> scene_id = {};
   bool is_robot_removed = false;
+  // Where it was asked for by its report:
+  Digest body = {};
+  bool is_retired = false;
+  std::size_t scene_bytes = 0;
 };
 
 /// The next ones of some robots and tasks, at most `count`.
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFilter& filter,
                                            const Arrival& after, std::int64_t count);
 
-/// Nothing if it is not known.
-std::optional<ArrivedAttempt> select_arrived(Connection& connection, const Uuid& report_uuid);
+/// Those of some reports that are known, in no order.
+std::vector<ArrivedAttempt> select_arrived(Connection& connection, std::span<const Uuid> reports);
+std::set<Uuid> select_known(Connection& connection, std::span<const Uuid> reports);
+std::vector<Bytes> bytes_of(std::span<const Uuid> reports);
+
+/// Reports as another store is told of them, see Store. A feed ends before the first transaction
+/// that is still open: nothing becomes visible behind a cursor that was given.
+/// \throws Failure(InvalidInput) for a cursor of something else.
+Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view task,
+                                     std::string_view cursor, std::size_t limit);
+Feed<Uuid> feed_of_retirements(Connection& connection, std::string_view cursor, std::size_t limit);
 
 /// Fills a page with attempts as they arrived, so that the cursor behind it misses none: where a
 /// page follows it ends before what is not settled. Only where more than a page is not settled,

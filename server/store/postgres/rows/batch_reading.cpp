@@ -1,9 +1,9 @@
-#include "server/store/postgres/rows/batch_reading.hpp"
+#include "server/store/postgres/rows/batch.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "server/store/postgres/rows/shared_rows.hpp"
+#include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/path_content.hpp"
 #include "server/store/values/robot_columns.hpp"

@@ -1,4 +1,4 @@
-#include "server/store/postgres/rows/batch_writing.hpp"
+#include "server/store/postgres/rows/batch.hpp"
 
 #include <deque>
 #include <string>

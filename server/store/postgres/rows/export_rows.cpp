@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "server/store/postgres/rows/arrivals.hpp"
-#include "server/store/values/pages.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/path_content.hpp"
-#include "server/store/values/scene_columns.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 /// Paths and scenes by their ids, each read once.
 class Contents {
  public:
-  Contents(Connection& connection, DamageNoticed& noticed)
+  Contents(Connection& connection, DamagedRows& noticed)
       : connection_(&connection), noticed_(&noticed) {}
 
   /// Reads what these attempts name, in place of the paths that were read before.
@@ -71,7 +71,7 @@ class Contents {
   }
 
   Connection* connection_;
-  DamageNoticed* noticed_;
+  DamagedRows* noticed_;
   std::map<std::int64_t, Path> paths_;
   std::map<std::int64_t, RecordedScene> scenes_;
 };
@@ -93,7 +93,7 @@ std::size_t size_of_portion(std::span<const ArrivedAttempt> attempts, std::size_
 /// An export as it grows.
 class Export {
  public:
-  Export(Connection& connection, std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed)
+  Export(Connection& connection, std::size_t limit, std::size_t max_bytes, DamagedRows& noticed)
       : contents_(connection, noticed),
         page_(static_cast<std::int64_t>(std::max<std::size_t>(limit, 1))),
         max_bytes_(max_bytes) {}
@@ -160,17 +160,18 @@ Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& 
 }
 
 std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_uuid,
-                                    DamageNoticed& noticed) {
-  std::optional<ArrivedAttempt> arrived = select_arrived(connection, report_uuid);
-  if (!arrived)
+                                    DamagedRows& noticed) {
+  const std::vector<ArrivedAttempt> arrived =
+      select_arrived(connection, std::span(&report_uuid, 1));
+  if (arrived.empty())
     return std::nullopt;
   Contents contents(connection, noticed);
-  contents.read(std::span(&*arrived, 1));
-  return contents.whole(std::move(*arrived));
+  contents.read(arrived);
+  return contents.whole(arrived.front());
 }
 
 Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
-                          std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed) {
+                          std::size_t limit, std::size_t max_bytes, DamagedRows& noticed) {
   constexpr std::int64_t kCandidates = 256;
   Arrival last = parse_arrival_cursor(cursor);
   Export exported(connection, limit, max_bytes, noticed);
@@ -183,6 +184,36 @@ Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std:
     if (!exported.add(next))
       return exported.page().full();
   }
+}
+
+SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
+                         std::size_t max_bytes) {
+  std::map<Uuid, ArrivedAttempt> known;
+  for (ArrivedAttempt& arrived : select_arrived(connection, reports))
+    if (!arrived.is_robot_removed)
+      known.emplace(arrived.attempt.report_uuid, std::move(arrived));
+  SharedRead read;
+  std::vector<ArrivedAttempt> taken;
+  std::size_t bytes = 0;
+  for (const Uuid& report : reports) {
+    if (read.found.looked_at > 0 && bytes > max_bytes)
+      break;
+    ++read.found.looked_at;
+    const auto found = known.find(report);
+    if (found == known.end())
+      continue;
+    bytes += found->second.waypoint_bytes + found->second.scene_bytes;
+    taken.push_back(found->second);
+  }
+  Contents contents(connection, read.damaged);
+  contents.read(taken);
+  for (const ArrivedAttempt& arrived : taken) {
+    SharedReport shared{contents.whole(arrived), arrived.body, arrived.received_ms,
+                        arrived.is_retired};
+    if (shared.attempt.path.has_value() == (shared.attempt.record.outcome == Outcome::Solved))
+      read.found.reports.push_back(std::move(shared));
+  }
+  return read;
 }
 
 }  // namespace kinship::store::postgres

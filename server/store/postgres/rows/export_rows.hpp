@@ -2,21 +2,17 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/pair_filter.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// Whole attempts, with their paths and scenes. All of it reads one snapshot.
 namespace kinship::store::postgres {
-
-/// What was found damaged on the way, and was not set aside yet.
-struct DamageNoticed {
-  std::vector<std::int64_t> paths;
-  std::vector<std::int64_t> scenes;
-};
 
 /// As Store::list_attempts() says.
 Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& filter,
@@ -24,11 +20,15 @@ Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& 
 
 /// As Store::find_attempt() says.
 std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_uuid,
-                                    DamageNoticed& noticed);
+                                    DamagedRows& noticed);
 
 /// As Store::export_attempts() says. What was acknowledged before its last page was read is in an
 /// export; see ArrivalPage.
 Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
-                          std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed);
+                          std::size_t limit, std::size_t max_bytes, DamagedRows& noticed);
+
+/// As Store::read_reports() says.
+SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
+                         std::size_t max_bytes);
 
 }  // namespace kinship::store::postgres

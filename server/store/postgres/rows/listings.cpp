@@ -1,63 +1,20 @@
 #include "server/store/postgres/rows/listings.hpp"
 
-#include <map>
+#include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "server/store/values/pages.hpp"
-#include "server/store/values/robot_columns.hpp"
+#include "server/store/tables/pages.hpp"
+#include "server/store/values/audit_texts.hpp"
+#include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store::postgres {
 namespace {
 
-/// A page of the first rows of a statement that gives one more.
-/// \param read       makes an entry of a row.
-/// \param cursor_of  the cursor that continues after it.
-template <typename Entry, typename Read, typename CursorOf>
-Page<Entry> page_of(const Rows& rows, std::int64_t limit, Read read, CursorOf cursor_of) {
-  PageFiller<Entry> page(limit);
-  for (const Row row : rows)
-    if (!page.add(read(row), cursor_of(row)))
-      break;
-  return page.take();
-}
-
-/// The robots of these tasks, by task.
-std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
-    Connection& connection, const std::vector<std::int64_t>& task_ids) {
-  constexpr int kDigest = 11, kLabel = 12, kTask = 13;
-  const Rows rows = connection.query(
-      "SELECT " + std::string(kTaskRobotColumns) +
-          ", digest, label, task_id FROM experience JOIN robot ON robot.id = robot_id "
-          "WHERE task_id = ANY ($1)",
-      task_ids);
-  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots;
-  for (const Row row : rows)
-    if (const std::string_view label = row.column_text(kLabel); !is_removed_label(label))
-      robots[row.column_integer(kTask)].push_back(
-          read_task_robot(row, id_of<Digest>(row.column_blob(kDigest)), label));
-  return robots;
-}
-
-/// \param tasks  ids and names.
-Page<TaskSummary> read_tasks(Connection& connection, const Rows& tasks, std::int64_t limit) {
-  std::vector<std::int64_t> ids;
-  for (const Row task : tasks)
-    ids.push_back(task.column_integer(0));
-  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots = robots_of_tasks(connection, ids);
-  return page_of<TaskSummary>(
-      tasks, limit,
-      [&](const Row& task) {
-        return summary_of(task.column_text(1), std::move(robots[task.column_integer(0)]));
-      },
-      [](const Row& task) { return std::string(task.column_text(1)); });
-}
-
 /// The ids of the newest paths before $1, at most $2: of all along the table; of some robots and
 /// tasks each brings its own, read from its indexes.
-std::string newest_paths(const PairFilter& filter, Parameters& parameters) {
+std::string newest_paths(const PairFilter& filter, std::vector<Parameter>& parameters) {
   if (filter.is_empty())
     return "SELECT id FROM path WHERE id < $1 AND damaged_ms IS NULL ORDER BY id DESC LIMIT $2";
   const std::string of_pair =
@@ -72,7 +29,7 @@ std::string newest_paths(const PairFilter& filter, Parameters& parameters) {
 
 /// The same of distributions. In the order of one index alone, so that no other one is read to its
 /// end for what is not there: the rows below, of which those of others are left out.
-std::string newest_distributions(const PairFilter& filter, Parameters& parameters) {
+std::string newest_distributions(const PairFilter& filter, std::vector<Parameter>& parameters) {
   std::string columns, ids, falling, are_asked_for;
   for (const PairFilter::Column& column : filter.columns(parameters)) {
     columns += column.name + ", ";
@@ -85,74 +42,92 @@ std::string newest_distributions(const PairFilter& filter, Parameters& parameter
          are_asked_for;
 }
 
+constexpr std::string_view kCounts =
+    "SELECT (SELECT count(*) FROM robot WHERE label NOT LIKE 'removed %'),"
+    " (SELECT count(*) FROM task), count(*), coalesce(sum(bytes), 0)::bigint,"
+    " (SELECT max(version) FROM schema_migration) FROM distribution_use";
+
+constexpr std::string_view kPairs =
+    "SELECT coalesce(sum(paths), 0)::bigint, coalesce(sum(attempts), 0)::bigint,"
+    " coalesce(sum(dropped), 0)::bigint, coalesce(max(paths), 0) FROM experience";
+
+constexpr std::string_view kDamaged =
+    "SELECT (SELECT count(*) FROM path WHERE damaged_ms IS NOT NULL AND replaced_by IS NULL"
+    "  AND retired_ms IS NULL),"
+    " (SELECT count(*) FROM scene WHERE damaged_ms IS NOT NULL)";
+
+// The sizes of the files, without a look into them.
+constexpr std::string_view kBytes =
+    "SELECT coalesce(sum(pg_total_relation_size(oid)), 0)::bigint FROM pg_class"
+    " WHERE relkind = 'r' AND relnamespace ="
+    "  (SELECT relnamespace FROM pg_class WHERE oid = 'schema_migration'::regclass)";
+
 }  // namespace
-
-Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
-                                  std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  return page_of<RobotSummary>(
-      connection.query("SELECT " + std::string(kRobotSummaryColumns) +
-                           "FROM robot WHERE label > $1 AND label NOT LIKE 'removed %' "
-                           "ORDER BY label LIMIT $2",
-                       cursor, rows + 1),
-      rows, read_robot_summary<Row>,
-      [](const Row& row) { return std::string(row.column_text(1)); });
-}
-
-Page<TaskSummary> page_of_tasks(Connection& connection, std::string_view cursor,
-                                std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  return read_tasks(
-      connection,
-      connection.query("SELECT id, name FROM task WHERE name > $1 ORDER BY name LIMIT $2", cursor,
-                       rows + 1),
-      rows);
-}
-
-std::optional<TaskSummary> summary_of_task(Connection& connection, std::string_view task) {
-  Page<TaskSummary> page = read_tasks(
-      connection, connection.query("SELECT id, name FROM task WHERE name = $1", task), 1);
-  if (page.rows.empty())
-    return std::nullopt;
-  return std::move(page.rows.front());
-}
 
 Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
                                 std::string_view cursor, std::size_t limit) {
   constexpr int kId = 22;  // behind the record
   const std::int64_t rows = rows_of_page(limit);
-  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
+                                       Parameter(rows + 1)};
   const std::string page = newest_paths(filter, parameters);
-  return page_of<PathSummary>(
-      connection.query("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
-                           ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
-                           ") AS page CROSS JOIN LATERAL (SELECT * FROM path AS found"
-                           " WHERE found.id = page.id OFFSET 0) AS path "
-                           "JOIN robot ON robot.id = path.robot_id "
-                           "JOIN task ON task.id = path.task_id "
-                           "CROSS JOIN LATERAL (SELECT * FROM attempt AS found"
-                           " WHERE found.report_uuid = path.report_uuid OFFSET 0) AS attempt "
-                           "ORDER BY path.id DESC",
-                       parameters),
-      rows, read_path_summary<Row>,
-      [](const Row& row) { return std::to_string(row.column_integer(kId)); });
+  return read_page<PathSummary>(
+      connection.query_with("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
+                                ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
+                                ") AS page CROSS JOIN LATERAL (SELECT * FROM path AS found"
+                                " WHERE found.id = page.id OFFSET 0) AS path "
+                                "JOIN robot ON robot.id = path.robot_id "
+                                "JOIN task ON task.id = path.task_id "
+                                "CROSS JOIN LATERAL (SELECT * FROM attempt AS found"
+                                " WHERE found.report_uuid = path.report_uuid OFFSET 0) AS attempt "
+                                "ORDER BY path.id DESC",
+                            parameters),
+      rows, read_path_summary<store::Row>,
+      [](const store::Row& row) { return std::to_string(row.column_integer(kId)); });
 }
 
 Page<DistributionSummary> page_of_distributions(Connection& connection, const PairFilter& filter,
                                                 std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
+                                       Parameter(rows + 1)};
   const std::string page = newest_distributions(filter, parameters);
-  return page_of<DistributionSummary>(
-      connection.query("SELECT " + std::string(kDistributionSummaryColumns) + "FROM (" + page +
-                           ") AS page CROSS JOIN LATERAL (SELECT * FROM distribution AS found"
-                           " WHERE found.id = page.id OFFSET 0) AS distribution "
-                           "JOIN robot ON robot.id = distribution.robot_id "
-                           "JOIN task ON task.id = distribution.task_id "
-                           "ORDER BY distribution.id DESC",
-                       parameters),
-      rows, read_distribution_summary<Row>,
-      [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });
+  return read_page<DistributionSummary>(
+      connection.query_with("SELECT " + std::string(kDistributionSummaryColumns) + "FROM (" + page +
+                                ") AS page CROSS JOIN LATERAL (SELECT * FROM distribution AS found"
+                                " WHERE found.id = page.id OFFSET 0) AS distribution "
+                                "JOIN robot ON robot.id = distribution.robot_id "
+                                "JOIN task ON task.id = distribution.task_id "
+                                "ORDER BY distribution.id DESC",
+                            parameters),
+      rows, read_distribution_summary<store::Row>, [](const store::Row& row) {
+        return std::to_string(row.column_integer(kIdOfDistributionSummary));
+      });
+}
+
+void count_rows(Connection& connection, StoreStatus& status) {
+  const std::array<Request, 4> requests = {Request{kCounts}, Request{kPairs}, Request{kDamaged},
+                                           Request{kBytes}};
+  const std::vector<Rows> rows = connection.query_all(requests);
+  const Row counts = rows[0].front(), pairs = rows[1].front(), damaged = rows[2].front();
+  status.robots = count_of(counts, 0);
+  status.tasks = count_of(counts, 1);
+  status.distributions = count_of(counts, 2);
+  status.distribution_bytes = count_of(counts, 3);
+  status.schema_version = static_cast<std::uint32_t>(counts.column_integer(4));
+  status.paths = count_of(pairs, 0);
+  status.attempts = count_of(pairs, 1);
+  status.dropped_paths = count_of(pairs, 2);
+  status.most_paths_of_pair = count_of(pairs, 3);
+  status.bytes = count_of(rows[3].front(), 0);
+  const std::int64_t paths = damaged.column_integer(0), scenes = damaged.column_integer(1);
+  status.damaged = paths + scenes > 0;
+  if (paths > 0)
+    status.message += in_number(paths, "damaged path") + "; ";
+  if (scenes > 0)
+    status.message += in_number(scenes, "damaged scene") + "; ";
+  if (status.damaged)
+    status.message += "clients that report again mend them; ";
 }
 
 }  // namespace kinship::store::postgres

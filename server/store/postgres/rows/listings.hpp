@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "server/store/postgres/database/connection.hpp"
-#include "server/store/postgres/rows/pair_filter.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// The pages of admin listings. A cursor is the sort key of the last row shown, so a page costs
 /// the same wherever it is, and rows that come or go meanwhile neither repeat nor hide others.
@@ -14,15 +14,6 @@
 /// \throws Failure(InvalidInput) for a cursor of another listing.
 namespace kinship::store::postgres {
 
-Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
-                                  std::size_t limit);
-
-/// In a snapshot.
-Page<TaskSummary> page_of_tasks(Connection& connection, std::string_view cursor, std::size_t limit);
-
-/// In a snapshot.
-std::optional<TaskSummary> summary_of_task(Connection& connection, std::string_view task);
-
 /// Newest first; retired paths too.
 Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
                                 std::string_view cursor, std::size_t limit);
@@ -30,5 +21,9 @@ Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter
 /// The newest fit first. One that is fitted again meanwhile moves to the front.
 Page<DistributionSummary> page_of_distributions(Connection& connection, const PairFilter& filter,
                                                 std::string_view cursor, std::size_t limit);
+
+/// Counts what a store holds, and what is damaged in it, from the small tables and from indexes:
+/// cheap enough for once a second.
+void count_rows(Connection& connection, StoreStatus& status);
 
 }  // namespace kinship::store::postgres

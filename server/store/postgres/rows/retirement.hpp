@@ -1,13 +1,15 @@
 #pragma once
 
-#include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "proto/types/audit.hpp"
 #include "proto/types/result.hpp"
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
-#include "server/store/values/experience_key.hpp"
+#include "server/store/tables/contents.hpp"
+#include "server/store/tables/retirement.hpp"
 
 /// Paths that people take out of every fit, and the entries of the audit log that say so, in the
 /// caller's writing transaction. Without `audit` none is kept.
@@ -17,28 +19,21 @@ namespace kinship::store::postgres {
 Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
                                const AuditEntry* audit);
 
-/// Which paths of a task are to be retired.
-struct TaskReset {
-  std::int64_t task_id = 0;
-  std::int64_t last_path_id = 0;  ///< those that come later stay
-};
+/// As Store::retire_reports() says. Locks rows of `experience` in the order of the key.
+std::vector<Retirement> retire_reports(Connection& connection, std::span<const Uuid> reports);
 
-/// \return NotFound for an unknown task.
-Result<TaskReset> begin_reset(Connection& connection, std::string_view task,
-                              const AuditEntry* audit);
+/// Asked before reports are written, before it is looked which of them are retired and before
+/// anything else is locked: until the commit no reports are retired that are not there yet.
+inline constexpr std::string_view kBeforeReports =
+    "SELECT pg_advisory_xact_lock_shared(20261126) IS NULL";
 
-/// Retires some of the paths of a reset, few enough that reports do not wait long for the locks,
-/// and adds them to `retired`. \return whether paths are left; else the entry says Done.
-bool continue_reset(Connection& connection, const TaskReset& reset, Retirement& retired,
-                    const AuditEntry* audit);
+/// Retires paths in the caller's transaction. The reports that brought them, or were answered with
+/// them, are remembered.
+RetireSome retirement_in(Connection& connection);
 
-/// The most paths that are retired in one transaction: each is written anew.
-inline constexpr std::int64_t kPathsOfAStep = 500;
-
-/// Retires paths of a pair that is locked, as many as `limit` at most. The reports that brought
-/// them, or were answered with them, are remembered.
-/// \return how many.
-std::int64_t retire_some(Connection& connection, const ExperienceKey& key, std::int64_t last_id,
-                         std::int64_t limit);
+/// Quarantines paths, and scenes until a report brings them anew under their ids. Paths are out of
+/// the counts and of every reading, and the generation is raised; one that is quarantined already
+/// stays so, one that is retired was out of the counts before. In a writing transaction.
+void set_aside(Connection& connection, const DamagedRows& damaged);
 
 }  // namespace kinship::store::postgres

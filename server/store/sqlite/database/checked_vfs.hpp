@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <span>
-
-#include "server/store/sqlite/database/page_damage.hpp"
+#include <vector>
 
 struct sqlite3;
 
@@ -17,6 +19,33 @@ struct sqlite3;
 /// noted. A file is sealed or not as a whole: byte 20 of its header says so. The size of pages of a
 /// sealed file is not changed in place: SQLite then writes pages of one size over those of another.
 namespace kinship::store {
+
+/// The damaged pages of one database file that this process has met. May be shared between threads.
+class PageDamage {
+ public:
+  static constexpr std::size_t kMaxPages = 1000;
+
+  /// \param page  counted from 1. Beyond kMaxPages no more are noted.
+  void note(std::uint64_t page) {
+    const std::lock_guard lock(mutex_);
+    if (pages_.size() < kMaxPages)
+      pages_.insert(page);
+  }
+  /// It was written anew.
+  void forget(std::uint64_t page) {
+    const std::lock_guard lock(mutex_);
+    pages_.erase(page);
+  }
+  /// In order.
+  std::vector<std::uint64_t> pages() const {
+    const std::lock_guard lock(mutex_);
+    return {pages_.begin(), pages_.end()};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<std::uint64_t> pages_;  // guarded by mutex_
+};
 
 /// SQLite's result code for a page whose checksum is wrong: an extended code of SQLITE_CORRUPT that
 /// SQLite itself has not, so that it neither rolls the transaction back (as it does after

@@ -104,6 +104,8 @@ void Statement::reset() noexcept {
   sqlite3_clear_bindings(statement_.get());
 }
 
+int Statement::columns() const noexcept { return sqlite3_column_count(statement_.get()); }
+
 std::int64_t Statement::column_integer(int column) const noexcept {
   return sqlite3_column_int64(statement_.get(), column);
 }

@@ -47,6 +47,7 @@ class Statement final : public Row {
 
   bool step();  ///< true: a row is ready; false: done
   bool next() override { return step(); }
+  int columns() const noexcept override;
   void run();             ///< for a statement without rows: step to the end
   void reset() noexcept;  ///< ready to be bound and stepped again, without parameters
 

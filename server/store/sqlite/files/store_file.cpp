@@ -12,7 +12,6 @@
 
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/files/file_system.hpp"
-#include "server/store/sqlite/files/library_version.hpp"
 
 namespace kinship::store {
 namespace {
@@ -65,6 +64,11 @@ void check_header(const fs::path& file) {
         file,
         "is no SQLite database; if it was a store: 'kinshipd repair' writes anew what can be "
         "read of it");
+}
+
+std::string version_text(int number) {
+  return "SQLite " + std::to_string(number / 1'000'000) + '.' +
+         std::to_string(number / 1000 % 1000) + '.' + std::to_string(number % 1000);
 }
 
 }  // namespace
@@ -135,6 +139,20 @@ std::filesystem::path locate_servable(const std::filesystem::path& file) {
   require_writable(file, located);
   require_local_filesystem(file, located.parent_path());
   return located;
+}
+
+void require_library(int number) {
+  if (number < kOldestSqlite)
+    throw Failure(ErrorCode::Storage, version_text(number) + " is older than " +
+                                          version_text(kOldestSqlite) +
+                                          ", which a store needs; install a newer libsqlite3");
+}
+
+std::string library_advice(int number) {
+  constexpr int kFixed = 3'051'003;
+  return number < kFixed ? version_text(number) +
+                               " is older than 3.51.3: no other program may write to the store"
+                         : "";
 }
 
 }  // namespace kinship::store

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/files/file_identity.hpp"
+#include "server/store/sqlite/files/file_system.hpp"
 #include "server/store/tables/settings.hpp"
 
 namespace kinship::store {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "proto/types/uuid.hpp"
-#include "server/store/values/history_point.hpp"
+#include "server/store/values/history_seal.hpp"
 
 namespace kinship::store {
 

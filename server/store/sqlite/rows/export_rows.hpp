@@ -1,11 +1,14 @@
 #pragma once
 
-#include <optional>
+#include <set>
+#include <span>
 #include <string_view>
 
+#include "proto/types/result.hpp"
 #include "server/store/sqlite/database/database.hpp"
-#include "server/store/sqlite/rows/arrival_order.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
+#include "server/store/tables/pages.hpp"
 
 namespace kinship::store {
 
@@ -17,15 +20,24 @@ struct ExportRead {
 
 /// A page of Store::export_attempts(). The cursor is the id of the last attempt looked at.
 /// \throws Failure(InvalidInput) for a cursor of another listing.
-ExportRead export_page(Database& database, const std::optional<Digest>& robot,
-                       std::string_view task, std::string_view cursor, std::size_t limit,
-                       std::size_t max_bytes);
+ExportRead export_page(Database& database, const PairFilter& filter, std::string_view cursor,
+                       std::size_t limit, std::size_t max_bytes);
 
 /// A page of Store::list_attempts(), with a cursor of the same kind. Those that cannot be read are
 /// left out.
 /// \throws Failure(InvalidInput) for a cursor of another listing.
-Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Digest>& robot,
-                                      std::string_view task, std::string_view cursor,
-                                      std::size_t limit);
+Page<AttemptSummary> page_of_attempts(Database& database, const PairFilter& filter,
+                                      std::string_view cursor, std::size_t limit);
+
+/// An attempt with its path and scene, as far as they can be read.
+/// \return NotFound if it is not known; Storage if its row is damaged.
+Result<Attempt> find_attempt(Database& database, const Uuid& report_uuid, DamagedRows& noted);
+
+/// Reports as another store is told of them, see Store. Those that cannot be read are left out.
+/// \throws Failure(InvalidInput) for a cursor of something else.
+Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
+                                     std::string_view cursor, std::size_t limit);
+std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports);
+SharedRead select_shared(Database& database, std::span<const Uuid> reports, std::size_t max_bytes);
 
 }  // namespace kinship::store

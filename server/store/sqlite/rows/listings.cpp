@@ -10,60 +10,12 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/pages.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/pages.hpp"
-#include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
 namespace {
-
-/// Reads up to `rows` rows; a row more says that another page follows.
-/// \param read       makes a row of the statement.
-/// \param cursor_of  the cursor that continues after the row at the statement.
-template <typename Row, typename Read, typename CursorOf>
-Page<Row> read_page(Statement& query, std::int64_t rows, Read read, CursorOf cursor_of) {
-  PageFiller<Row> page(rows);
-  while (query.step())
-    if (!page.add(read(query), cursor_of(query)))
-      break;
-  return page.take();
-}
-
-std::vector<TaskRobotSummary> robots_of_task(Database& database, RobotNames& names,
-                                             std::int64_t task_id) {
-  const auto query = database.cached("SELECT " + std::string(kTaskRobotColumns) +
-                                     "FROM experience WHERE task_id = ?");
-  query->bind(1, task_id);
-  std::vector<TaskRobotSummary> robots;
-  while (query->step())
-    if (const RobotNames::Name* const robot = names.find(query->column_integer(0));
-        robot != nullptr && !is_removed_label(robot->label))
-      robots.push_back(read_task_robot(*query, robot->digest, robot->label));
-  return robots;
-}
-
-/// \param row  of task id and name.
-TaskSummary read_task(Database& database, RobotNames& names, const Statement& row) {
-  return summary_of(row.column_text(1), robots_of_task(database, names, row.column_integer(0)));
-}
-
-/// The filters that a listing was asked for, as SQL; numbered parameters ?1 robot, ?2 task.
-std::string filters(const std::optional<Digest>& robot, std::string_view task) {
-  std::string sql;
-  if (robot)
-    sql += " AND robot.digest = ?1";
-  if (!task.empty())
-    sql += " AND task.name = ?2";
-  return sql;
-}
-
-void bind_filters(Statement& query, const std::optional<Digest>& robot, std::string_view task) {
-  if (robot)
-    query.bind(1, Bytes(robot->bytes));
-  if (!task.empty())
-    query.bind(2, task);
-}
 
 constexpr std::string_view kNotAsidePath =
     "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) "
@@ -108,7 +60,7 @@ std::vector<std::int64_t> all_paths_before(Database& database, std::int64_t befo
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
-    return paths_before(database, select_experience(database, {}, ""), before_id, count);
+    return paths_before(database, select_experience(database, {}), before_id, count);
   }
 }
 
@@ -132,43 +84,12 @@ std::optional<PathSummary> select_path_summary(Database& database, std::int64_t 
 
 }  // namespace
 
-Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit) {
+Page<PathSummary> page_of_paths(Database& database, const PairFilter& filter,
+                                std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  const auto query = database.cached(
-      "SELECT " + std::string(kRobotSummaryColumns) +
-      "FROM robot WHERE label > ? AND base_link <> '' AND label NOT GLOB 'removed *' "
-      "ORDER BY label LIMIT ?");
-  query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
-  return read_page<RobotSummary>(
-      *query, rows, read_robot_summary<Statement>,
-      [](const Statement& row) { return std::string(row.column_text(1)); });
-}
-
-Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  RobotNames names(database);
-  const auto query =
-      database.cached("SELECT id, name FROM task WHERE name > ? ORDER BY name LIMIT ?");
-  query->bind_all(cursor, rows + 1);
-  return read_page<TaskSummary>(
-      *query, rows, [&](const Statement& row) { return read_task(database, names, row); },
-      [](const Statement& row) { return std::string(row.column_text(1)); });
-}
-
-std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task) {
-  const auto query = database.cached("SELECT id, name FROM task WHERE name = ?");
-  if (!query->bind(1, task).step())
-    return std::nullopt;
-  RobotNames names(database);
-  return read_task(database, names, *query);
-}
-
-Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
-                                std::string_view task, std::string_view cursor, std::size_t limit) {
-  const std::int64_t rows = rows_of_page(limit);
-  const bool is_filtered = robot || !task.empty();
+  const bool is_filtered = !filter.is_empty();
   const std::vector<ExperienceKey> keys =
-      is_filtered ? select_experience(database, robot, task) : std::vector<ExperienceKey>();
+      is_filtered ? select_experience(database, filter) : std::vector<ExperienceKey>();
   std::int64_t before_id = parse_falling_cursor(cursor);
   Page<PathSummary> page;
   while (true) {
@@ -190,26 +111,21 @@ Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>&
   }
 }
 
-Page<DistributionSummary> page_of_distributions(Database& database,
-                                                const std::optional<Digest>& robot,
-                                                std::string_view task, std::string_view cursor,
-                                                std::size_t limit) {
+Page<DistributionSummary> page_of_distributions(Database& database, const PairFilter& filter,
+                                                std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  const std::int64_t before_id = parse_falling_cursor(cursor);
+  std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
+                                       Parameter(rows + 1)};
   // Each fit is a row of its own: the greatest id is the newest fit.
-  const auto query = database.cached(
+  const std::string sql =
       "SELECT " + std::string(kDistributionSummaryColumns) +
-      "FROM distribution "
-      "JOIN robot ON robot.id = distribution.robot_id JOIN task ON task.id = distribution.task_id "
-      "WHERE distribution.id < ?3 AND NOT EXISTS "
-      "(SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)" +
-      filters(robot, task) + " ORDER BY distribution.id DESC LIMIT ?4");
-  bind_filters(*query, robot, task);
-  query->bind(3, before_id).bind(4, rows + 1);
+      "FROM distribution JOIN robot ON robot.id = distribution.robot_id"
+      " JOIN task ON task.id = distribution.task_id WHERE distribution.id < $1 AND NOT " +
+      std::string(database.dialect().is_quarantined_distribution) +
+      filter.condition("distribution", parameters) + " ORDER BY distribution.id DESC LIMIT $2";
   return read_page<DistributionSummary>(
-      *query, rows, read_distribution_summary<Statement>, [](const Statement& row) {
-        return std::to_string(row.column_integer(kIdOfDistributionSummary));
-      });
+      database.query_with(sql, parameters), rows, read_distribution_summary<Row>,
+      [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });
 }
 
 void count_rows(Database& database, StoreStatus& status) {

@@ -1,33 +1,24 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
+#include <cstddef>
 #include <string_view>
-#include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/pages.hpp"
 
 /// The pages of admin listings. A cursor is the sort key of the last row shown, so a page costs
 /// the same wherever it is, and rows that come or go meanwhile neither repeat nor hide others.
 /// \throws Failure(InvalidInput) for a cursor of another listing.
 namespace kinship::store {
 
-Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit);
-
-Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit);
-
-std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task);
-
 /// Newest first; retired paths too.
-Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
-                                std::string_view task, std::string_view cursor, std::size_t limit);
+Page<PathSummary> page_of_paths(Database& database, const PairFilter& filter,
+                                std::string_view cursor, std::size_t limit);
 
 /// The newest fit first. One that is fitted again meanwhile moves to the front.
-Page<DistributionSummary> page_of_distributions(Database& database,
-                                                const std::optional<Digest>& robot,
-                                                std::string_view task, std::string_view cursor,
-                                                std::size_t limit);
+Page<DistributionSummary> page_of_distributions(Database& database, const PairFilter& filter,
+                                                std::string_view cursor, std::size_t limit);
 
 /// Fills the counts, the schema version and the size; adds what is set aside to the message.
 void count_rows(Database& database, StoreStatus& status);

@@ -19,16 +19,6 @@ bool is_intact(const Statement& row) {
                                            : read_path_content(row).has_value();
 }
 
-/// \param row  of kPathColumns.
-void take_row(const Statement& row, PathsRead& read) {
-  if (path_content_of(row).is_dropped() && has_right_path_crc(row))
-    return;
-  if (std::optional<StoredPath> path = read_path(row))
-    read.paths.push_back(std::move(*path));
-  else
-    read.damaged.push_back(row.column_integer(PathColumn::kId));
-}
-
 constexpr std::string_view kNotAside =
     " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
 
@@ -68,7 +58,7 @@ bool is_in_use(Database& database, const ExperienceKey& key, std::int64_t id) {
 
 /// The robot and task of a path whose row may not be readable, as long as it is not retired.
 std::optional<ExperienceKey> key_in_use(Database& database, std::int64_t id) {
-  for (const ExperienceKey& key : select_experience(database, {}, ""))
+  for (const ExperienceKey& key : select_experience(database, {}))
     if (is_in_use(database, key, id))
       return key;
   return std::nullopt;
@@ -91,7 +81,7 @@ void take_path(Database& database, std::int64_t id, PathsRead& read) {
         const auto query =
             database.cached("SELECT " + std::string(kPathColumns) + "FROM path WHERE id = ?");
         if (query->bind(1, id).step())
-          take_row(*query, read);
+          read.add(*query);
         return true;
       }))
     read.damaged.push_back(id);
@@ -154,19 +144,6 @@ bool remove_waypoints(Database& database, std::int64_t id) {
     savepoint.keep();
     return true;
   });
-}
-
-/// One by one, where a page that holds several cannot be read.
-PathsRead select_readable(Database& database, const ExperienceKey& key, const PathRange& range) {
-  const auto ids = database.cached(
-      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ? AND robot_id = ? "
-      "AND id > ? AND received_ms >= ? AND retired_ms IS NULL" +
-      std::string(kNotAside) + "ORDER BY id");
-  ids->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
-  PathsRead read;
-  while (read.paths.size() < range.limit && ids->step())
-    take_path(database, ids->column_integer(0), read);
-  return read;
 }
 
 }  // namespace
@@ -258,34 +235,6 @@ std::int64_t insert_path(Database& database, const NewPath& path,
                  content.waypoints, path.received_ms, scene_id, retired_ms)
       .run();
   return database.last_insert_id();
-}
-
-PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range) {
-  PathsRead read;
-  const bool whole = can_read([&] {
-    const auto query = database.cached(
-        "SELECT " + std::string(kPathColumns) +
-        "FROM path WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
-        "AND retired_ms IS NULL" +
-        std::string(kNotAside) + "ORDER BY id");
-    query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
-    while (read.paths.size() < range.limit && query->step())
-      take_row(*query, read);
-    return true;
-  });
-  return whole ? std::move(read) : select_readable(database, key, range);
-}
-
-std::vector<std::int64_t> select_path_ids(Database& database, const ExperienceKey& key) {
-  const auto query = database.cached(
-      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ? AND robot_id = ? "
-      "AND retired_ms IS NULL" +
-      std::string(kNotAside) + "ORDER BY id");
-  query->bind_all(key.task_id, key.robot_id);
-  std::vector<std::int64_t> ids;
-  while (query->step())
-    ids.push_back(query->column_integer(0));
-  return ids;
 }
 
 PathsRead select_path(Database& database, std::int64_t id) {

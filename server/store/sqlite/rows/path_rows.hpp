@@ -11,6 +11,7 @@
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/contents.hpp"
 #include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
@@ -28,19 +29,6 @@ std::set<KeptPath> select_largest(Database& database, const ExperienceKey& key,
 /// Under an id of its own. \return that.
 std::int64_t insert_path(Database& database, const NewPath& path,
                          std::optional<std::int64_t> scene_id, std::int64_t now_ms);
-
-/// Paths as read, and the ids of those whose checksum or content is wrong.
-struct PathsRead {
-  std::vector<StoredPath> paths;
-  std::vector<std::int64_t> damaged;
-};
-
-/// The paths in use of a robot and task in the order of ids; damaged ones do not count towards the
-/// limit. Where a page is damaged the paths are read one by one, by the ids of the index.
-PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range);
-
-/// The ids of the paths in use, ascending, from an index.
-std::vector<std::int64_t> select_path_ids(Database& database, const ExperienceKey& key);
 
 /// The path with this id, or what replaced it, also a retired one: none if it is set aside, or
 /// dropped.

@@ -1,20 +1,130 @@
 #include "server/store/sqlite/rows/report_writing.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
+#include "server/store/rules/report_resolver.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/report_reading.hpp"
-#include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
+#include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/tasks.hpp"
 #include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/robot_columns.hpp"
 
 namespace kinship::store {
 namespace {
+
+/// Stands for the id of the new path, which is known when its row is written; no row has it.
+constexpr std::int64_t kNewPathId = 0;
+
+/// What the rules of reports ask about one report, read as far as they ask.
+struct ReportReading {
+  BatchState state;
+  ExperienceKey key;                                  ///< of an acceptable one
+  ReportRows rows;                                    ///< of its UUID
+  SceneRows scene;                                    ///< of the content of its scene
+  std::optional<std::int64_t> earlier_scene_id = {};  ///< of the report that came before
+};
+
+/// A row that turns out to be damaged is moved to the damaged ones.
+void read_earlier(Database& database, const Uuid& report_uuid, ReportReading& reading) {
+  ReportRows& rows = reading.rows;
+  if (rows.row)
+    try {
+      const auto query = database.cached(
+          "SELECT body_sha256, machine, received_ms, path_id, scene_id FROM attempt WHERE id = ?");
+      query->bind(1, *rows.row).step();
+      reading.state.reports[report_uuid] = {.body = id_of<Digest>(query->column_blob(0)),
+                                            .machine = std::string(query->column_text(1)),
+                                            .received_ms = query->column_integer(2),
+                                            .path_id = optional_integer_of(*query, 3)};
+      reading.earlier_scene_id = optional_integer_of(*query, 4);
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+      rows.damaged.push_back(*rows.row);
+    }
+  if (!reading.state.reports.contains(report_uuid) && !rows.damaged.empty())
+    reading.state.unreadable.insert(report_uuid);
+}
+
+/// A removed robot has to be registered again.
+void read_robot(Database& database, const Digest& robot, BatchState& state) {
+  const auto query = database.cached("SELECT id, dof, label FROM robot WHERE digest = ?");
+  if (query->bind(1, Bytes(robot.bytes)).step() && !is_removed_label(query->column_text(2)))
+    state.robots[robot] = {query->column_integer(0), query->column_integer(1)};
+}
+
+/// \return whether all that the receipt of a report that came before vouches for can be read.
+bool read_what_is_vouched_for(Database& database, const PreparedAttempt& prepared,
+                              const ReportReading& reading, EarlierReport& earlier) {
+  if (prepared.scene && reading.earlier_scene_id)
+    earlier.is_scene_readable = is_scene_readable(database, *reading.earlier_scene_id);
+  if (prepared.path && earlier.path_id)
+    earlier.is_path_vouched_for = is_vouched_for(database, reading.key, *earlier.path_id);
+  return earlier.is_scene_readable && earlier.is_path_vouched_for;
+}
+
+/// Of a report with a path that may have to be written.
+void read_paths(Database& database, const PreparedAttempt& prepared, std::uint64_t max_paths,
+                BatchState& state, Pair& pair) {
+  const Uuid& uuid = prepared.attempt.report_uuid;
+  state.path_ids = {kNewPathId};
+  if (!state.reports.contains(uuid) && (state.unreadable.contains(uuid) || has_orphans(database)))
+    if (const auto retired = find_retired(database, pair.key, uuid)) {
+      state.retired_paths[uuid] = *retired;
+      return;
+    }
+  if (is_report_retired(database, uuid))
+    state.retired.insert(uuid);
+  const Digest& content = prepared.path->content;
+  const SameContent& same = pair.contents[content] = find_same(database, pair.key, content);
+  if (max_paths == 0 || pair.paths < max_paths || same.readable)
+    return;
+  const std::uint64_t excess = std::min(pair.paths - max_paths, kMaxDroppedAtOnce);
+  pair.largest = select_largest(database, pair.key, excess + 1);
+}
+
+/// What decides whether it is acceptable: its robot, and the report that came under its UUID.
+ReportReading read_report(Database& database, const PreparedAttempt& prepared) {
+  const Attempt& attempt = prepared.attempt;
+  ReportReading reading;
+  reading.rows = find_report(database, attempt.report_uuid);
+  read_earlier(database, attempt.report_uuid, reading);
+  read_robot(database, attempt.robot, reading.state);
+  return reading;
+}
+
+/// The rest, of an acceptable one. Makes its task, and the row of its robot and task.
+/// \param max_paths  of a robot and task; 0: no cap.
+void read_pair(Database& database, const PreparedAttempt& prepared, std::uint64_t max_paths,
+               ReportReading& reading) {
+  const Attempt& attempt = prepared.attempt;
+  BatchState& state = reading.state;
+  reading.key = {ensure_task(database, attempt.task), state.robots.at(attempt.robot).id};
+  Pair& pair = state.pairs[{attempt.robot, attempt.task}];
+  pair.key = reading.key;
+  pair.paths = ensure_experience(database, pair.key);
+  const auto earlier = state.reports.find(attempt.report_uuid);
+  const bool is_new = earlier == state.reports.end();
+  if (!is_new && read_what_is_vouched_for(database, prepared, reading, earlier->second))
+    return;
+  if (prepared.scene) {
+    reading.scene = find_scene(database, prepared.scene->content);
+    state.scenes[prepared.scene->content] = reading.scene.readable.has_value();
+  }
+  if (prepared.path && (is_new || !earlier->second.is_path_vouched_for))
+    read_paths(database, prepared, max_paths, state, pair);
+}
 
 /// \param read  what the changes were resolved from; its state is not used.
 void write_changes(Batch& batch, const BatchChanges& changes, const ReportReading& read,

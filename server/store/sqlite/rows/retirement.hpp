@@ -1,18 +1,34 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "proto/types/audit.hpp"
 #include "proto/types/result.hpp"
+#include "proto/types/uuid.hpp"
+#include "server/store/shared_report.hpp"
+#include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/store.hpp"
+#include "server/store/tables/retirement.hpp"
 
 /// Paths that people take out of every fit, and the entries of the audit log that say so; without
-/// `audit` none is kept. Their rows stay, out of the indexes that fits read.
+/// `audit` none is kept. Their rows stay, out of the indexes that fits read. Which reports' paths
+/// were retired is a list that only grows, and that other stores are told.
 namespace kinship::store {
+
+/// Whether the path of a report is retired wherever it comes from.
+bool is_report_retired(Database& database, const Uuid& report_uuid);
+
+/// Notes that the content of a report is that of a path which is there.
+void note_same_content(Database& database, std::int64_t path_id, const Uuid& report_uuid);
+
+/// A page of Store::list_retirements(). \throws Failure(InvalidInput) for a cursor of another list.
+Feed<Uuid> page_of_retirements(Database& database, std::string_view cursor, std::size_t limit);
 
 /// Retires the path of a report: the one it brought, or the earlier one of the same content.
 /// \return NotFound for an unknown report; InvalidInput for one that brought no path.
@@ -22,26 +38,7 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid, const Audi
 /// remembered, and retired when they come. \return by task, what was not retired before.
 std::vector<Retirement> retire_reports(Batch& batch, std::span<const Uuid> reports);
 
-/// Which paths of a task are to be retired.
-struct TaskReset {
-  std::int64_t task_id = 0;
-  std::int64_t last_path_id = 0;  ///< those that come later stay
-};
-
-/// \return NotFound for an unknown task.
-Result<TaskReset> begin_reset(Database& database, std::string_view task, const AuditEntry* audit);
-
-/// Retires some of the paths of a reset, few enough that the writer is soon free for reports, and
-/// adds them to `retired`. \return whether paths are left; else the entry says Done.
-bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired,
-                    const AuditEntry* audit);
-
-/// The most paths that are retired in one transaction: each is written anew.
-inline constexpr std::int64_t kPathsOfAStep = 500;
-
-/// Retires paths of a robot and task, as many as `limit` at most, and adds them to `retired`.
-/// \return how many.
-std::int64_t retire_some(Batch& batch, const ExperienceKey& key, std::int64_t limit,
-                         Retirement& retired);
+/// Retires paths in a batch.
+RetireSome retirement_in(Batch& batch);
 
 }  // namespace kinship::store

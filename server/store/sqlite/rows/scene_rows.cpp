@@ -3,7 +3,7 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/scene_columns.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 namespace kinship::store {
 namespace {
@@ -87,24 +87,9 @@ std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::i
   return id;
 }
 
-SceneRead select_scene(Database& database, std::int64_t id) {
-  SceneRead read;
+SceneRead select_current_scene(Database& database, std::int64_t id) {
   const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Scene, id);
-  if (!row)
-    return read;
-  try {
-    const auto query =
-        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ?");
-    if (query->bind(1, *row).step()) {
-      read.scene = read_scene_columns(*query);
-      read.damaged = !read.scene;
-    }
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-    read.damaged = true;
-  }
-  return read;
+  return row ? select_scene(database, *row) : SceneRead();
 }
 
 bool is_scene_readable(Database& database, std::int64_t id) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
+#include "server/store/tables/contents.hpp"
 #include "server/store/values/prepared_attempt.hpp"
 
 /// Scenes, one row for each content.
@@ -21,12 +22,8 @@ SceneRows find_scene(Database& database, const Digest& content);
 std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms,
                           const std::vector<std::int64_t>& damaged);
 
-/// A scene as read: nothing if it is damaged, was set aside before, or is not there.
-struct SceneRead {
-  std::optional<RecordedScene> scene;
-  bool damaged = false;  ///< found now
-};
-SceneRead select_scene(Database& database, std::int64_t id);
+/// The scene with this id, or what replaced it.
+SceneRead select_current_scene(Database& database, std::int64_t id);
 
 /// Whether a scene, or what replaced it, can be read.
 bool is_scene_readable(Database& database, std::int64_t id);

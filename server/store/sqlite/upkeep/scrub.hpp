@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/store/sqlite/database/page_damage.hpp"
+#include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/opening/reader_pool.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/files/library_version.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>

@@ -4,7 +4,6 @@
 
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
-#include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/values/codes.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/unit/server/store/postgres/empty_store.hpp"

@@ -87,7 +87,7 @@ TEST_F(PostgresStoreTest, TwoServersOnTheSameHotKeysLoseNothingAndCountEveryChan
         batch.push_back(std::move(each));
       }
       for (const Receipt& receipt : test::report(store, batch)) {
-        stored += receipt.status == ReceiptStatus::Stored ? 1 : 0;
+        stored += receipt.status == ReceiptStatus::Stored ? 1U : 0U;
         duplicates += receipt.status == ReceiptStatus::Duplicate ? 1 : 0;
       }
     }
@@ -118,7 +118,7 @@ TEST_F(PostgresStoreTest, OneReportThatTwoServersGetIsStoredOnce) {
   const auto write = [&](Store& store) {
     std::uint64_t stored = 0;
     for (std::uint64_t i = 1; i <= kReports; ++i)
-      stored += test::report(store, {attempt(i)}).at(0).status == ReceiptStatus::Stored ? 1 : 0;
+      stored += test::report(store, {attempt(i)}).at(0).status == ReceiptStatus::Stored ? 1U : 0U;
     return stored;
   };
   auto one = std::async(std::launch::async, [&] { return write(*store_); });
@@ -135,7 +135,7 @@ TEST_F(PostgresStoreTest, OneUuidForTwoTasksAtTwoServersIsStoredOnceAndRefusedOn
     std::uint64_t stored = 0;
     for (std::uint64_t i = 1; i <= kReports; ++i)
       stored +=
-          test::report(store, {attempt(i, task)}).at(0).status == ReceiptStatus::Stored ? 1 : 0;
+          test::report(store, {attempt(i, task)}).at(0).status == ReceiptStatus::Stored ? 1U : 0U;
     return stored;
   };
   auto one = std::async(std::launch::async, [&] { return write(*store_, "shelf"); });

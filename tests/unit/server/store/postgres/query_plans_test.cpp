@@ -52,7 +52,7 @@ INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, waypoint_count
     sha256(n::text::bytea), 20, 3, 1, 1, CASE WHEN n % 5 = 0 THEN 1 END, 2, 0, '\x0102'
   FROM generate_series(1, 20000) AS n;
 INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status, machine, outcome,
-  planner, planner_options, planning_time_s, collision_checks, projections, time_limit_s, arm, share,
+  planner, planner_options, planning_time_s, collision_checks, projections, time_limit_s, sampling_mode, share,
   distribution_revision, received_ms)
   SELECT substr(sha256((-n)::text::bytea), 1, 16), sha256(''), 1 + n % 30, 1 + n / 30 % 30,
     NULL::bigint, 3, 'cell', 2, 'rrt', '', 1, 1, 0, 1, 2, 0, 0, 1
