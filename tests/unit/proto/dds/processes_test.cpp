@@ -113,7 +113,8 @@ TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
   });
   EXPECT_EQ(outcome, RequestChannel::Outcome::Answered);
   EXPECT_EQ(reply.status, AdminStatus::Refused);
-  EXPECT_EQ(reply.message, "verb: 1000 is not between 0 and " + std::to_string(static_cast<int>(kLastVerb)));
+  EXPECT_EQ(reply.message,
+            "verb: 1000 is not between 0 and " + std::to_string(static_cast<int>(kLastVerb)));
 }
 
 TEST(Processes, SecondServerOfADomainIsRefusedByName) {

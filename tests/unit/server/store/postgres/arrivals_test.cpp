@@ -40,7 +40,7 @@ class Arrivals : public EmptyStore {
   Page<Attempt> export_after(const std::string& cursor, std::size_t limit,
                              const PairFilter& filter = {}) {
     const Transaction snapshot(*connection_, Transaction::Kind::Snapshot);
-    DamageNoticed noticed;
+    DamagedRows noticed;
     return export_page(*connection_, filter, cursor, limit, 1'000'000, noticed);
   }
   /// The numbers of the attempts of an export from a cursor to its end.
