@@ -185,14 +185,14 @@ TEST(FetchCodec, RecentAttemptsAreJudgedOnesOldestFirst) {
   advice.recent[1].age = 4;
   EXPECT_EQ(encode({}, reply).error().message, "recent: age 4 after 3, must be oldest first");
   advice.recent[1] = {SamplingMode::Uniform, true, 900, 1};
-  EXPECT_EQ(encode({}, reply).error().message, "recent: an attempt of arm uniform");
+  EXPECT_EQ(encode({}, reply).error().message, "recent: an attempt of sampling_mode uniform");
   advice.recent.assign(kMaxJudgedAttempts + 1, {});
   EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
   advice.recent.resize(1);
   auto message = encode({}, reply).value_or_throw();
   message.wire.distribution._buffer[0].recent._buffer[0].sampling_mode = 2;
   EXPECT_EQ(decode(message.wire).error().message,
-            "arm of a recent attempt: 2 is not between 0 and 1");
+            "sampling_mode of a recent attempt: 2 is not between 0 and 1");
 }
 
 TEST(FetchCodec, ScoresFallInComponentsAndCutsNameJoints) {
