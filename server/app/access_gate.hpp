@@ -7,15 +7,15 @@
 #include "proto/types/conversations.hpp"
 #include "server/service/service.hpp"
 
-/// What clients register, report and fetch, past server/access: what their certificate does not
-/// allow is refused here, with who, what and why. Administration is refused in the service, which
-/// keeps that in the audit log.
+/// Checks registrations, reports and fetches against server/access: a request that the client's
+/// certificate does not allow is refused with the client, the request and the reason.
+/// Administration is refused in the service, which writes it to the audit log.
 namespace kinship::app {
 
 void register_robot(service::Service& service, const Caller& caller, RobotDescription description,
                     const std::function<void(const RegisterReply&)>& done);
 
-/// Each attempt by itself: the others of its batch are taken. What is kept as the machine of an
+/// Checks each attempt by itself: the others of its batch are taken. The machine stored with an
 /// attempt is the name in the certificate, whatever the report says.
 void report(service::Service& service, const Caller& caller, ReportRequest request,
             const std::function<void(const ReportReply&)>& done);

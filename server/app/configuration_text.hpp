@@ -9,9 +9,10 @@ class App;
 
 namespace kinship::app {
 
-/// The options of a parsed command line as a file that --config reads (TOML): one a line with what
-/// it is for, its value, and where the value is from. Of passwords it says that they are not shown.
-/// \param arguments  of the command line, by which what was said there is told from the file.
+/// The options of a parsed command line as a file that --config reads (TOML): one per line with its
+/// purpose, its value and the source of the value. Passwords are replaced by a note that they are
+/// not shown.
+/// \param arguments  of the command line; they tell its values from those of the file.
 std::string configuration_text(const CLI::App& app, const std::vector<std::string>& arguments);
 
 /// The long names of all options, without their dashes.

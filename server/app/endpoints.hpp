@@ -9,8 +9,8 @@
 
 namespace kinship::app {
 
-/// The four conversations as kinshipd offers them: decoded requests go to the service, what it
-/// says goes back. Everything that takes long happens on threads of the service.
+/// The four conversations as kinshipd offers them: decoded requests go to the service, its replies
+/// go back. Long work happens on threads of the service.
 class Endpoints {
  public:
   /// \param participant, loop, service  outlive the endpoints.

@@ -10,16 +10,16 @@
 
 namespace kinship::app {
 
-/// Tells once a day, while somebody calls, that credentials end soon or have ended: a server may be
-/// up for longer than they are valid. Not to be shared between threads.
+/// Warns once a day, as long as beat() is called, that credentials expire soon or have expired: a
+/// server may be up for longer than they are valid. Not to be shared between threads.
 class ExpiryWatch {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::hours kInterval{24};
 
-  /// \param credentials  nothing: there is nothing to tell.
-  /// \param wall_time    of now, UTC.
-  /// \param warn         is given the words.
+  /// \param credentials  empty: no warnings.
+  /// \param wall_time    returns the time of now, UTC.
+  /// \param warn         called with the text of a warning.
   ExpiryWatch(std::optional<security::Credentials> credentials,
               std::function<std::chrono::sys_seconds()> wall_time,
               std::function<void(std::string_view)> warn)
@@ -27,7 +27,7 @@ class ExpiryWatch {
         wall_time_(std::move(wall_time)),
         warn_(std::move(warn)) {}
 
-  /// Tells it if it is time to, at the first call too. \return when to call again; the end of time
+  /// Warns if a warning is due, at the first call too. \return when to call again; TimePoint::max()
   /// without credentials.
   TimePoint beat(TimePoint now);
 

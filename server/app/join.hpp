@@ -6,8 +6,8 @@
 namespace kinship::app {
 
 /// Joins the domain as its server.
-/// \throws Failure(Unavailable) if that cannot be. If a port of the domain is taken the message
-///         says by whom, another kinshipd or other software, and what to do.
+/// \throws Failure(Unavailable) if that fails. If a port of the domain is taken, the message names
+///         its holder, another kinshipd or other software, and a remedy.
 dds::Participant join_domain(const ServerOptions& options);
 
 }  // namespace kinship::app

@@ -8,8 +8,8 @@
 
 namespace kinship::app {
 
-/// Passes on a limited number of lines per window of time, then one that says how many were left
-/// out: what one client asks for must not fill the disk with lines. May be shared between threads.
+/// Passes on a limited number of lines per window of time, then one with the number of lines left
+/// out: requests of one client must not fill the disk with lines. May be shared between threads.
 class LineLimit {
  public:
   using Clock = std::chrono::steady_clock;

@@ -14,10 +14,10 @@ struct MetricsAddress {
   std::uint16_t port = 0;  ///< 0: one that is free
 };
 
-/// Reads 127.0.0.1:9464 or [::1]:9464. Names of hosts are none: what they mean may change.
+/// Reads 127.0.0.1:9464 or [::1]:9464. Host names are refused: their address may change.
 Result<MetricsAddress> read_metrics_address(std::string_view text);
 
-/// As a browser takes it: 127.0.0.1:9464, [::1]:9464.
+/// As in a URL: 127.0.0.1:9464, [::1]:9464.
 std::string to_text(const MetricsAddress& address);
 
 }  // namespace kinship::app

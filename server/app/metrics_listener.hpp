@@ -10,10 +10,11 @@
 
 namespace kinship::app {
 
-/// A TCP port that is taken, and that nobody answers at yet.
+/// A bound TCP port on which no listener answers yet.
 class MetricsPort {
  public:
-  /// \throws Failure(Unavailable) if it cannot be had: taken, not ours, not of this machine.
+  /// \throws Failure(Unavailable) if it cannot be bound: taken, not permitted, or not an address of
+  ///         this machine.
   explicit MetricsPort(const MetricsAddress& address);
   ~MetricsPort();
   MetricsPort(MetricsPort&& other) noexcept;
@@ -27,20 +28,20 @@ class MetricsPort {
   std::unique_ptr<State> state_;
 };
 
-/// What one who connects may take.
+/// Limits of the connections to the metrics port.
 struct MetricsLimits {
-  std::size_t connections = 16;  ///< at a time; the oldest one goes for one more
+  std::size_t connections = 16;  ///< at a time; one more closes the oldest
   std::size_t header_bytes = 8192;
   std::chrono::milliseconds request_time{5000};  ///< from connection to reply, and for the reply
-  /// A page younger than this is sent again, however often somebody asks.
+  /// A page younger than this is sent again, however many requests come.
   std::chrono::milliseconds page_age{200};
 };
 
-/// Answers GET /metrics over HTTP/1, one request a connection, on a thread of its own. Whoever
-/// connects can slow down nobody but others who do.
+/// Answers GET /metrics over HTTP/1, one request a connection, on a thread of its own. A connection
+/// can slow down only other connections.
 class MetricsListener {
  public:
-  /// \param page  called on the thread; what it throws is answered 503.
+  /// \param page  called on the thread; if it throws, the reply is 503.
   MetricsListener(MetricsPort port, std::function<std::string()> page, MetricsLimits limits = {});
   ~MetricsListener();  ///< no call after it; open connections are closed
   MetricsListener(const MetricsListener&) = delete;

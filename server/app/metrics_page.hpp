@@ -7,7 +7,7 @@
 
 namespace kinship::app {
 
-/// All that is measured, in Prometheus's text format: build, clients, service and process.
+/// All metrics in Prometheus's text format: build, clients, service and process.
 std::string metrics_page(const service::Service& service, std::size_t clients);
 
 }  // namespace kinship::app

@@ -6,8 +6,8 @@
 
 namespace kinship::app {
 
-/// Moves a store. What was done, and what is to be done next, goes to `out`, failures go to `err`,
-/// also how far it is if `show_progress`.
+/// Moves a store. Writes a summary and the next steps to `out`, failures to `err`, and progress to
+/// `err` if `show_progress`.
 /// \return kDone; kFailed, also while a server has the source open; kWrongUsage; kNotFound.
 int run_migrate_store(const MigrateStoreOptions& options, std::ostream& out, std::ostream& err,
                       bool show_progress);

@@ -9,7 +9,7 @@ class App;
 
 namespace kinship::app {
 
-/// Which store is to be brought where, or which move is to be ended.
+/// Source and destination of a move of a store, or the move to give up.
 struct MigrateStoreOptions {
   std::string from = {}, to = {};  ///< as --store names stores
   bool give_up = false;

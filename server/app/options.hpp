@@ -15,7 +15,7 @@
 
 namespace kinship::app {
 
-/// What one client may take, 0: as much as it likes (server/quotas, ServiceOptions).
+/// Quotas of one client, 0: no limit (server/quotas, ServiceOptions).
 struct ClientQuotaOptions {
   double attempts_per_s = 1000;
   double mb_per_s = 16;
@@ -27,12 +27,11 @@ struct ClientQuotaOptions {
   double stored_mb_per_day = 16'000;
 };
 
-/// What kinshipd was asked to do.
+/// Options of kinshipd as a server.
 struct ServerOptions {
-  std::filesystem::path store;  ///< of SQLite, or the URL of a PostgreSQL database
-  bool require_synchronous =
-      false;                  ///< of a database: acknowledge what a standby has, nothing else
-  bool primary_only = false;  ///< of a database: fits read no standby
+  std::filesystem::path store;       ///< of SQLite, or the URL of a PostgreSQL database
+  bool require_synchronous = false;  ///< of a database: acknowledge only data that a standby has
+  bool primary_only = false;         ///< of a database: fits read no standby
   std::uint32_t domain = 0;
   std::string network_interface;  ///< empty: loopback
   /// Folder of certificates and records of clients (kinshipd secure init); empty: no security.
@@ -42,7 +41,7 @@ struct ServerOptions {
   std::filesystem::path backup_folder;  ///< empty: the folder of the store
   std::size_t fit_memory_mb = 2048;     ///< of all fits together, at most
   int fit_niceness = 10;                ///< of these threads, 0 to 19
-  /// Part of one processor that rehearsing takes in the mean, 0 to 1; 0: nothing is rehearsed.
+  /// Mean fraction of one processor that rehearsing takes, 0 to 1; 0: no rehearsals.
   double rehearsal_fraction = 0.1;
   std::uint64_t free_space_watermark_mb = 64;  ///< with less free, no report is taken; 0: no limit
   std::uint64_t ballast_mb = 16;               ///< kept beside the store for a full disk; 0: none
@@ -52,7 +51,7 @@ struct ServerOptions {
   std::size_t distribution_memory_mb = 128;      ///< distributions in memory
   std::size_t path_memory_mb = 64;               ///< ways of paths in memory
   std::uint64_t max_wal_mb = 512;                ///< with more kept by readings, no report is taken
-  /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
+  /// Rate at which the store's file is scanned for damage, MB per second; 0: no scan.
   double scrub_mb_per_s = 4;
   ClientQuotaOptions client;
   std::string upstream;                     ///< URL of the memory above this site; empty: none
@@ -63,28 +62,28 @@ struct ServerOptions {
 
 enum class OfflineVerb { Check, Backup, Restore, Repair, Migrate };
 
-/// What is to be done to a store that no server has open.
+/// A verb on a store that no server has open, and its options.
 struct OfflineOptions {
   OfflineVerb verb = OfflineVerb::Check;
   std::filesystem::path store;
-  std::filesystem::path file;  ///< the backup that is made, or restored
+  std::filesystem::path file;  ///< the backup to make or to restore
   bool json = false;
 };
 
 using Options =
     std::variant<ServerOptions, OfflineOptions, MigrateStoreOptions, SecureOptions, int>;
 
-/// Options from the command line; what is not there from the file of --config; the domain then
-/// from the environment (KINSHIP_DOMAIN).
+/// Options from the command line, then from the file of --config; the domain then from the
+/// environment (KINSHIP_DOMAIN).
 /// \return the options, or an exit code after help, the configuration or a message was written.
 Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
-/// What serving without security means, for people; empty if nobody but this machine is served, or
-/// security says who may do what.
+/// A warning, for people, of the risks of serving without security; empty if only this machine is
+/// served or security is on.
 std::string insecurity_of(const ServerOptions& options);
 
 /// experience.db under $XDG_STATE_HOME/kinship, or under ~/.local/state/kinship. Empty if neither
-/// variable says where that is.
+/// variable gives a folder.
 std::filesystem::path default_store();
 
 }  // namespace kinship::app

@@ -8,15 +8,15 @@
 
 namespace kinship::app {
 
-/// Who has a UDP port of this machine.
+/// The holder of a UDP port of this machine.
 struct PortHolder {
   std::uint64_t inode = 0;  ///< of the socket
   uid_t user = 0;
-  pid_t process = 0;    ///< 0: not ours to see, e.g. another user's
+  pid_t process = 0;    ///< 0: not visible to this process, e.g. another user's
   std::string program;  ///< as `ps` calls it; empty without `process`
 };
 
-/// What /proc tells of it. \return nothing if nobody has the port.
+/// Reads it from /proc. \return nothing if the port is free.
 std::optional<PortHolder> find_port_holder(std::uint16_t port);
 
 }  // namespace kinship::app

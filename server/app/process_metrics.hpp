@@ -4,8 +4,8 @@
 
 namespace kinship::app {
 
-/// What this process takes of the machine, under the names that Prometheus's own libraries use.
-/// What /proc does not tell is left out.
+/// Resource use of this process, under the names that Prometheus's own libraries use. Values that
+/// /proc does not give are left out.
 void expose_process(metrics::Exposition& page);
 
 }  // namespace kinship::app

@@ -18,19 +18,19 @@ struct RowCursor {
   std::uint64_t check = 0;  ///< fingerprint() of that row
 };
 
-/// Tells a row that changed between two pages from one that did not.
+/// A hash of the row; it shows whether the row changed between two pages.
 std::uint64_t fingerprint(const std::string& row);
 
 std::string to_text(const RowCursor& cursor);
 
-/// \return the place, if the cursor is one of to_text(); otherwise the begin of the answer to it.
-///         InvalidInput if it looks like one and is not.
+/// \return the place if the cursor is one of to_text(), otherwise the beginning of the service's
+///         answer to the cursor; InvalidInput for a malformed cursor of to_text().
 Result<RowCursor> read_row_cursor(const std::string& cursor);
 
-/// The part of a reply that a page carries: all of it if it fits, else as much as does from
-/// `begin` on, the last row cut between two characters, with the cursor of the rest.
-/// \param reply  the whole answer of the service, its next_cursor being the service's.
-/// \return       Failed if the row in which the page begins is another one by now.
+/// The part of a reply that a page carries: all of it if it fits, else as much as fits from `begin`
+/// on, the last row cut between two characters, with the cursor of the rest.
+/// \param reply  the whole answer of the service, with the service's next_cursor.
+/// \return       Failed if the row in which the page begins has changed.
 AdminReply page_of(AdminReply reply, const RowCursor& begin);
 
 }  // namespace kinship::app

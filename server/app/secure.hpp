@@ -7,8 +7,8 @@
 
 namespace kinship::app {
 
-/// Does one verb to a security folder. What was done, and what is to be done next, goes to `out`,
-/// failures and warnings to `err`.
+/// Runs one verb on a security folder. Writes a summary and the next steps to `out`, failures and
+/// warnings to `err`.
 /// \return kDone, kFailed, kWrongUsage or kNotFound.
 int run_secure(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream& out,
                std::ostream& err);

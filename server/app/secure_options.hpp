@@ -22,7 +22,7 @@ enum class SecureVerb {
   RetireAuthority
 };
 
-/// What is to be done to a security folder.
+/// A verb on a security folder, and its options.
 struct SecureOptions {
   SecureVerb verb = SecureVerb::List;
   std::filesystem::path folder = {};

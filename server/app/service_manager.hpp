@@ -6,22 +6,24 @@
 
 namespace kinship::app {
 
-/// Tells systemd, or whoever else set NOTIFY_SOCKET, how the service is, e.g. "READY=1".
-/// \return false if nobody asked or the message could not be sent; nothing depends on it.
+/// Sends the state of the service, e.g. "READY=1", to systemd or another manager that set
+/// NOTIFY_SOCKET. \return false if NOTIFY_SOCKET is not set or the message could not be sent;
+/// nothing depends on it.
 /// Source: sd_notify(3), section "Notes", which describes the protocol.
 bool notify_service_manager(std::string_view state);
 
-/// "WATCHDOG=1" to the service manager, twice in the time after which it would take the service for
-/// dead (WatchdogSec of systemd), as long as somebody calls. Not to be shared between threads.
+/// Sends "WATCHDOG=1" to the service manager twice per watchdog timeout (WatchdogSec of systemd),
+/// as long as beat() is called. Not to be shared between threads.
 class Watchdog {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// Of the environment: WATCHDOG_USEC, if it is meant for this process (WATCHDOG_PID). Source:
-  /// sd_watchdog_enabled(3), which describes the variables.
+  /// Reads WATCHDOG_USEC from the environment if it is meant for this process (WATCHDOG_PID).
+  /// Source: sd_watchdog_enabled(3), which describes the variables.
   Watchdog();
 
-  /// Tells it if it is time to. \return when to call again; the end of time if nobody asked.
+  /// Sends the message if it is due. \return when to call again; TimePoint::max() without a
+  /// watchdog.
   TimePoint beat(TimePoint now);
 
  private:

@@ -9,8 +9,7 @@ namespace kinship::app {
 /// it before any other thread is made: threads inherit it.
 void hold_termination_signals();
 
-/// Turns held signals, earlier ones too, into calls on a thread of its own, where anything may be
-/// done.
+/// Turns held signals, earlier ones too, into calls on a thread of its own, where any code may run.
 class SignalWatcher {
  public:
   /// \param on_signal  called for each signal with its number; must not throw.
