@@ -23,18 +23,18 @@ struct ExportedRobot {
   RobotDescription description;
 };
 
-/// A line that goes out as it is, e.g. of a CSV file.
+/// A line that is sent unchanged, e.g. of a CSV file.
 struct TextLine {
   std::string text;
 };
 
-/// What a verb answers with (AdminVerb says which), as a value still.
+/// A row of the answer to a verb (AdminVerb says which), not yet encoded.
 using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
                               PathSummary, AttemptSummary, Attempt, DistributionSummary,
                               Distribution, Explanation, Eviction, ExportedRobot, Retirement,
                               RobotRemoval, Job, AuditEntry, ClientUse, BackupSummary, TextLine>;
 
-/// An AdminReply whose rows are values still.
+/// An AdminReply whose rows are not yet encoded.
 struct AdminPage {
   AdminStatus status = AdminStatus::Failed;
   std::vector<AdminRow> rows;
@@ -43,13 +43,13 @@ struct AdminPage {
   RetryAfter retry_after{0};
 };
 
-/// What went wrong, as a page without rows.
+/// The error as a page without rows.
 AdminPage page_of(const Error& error);
 
-/// How many rows a request asks for, at least 1.
+/// Number of rows that a request asks for, at least 1.
 std::size_t page_size(const AdminRequest& request);
 
-/// Where a page begins whose cursor is how many rows, or bytes, come before it; none: 0.
+/// Beginning of a page whose cursor is the number of rows, or bytes, before it; empty cursor: 0.
 /// \return InvalidInput for another cursor.
 Result<std::size_t> row_number(const std::string& cursor);
 
@@ -66,7 +66,7 @@ AdminPage page_of(Result<Row> row) {
   return row ? page_of(std::move(row).value()) : page_of(row.error());
 }
 
-/// So many of all rows, from the first one on; the cursor is the number of the next one.
+/// At most `limit` rows of `all` from `first` on; the cursor is the index of the next row.
 template <typename Row>
 AdminPage page_of(const std::vector<Row>& all, std::size_t first, std::size_t limit) {
   AdminPage answer;

@@ -26,39 +26,39 @@
 
 namespace kinship::service {
 
-/// Answers the questions of administrators and does what they ask for. Robots are named by label
-/// or by a digest prefix of at least four digits, paths by report UUID, distributions by an id
-/// prefix. May be shared between threads.
+/// Handles the requests of administrators. Robots are named by label or by a digest prefix of at
+/// least four digits, paths by report UUID, distributions by an id prefix. May be shared between
+/// threads.
 class Administration {
  public:
-  /// What it works with; all of it outlives it.
+  /// References and functions; the objects behind them outlive this one.
   struct Parts {
     store::Store& store;
     runtime::RobotRegistry& robots;
     Jobs& jobs;
     const runtime::Clock& clock;
     std::function<ServerStatus()> status;
-    /// What share of guidance is recommended now; empty: what the distribution says.
+    /// The share of guidance recommended now; empty: the one in the distribution.
     std::function<Advice(const Distribution&)> advise = {};
-    /// What was rehearsed with a distribution; null: nothing yet.
+    /// The rehearsal of a distribution; null: none yet.
     std::function<std::shared_ptr<const Rehearsal>(const Digest& distribution)> rehearsal =
         [](const Digest&) { return nullptr; };
-    /// A distribution was evicted from the store: nothing may serve it from memory.
+    /// A distribution was evicted from the store: no cache may serve it.
     std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
-    /// Paths of a task were retired: nothing that was made of them may be served.
+    /// Paths of a task were retired: distributions made of them may not be served.
     std::function<void(const std::string& task)> forget_task = [](const std::string&) {};
-    /// A robot was removed: nothing that was made for it may be served, nor told of it.
+    /// A robot was removed: its distributions may not be served, nor announced.
     std::function<void(const Digest& robot)> forget_robot = [](const Digest&) {};
-    /// Why the last fit of a distribution made nothing, in words; empty: it did.
+    /// Why the last fit of a distribution failed, as text; empty: it succeeded.
     std::function<std::string(const Digest&)> fit_trouble = [](const Digest&) {
       return std::string();
     };
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
-    /// Who takes how much.
+    /// Use of each client.
     std::function<std::vector<ClientUse>()> clients = [] { return std::vector<ClientUse>(); };
     BackupPlace backups = {};
     std::stop_token stop = {};  ///< ends a reset between two of its transactions
-    /// What was changed, in words, with its task (may be empty).
+    /// Called after a change, with its task (may be empty) and its description.
     std::function<void(const std::string& task, const std::string& what)> on_change =
         [](const std::string&, const std::string&) {};
   };
@@ -66,22 +66,24 @@ class Administration {
   explicit Administration(Parts parts)
       : parts_(std::move(parts)), trail_(parts_.store, parts_.clock) {}
 
-  /// Never throws: what fails is said in the page. ShowJob is answered as the job stands.
-  /// \param request_key  the request's name, which nobody else can make up, for it begins with the
-  ///                     caller's client: sent again, as after a lost reply, it begins no second
-  ///                     job, and changes nothing a second time. Empty: it is never sent again.
-  /// \param caller  its role was looked at before (server/access); what it is narrowed to is here.
+  /// Never throws: the page carries the error. ShowJob is answered with the job's current state.
+  /// \param request_key  identifies the request; it begins with the caller's client, so other
+  ///                     clients cannot forge it. A request sent again, e.g. after a lost reply,
+  ///                     begins no second job and changes nothing a second time. Empty: it is never
+  ///                     sent again.
+  /// \param caller  its role was checked before (server/access); its limits to tasks and robots are
+  ///                checked here.
   AdminPage answer(const AdminRequest& request, const std::string& request_key,
                    const Caller& caller);
 
-  /// Keeps in the audit log that a change was refused. \return the page that says so.
+  /// Writes a refused change to the audit log. \return the page with the refusal.
   AdminPage refuse(const AdminRequest& request, const Caller& caller, const Error& refusal);
 
  private:
   /// A request on its way to the handler of its verb.
   struct Call {
     const AdminRequest& request;
-    const std::string& key;  ///< the request's name, see answer()
+    const std::string& key;  ///< the request's key, see answer()
     const AuditEntry& audit;
   };
   using Handler = AdminPage (Administration::*)(const Call& call);
@@ -125,7 +127,7 @@ class Administration {
   AdminPage hash_backup(const Call& call);
   AdminPage read_backup(const Call& call);
 
-  /// \throws Failure(InvalidInput) for a name that is none; Failure(NotFound).
+  /// \throws Failure(InvalidInput) for an invalid name; Failure(NotFound).
   BackupFile open_backup(const std::string& name) const;
   AdminPage begin_audited(Result<Jobs::Task> task, const AuditEntry& audit);
   AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);

@@ -12,13 +12,12 @@
 
 namespace kinship::service {
 
-/// The changes that were answered last, by the requests that asked for them: one that is sent
-/// again, as after a lost reply, is answered as it was, neither done nor logged again. May be
-/// shared between threads.
+/// The latest answers to changes, by request: a request sent again, e.g. after a lost reply, gets
+/// the same answer and is neither executed nor logged again. May be shared between threads.
 class AnsweredChanges {
  public:
   static constexpr std::size_t kKept = 256;
-  /// Of all pages together, about. One that is larger than that is not kept.
+  /// Limit of all pages together, approximate. A larger page is not kept.
   static constexpr std::size_t kKeptBytes = std::size_t{1} << 20U;
 
   std::optional<AdminPage> find(const std::string& request_key) const {
@@ -27,7 +26,7 @@ class AnsweredChanges {
     return found == pages_.end() ? std::nullopt : std::optional<AdminPage>(found->page);
   }
 
-  /// What failed may be tried again.
+  /// Does not keep a failed change: it may be tried again.
   void keep(const std::string& request_key, const AdminPage& page) {
     const std::size_t bytes = request_key.size() + page.message.size() + reply_bytes(page);
     if (request_key.empty() || page.status == AdminStatus::Failed || bytes > kKeptBytes)

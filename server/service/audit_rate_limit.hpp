@@ -12,20 +12,21 @@
 
 namespace kinship::service {
 
-/// How many entries of what was not done each client may have in the audit log: so many at once,
-/// and one a second from then on. Whoever is refused may ask for ever, and nothing is ever taken
-/// out of the log; nor may one client's refusals hide another's. May be shared between threads.
+/// Limits the entries of refused and failed requests that each client may have in the audit log: a
+/// burst, then one per second. A refused client may ask for ever, and entries are never removed
+/// from the log; nor may one client's refusals hide another's. May be shared between threads.
 class AuditRateLimit {
  public:
   static constexpr std::uint64_t kAtOnce = 100;
-  /// That are told apart. While none of them has all of its allowance back, newcomers share one.
+  /// Clients with a bucket of their own. While none of these buckets is full again, new clients
+  /// share one.
   static constexpr std::size_t kClients = 256;
 
   /// \param clock  outlives it.
   explicit AuditRateLimit(const runtime::Clock& clock) : clock_(clock) {}
 
-  /// Takes one. \return how many of the client's were left out since its last one; nothing if this
-  /// one is left out, too.
+  /// Takes one entry. \return number of the client's entries left out since its last one; nothing
+  /// if this one is left out, too.
   std::optional<std::uint64_t> take(const std::string& client);
 
  private:

@@ -13,29 +13,30 @@
 
 namespace kinship::service {
 
-/// Who asks for what, as the audit log names it.
+/// The caller and the request as an entry of the audit log.
 AuditEntry audit_entry(const Caller& caller, const AdminRequest& request);
 
-/// Writes what the store does not write with a change of its own: what was not done, and what is no
-/// change of the store. May be shared between threads.
+/// Writes the audit entries that the store does not write together with a change: refusals,
+/// failures, and actions that do not change the store. May be shared between threads.
 class AuditTrail {
  public:
   /// \param store, clock  outlive the trail.
   AuditTrail(store::Store& store, const runtime::Clock& clock) : store_(store), allowance_(clock) {}
 
-  /// Before something is done: what cannot be kept is not done.
+  /// Call before an action: an action that cannot be logged is not taken.
   /// \throws Failure(Storage)
   void begin(AuditEntry entry, const std::string& before);
-  /// Before something is handed out that is no change: as Done. \throws Failure(Storage)
+  /// Call before data is handed out, which changes nothing: logged as Done. \throws
+  /// Failure(Storage)
   void hand_out(AuditEntry entry, const std::string& what);
-  /// After it was done. What cannot be kept now is in the log as begun.
+  /// Call after an action. If the entry cannot be written, the log has the action as begun.
   void end(AuditEntry entry, const std::string& before, const std::string& after) noexcept;
-  /// Of something that was refused or failed, unless the page is Ok; of one client so many
-  /// (AuditRateLimit), but for the end of what is in the log as begun. The next one kept counts the
-  /// others.
+  /// Logs a refused or failed request; does nothing if the page is Ok. Limited per client
+  /// (AuditRateLimit), except for the end of an action that is in the log as begun. The next entry
+  /// written has the number of those left out.
   void not_done(AuditEntry entry, const AdminPage& page) noexcept;
 
-  /// Keeps how a job ended that `entry` began; the trail outlives it.
+  /// A function that logs the end of a job that `entry` began; the trail outlives it.
   std::function<void(const Job&)> ending(AuditEntry entry);
 
  private:

@@ -8,12 +8,13 @@
 
 namespace kinship::service {
 
-/// How far a waypoint may lie outside a joint limit, joint units: rounding of a client, no more.
+/// Distance by which a waypoint may exceed a joint limit, joint units: for a client's rounding
+/// only.
 inline constexpr double kLimitTolerance = 1e-6;
 
-/// What makes an attempt without a fault (find_fault(), where it came in) none of this robot, or
-/// nothing: a path of other joints, or outside their limits. The first thing found is named with
-/// its value and limit; joints and waypoints count from 1.
+/// Why a valid attempt (checked by find_fault() on arrival) does not fit this robot, or nothing:
+/// its path has another number of joints, or lies outside their limits. The error names the first
+/// violation with its value and limit; joints and waypoints count from 1.
 std::optional<Error> check_attempt(const Attempt& attempt, const runtime::Robot& robot);
 
 }  // namespace kinship::service

@@ -13,21 +13,22 @@
 
 namespace kinship::service {
 
-/// Tells people who watch what happens, at most so many events a second: the rest is counted, and
-/// the next event says how many were left out. May be shared between threads.
+/// Sends events to people who watch, at most `per_second` of them: the rest is counted, and the
+/// next event carries the number left out. May be shared between threads.
 class EventFeed {
  public:
   /// Called from any thread, without a lock; must not throw or block.
   using Sink = std::function<void(const Event&)>;
 
   /// \param clock  outlives the feed.
-  /// \param sink   empty: nobody watches, nothing is done.
+  /// \param sink   empty: no events are sent.
   EventFeed(const runtime::Clock& clock, Sink sink, std::size_t per_second = 1000)
       : clock_(clock), sink_(std::move(sink)), per_second_(per_second) {}
   EventFeed(const EventFeed&) = delete;
   EventFeed& operator=(const EventFeed&) = delete;
 
-  /// \param text   makes the line; called only if the event is told. It is cut to kMaxEventBytes.
+  /// \param text   makes the line; called only if the event is sent. The line is cut to
+  ///               kMaxEventBytes.
   /// \param robot  label or short digest; may be empty, as may the task.
   template <typename Text>
   void tell(EventKind kind, std::string_view task, std::string_view robot, const Text& text) {
@@ -49,7 +50,7 @@ class EventFeed {
   std::chrono::steady_clock::time_point second_began_{};
   std::size_t told_ = 0;       // in this second
   std::uint64_t dropped_ = 0;  // since construction
-  std::uint64_t unsaid_ = 0;   // of these, those no event has spoken of
+  std::uint64_t unsaid_ = 0;   // of these, not yet reported by an event
 };
 
 }  // namespace kinship::service

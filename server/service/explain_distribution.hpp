@@ -11,13 +11,13 @@ namespace kinship::service {
 inline constexpr const char* kNotServed =
     "paths that it may be made of were retired, it is not served any more";
 
-/// Adds what the store lists without: placement and selection, and whether a distribution was made
-/// of paths which are retired, so that it is in the store and not served.
+/// Adds the fields that the store's listing lacks: placement and selection, and whether a
+/// distribution was made of paths that are retired, so that the store has it but it is not served.
 /// \throws Failure(Storage)
 void complete_summaries(const store::Store& store, std::vector<DistributionSummary>& distributions);
 
-/// How a distribution stands to the experience of now, and when it is fitted next. Its mixture is
-/// left out, and so is what was rehearsed.
+/// Compares a distribution with the current experience, and says when it is fitted next. Without
+/// its mixture and its rehearsal.
 /// \param now_ms  Unix time, UTC.
 /// \throws Failure(Storage)
 Explanation explain_distribution(const store::Store& store, Distribution distribution,

@@ -8,7 +8,7 @@
 #include "proto/types/uuid.hpp"
 #include "server/store/store.hpp"
 
-/// Things as people name them.
+/// Look-ups by the names that people use.
 namespace kinship::service {
 
 /// By label or by a digest prefix of at least four digits; reads no description.
@@ -16,11 +16,11 @@ namespace kinship::service {
 Result<RobotSummary> find_robot(const store::Store& store, const std::string& name);
 
 /// By an id prefix of at least four digits.
-/// \return NotFound, InvalidInput for what is no prefix, or Conflict that names two candidates.
-///         A whole id is returned also if there is no such distribution.
+/// \return NotFound, InvalidInput for an invalid prefix, or Conflict that names two candidates. A
+///         whole id is returned even if no distribution has it.
 Result<Digest> find_distribution_id(const store::Store& store, const std::string& name);
 
-/// \throws Failure(InvalidInput) for what is no UUID.
+/// \throws Failure(InvalidInput) for an invalid UUID.
 Uuid report_of(const std::string& text);
 
 /// "no task 'bin'"

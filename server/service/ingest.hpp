@@ -23,35 +23,37 @@
 
 namespace kinship::service {
 
-/// Takes reports in: checks each attempt against its robot, hands the good ones to the store and
-/// answers a batch once, in its order, when all of it is decided. May be shared between threads.
+/// Takes in reports: checks each attempt against its robot, passes valid ones to the store, and
+/// answers a batch once, in its order, when every attempt has its receipt. May be shared between
+/// threads.
 class Ingest {
  public:
   struct Options {
-    std::size_t max_attempts = 4096;  ///< taken in and not yet answered; more are asked to wait
+    std::size_t max_attempts = 4096;  ///< taken in and not yet answered; more get TryAgain
     std::size_t max_bytes = std::size_t{64} << 20U;  ///< of their waypoints and scenes
     // Of one client, 0: no limit.
     std::size_t client_attempts = 1024;
     std::size_t client_bytes = std::size_t{16} << 20U;
-    /// A client was told that it has as many on their way as one may have.
+    /// Called when a client was refused because its own limit is reached.
     std::function<void(const std::string& client, const std::string& message)> on_over_quota =
         [](const std::string&, const std::string&) {};
-    /// Whether it is known without asking the store that it has a task.
+    /// Whether the store is known to have a task, without asking it.
     std::function<bool(const std::string& task)> is_known_task = [](const std::string&) {
       return true;
     };
-    /// Whether a client may bring attempts of a task that is not known so; may ask the store.
+    /// Whether a client may report attempts of a task for which is_known_task is false; may ask the
+    /// store.
     std::function<std::optional<quotas::Refusal>(const std::string& client,
                                                  const std::string& task)>
         may_begin_task = [](const std::string&, const std::string&) { return std::nullopt; };
-    /// Called on the store's writer thread for each attempt of a client that is kept, with the
-    /// bytes of its path if that is.
+    /// Called on the store's writer thread for each stored attempt of a client, with the bytes of
+    /// its path if the path was stored.
     std::function<void(const std::string& client, const std::string& task, std::size_t bytes)>
         on_kept = [](const std::string&, const std::string&, std::size_t) {};
     /// Called on the store's writer thread for each task that has a new path, before the reply.
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
-    /// Called before each reply, on the thread that gives it: what a batch's attempts cost, and how
-    /// they fared. Must not throw or block.
+    /// Called before each reply, on its thread, with the costs and receipts of a batch's attempts.
+    /// Must not throw or block.
     std::function<void(std::span<const catalog::AttemptCost>, std::span<const Receipt>)> on_answer =
         [](std::span<const catalog::AttemptCost>, std::span<const Receipt>) {};
   };
@@ -64,33 +66,33 @@ class Ingest {
   Ingest(const Ingest&) = delete;
   Ingest& operator=(const Ingest&) = delete;
 
-  /// \param retry_after  when to send again what is to be tried again; 0: the client's own time.
+  /// \param retry_after  when to send TryAgain attempts again; 0: the client decides.
   using Done = std::function<void(const std::vector<Receipt>&, RetryAfter retry_after)>;
 
   /// `done` is called once, on this thread, a worker of `short_task_pool` or the store's writer
   /// thread; it must not throw or block. TryAgain for all of them if too much waits already.
-  /// \param client  whose they are; empty: nobody's, without a quota.
+  /// \param client  that reports them; empty: no client, without a quota.
   void submit(std::vector<Attempt> attempts, Done done, const std::string& client = {});
 
-  /// From now on everything is answered TryAgain; returns when everything before is answered.
+  /// Answers every later batch TryAgain; returns when all earlier ones are answered.
   void drain();
 
   /// Attempts, since construction; counted again when a client resends them.
   std::uint64_t received() const noexcept { return received_; }
   std::uint64_t refused() const noexcept { return refused_; }
   std::size_t queued() const;  ///< attempts taken in and not yet answered
-  std::map<std::string, std::size_t> queued_of_clients() const;  ///< of those that have some
+  std::map<std::string, std::size_t> queued_of_clients() const;  ///< without clients that have none
 
  private:
   struct Batch;
   using BatchPointer = std::shared_ptr<Batch>;
 
-  /// How much of something has been taken in and not yet answered.
+  /// Attempts and bytes taken in and not yet answered.
   struct Load {
     std::size_t attempts = 0, bytes = 0;
   };
 
-  /// \return why not; empty: it was.
+  /// \return the reason of a refusal; empty: it was taken in.
   std::string take_in(Batch& batch);
   void let_go_of_client(const Batch& batch);
   void let_go(const Batch& batch);

@@ -20,15 +20,15 @@ class JobRows {
   std::size_t size() const noexcept { return ends_.size(); }  ///< number of rows
   std::size_t bytes() const noexcept;                         ///< of memory
 
-  /// Rows from `first` on: at most `limit`, and no more than `max_bytes` together, but for the
-  /// first, which is there however long it is.
+  /// Rows from `first` on: at most `limit`, and at most `max_bytes` together, but at least the
+  /// first one, however long it is.
   std::vector<std::string> page(std::size_t first, std::size_t limit, std::size_t max_bytes) const;
 
  private:
   std::string_view row(std::size_t index) const;
 
   const std::size_t max_bytes_;
-  std::string text_;               // the rows, one behind the other
+  std::string text_;               // the rows, concatenated
   std::vector<std::size_t> ends_;  // of each row in text_
 };
 

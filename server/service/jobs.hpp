@@ -21,10 +21,10 @@
 
 namespace kinship::service {
 
-/// Neither waits nor runs any more.
+/// True for a job that neither waits nor runs.
 bool has_ended(JobState state) noexcept;
 
-/// What a job is given while it runs, on the thread of the jobs.
+/// The context of a running job, on the thread of the jobs.
 class JobRun {
  public:
   JobRun(std::stop_token stop, std::size_t max_row_bytes)
@@ -35,16 +35,16 @@ class JobRun {
   void set_progress(double progress) noexcept { progress_ = progress; }  ///< 0 to 1
   double progress() const noexcept { return progress_; }
 
-  JobRows rows;         ///< what JobRows of the admin conversation reads once the job is done
-  std::string message;  ///< what it made, in words
+  JobRows rows;         ///< read by JobRows of the admin conversation once the job is done
+  std::string message;  ///< its result, as text
 
  private:
   std::stop_token stop_;
   std::atomic<double> progress_{0};
 };
 
-/// Long verbs: a bounded queue, one at a time on a thread of their own, and the ended ones for a
-/// while. May be shared between threads.
+/// Runs long verbs: a bounded queue, one job at a time on a thread of their own; ended jobs are
+/// kept for a while. May be shared between threads.
 class Jobs {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -67,17 +67,17 @@ class Jobs {
     std::function<void(const Job&)> on_end = [](const Job&) {};
   };
 
-  /// A long verb to be begun.
+  /// A long verb to run.
   struct Task {
     std::string verb, argument;
-    /// The request that asks for it. Sent again, as after a lost reply, it begins no second job;
+    /// Key of its request. A request sent again, e.g. after a lost reply, begins no second job;
     /// empty: it is never sent again.
     std::string request_key;
-    std::string owner = {};  ///< the client that begins it; empty: nobody, without a quota
-    /// Called once with the job as it ended, before anybody else is told: by the thread that runs
-    /// it, in cancel() or in stop(). It must not throw.
+    std::string owner = {};  ///< the client that begins it; empty: none, without a quota
+    /// Called once with the ended job, before any other callback: by the thread that runs it, in
+    /// cancel() or in stop(). It must not throw.
     std::function<void(const Job&)> on_end = [](const Job&) {};
-    /// \return false if it ended early because it should stop. What it throws makes it Failed.
+    /// \return false if it ended early because it should stop. An exception makes it Failed.
     std::function<bool(JobRun&)> run;
   };
 
@@ -86,26 +86,26 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  /// \return the job as it stands; Unavailable, with the limit, if too many wait, of its owner or
-  ///         in all, or if jobs stop.
+  /// \return the job's current state; Unavailable, with the limit, if too many wait, of its owner
+  ///         or in all, or if jobs stop.
   Result<Job> begin(Task task);
-  /// Why an owner cannot begin one now: what begin() would return.
+  /// The error that begin() would return for an owner now.
   std::optional<Error> refusal_of(const std::string& owner) const;
 
   std::optional<Job> begun_by(const std::string& request_key) const;
-  /// From the one that was begun last. Jobs are forgotten from the oldest on: a page after a
-  /// forgotten one is empty. \param cursor  of the page before; empty: the first page.
+  /// Jobs, the latest first. The oldest are forgotten first: a page after a forgotten job is empty.
+  /// \param cursor  of the page before; empty: the first page.
   store::Page<Job> list(const std::string& cursor, std::size_t limit) const;
   Result<Job> find(const std::string& id) const;  ///< NotFound
   std::optional<std::string> owner_of(const std::string& id) const;
   std::size_t active() const;  ///< not ended
 
-  /// A queued job ends at once and frees its place, a running one soon. One that finishes before
-  /// it notices is Done. Ended ones stay as they are. \return the job as it stands; NotFound.
+  /// Ends a queued job at once and frees its place, a running one soon. A job that finishes before
+  /// it notices is Done. Ended jobs stay as they are. \return the job's current state; NotFound.
   Result<Job> cancel(const std::string& id);
 
-  /// Rows of a job that is done, from row `first` on; at most `limit`, and `max_bytes` together,
-  /// but at least one. \return InvalidInput, with its state, for any other job; NotFound.
+  /// Rows of a done job, from row `first` on; at most `limit`, and `max_bytes` together, but at
+  /// least one. \return InvalidInput, with its state, for any other job; NotFound.
   struct RowPage {
     std::vector<std::string> rows;
     std::size_t next = 0;  ///< 0: no more
@@ -113,17 +113,17 @@ class Jobs {
   Result<RowPage> rows(const std::string& id, std::size_t first, std::size_t limit,
                        std::size_t max_bytes) const;
 
-  /// `done` is called once with the job as it stands when it has ended or `deadline` has come: on
-  /// this thread, the jobs' own, in cancel(), expire() or stop(). It must not throw or block.
+  /// `done` is called once with the job's current state when it has ended or `deadline` has come:
+  /// on this thread, the jobs' own, in cancel(), expire() or stop(). It must not throw or block.
   using Done = std::function<void(const Result<Job>&)>;
   void wait(const std::string& id, TimePoint deadline, Done done);
 
-  /// When expire() has something to do next; empty: not before the next call.
+  /// When expire() is due next; empty: not before the next call.
   std::optional<TimePoint> next_deadline() const;
-  /// Answers those who have waited long enough and forgets what was kept long enough.
+  /// Answers waiters whose deadline has come and forgets jobs kept for `kept_for`.
   void expire(TimePoint now);
 
-  /// Cancels everything and returns when the running job has ended. A second call returns at once.
+  /// Cancels all jobs and returns when the running one has ended. A second call returns at once.
   void stop();
 
  private:
@@ -134,7 +134,7 @@ class Jobs {
     TimePoint deadline;
     Done done;
   };
-  /// What is called once no lock is held.
+  /// Callbacks to make once no lock is held.
   struct Calls {
     std::vector<std::pair<std::function<void(const Job&)>, Job>> ended;
     std::vector<std::pair<Done, Job>> answers;

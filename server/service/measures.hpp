@@ -16,11 +16,11 @@
 
 namespace kinship::service {
 
-/// How a fetch ended: what FetchStatus tells, and where a distribution came from.
+/// Outcome of a fetch: the FetchStatus, and the source of a distribution.
 enum class FetchOutcome : std::uint8_t {
   Memory,  ///< answered at once with a distribution
   Store,   ///< one that was not in memory
-  Fitted,  ///< one that was made meanwhile
+  Fitted,  ///< one that was fitted meanwhile
   Pending,
   NoExperience,
   UnknownRobot,
@@ -37,9 +37,9 @@ inline constexpr std::array<std::string_view, 9> kFetchOutcomeNames = {
 inline constexpr std::array<std::string_view, 6> kReceiptNames = {
     "stored", "duplicate", "recorded", "refused", "try_again", "unknown_robot"};
 
-/// One fetch on its way: when it came, and whether the catalog answered it at once, which is on the
-/// thread that asks (a worker may be done before the catalog's fetch() returns). Made by the thread
-/// that asks, used by that and by the one that answers.
+/// One fetch in progress: its arrival time, and whether the catalog answered it at once, i.e. on
+/// the requesting thread (a worker may be done before the catalog's fetch() returns). Made by the
+/// requesting thread; used by it and by the answering thread.
 class FetchWatch {
  public:
   explicit FetchWatch(const runtime::Clock& clock)
@@ -50,7 +50,7 @@ class FetchWatch {
     is_at_once_ = !is_asked_ && std::this_thread::get_id() == asking_;
   }
 
-  /// Of a reply that goes out now.
+  /// Outcome of a fetch that is answered with `reply` now.
   FetchOutcome outcome(const FetchReply& reply) const;
   std::chrono::steady_clock::duration age() const { return clock_.now() - began_; }
 
@@ -62,13 +62,13 @@ class FetchWatch {
   std::atomic<bool> is_asked_ = false, is_at_once_ = false;
 };
 
-/// Numbers that a service counts as things happen. Each may be used by any thread.
+/// Counters and histograms of a service. Each may be used by any thread.
 struct Measures {
   metrics::Histogram receipts;  ///< from a batch to its receipts
   std::array<metrics::Counter, kReceiptNames.size()> attempts;
   std::array<metrics::Histogram, kFetchOutcomeNames.size()> fetches;
-  metrics::Histogram transfers, fits;    ///< time of each that made a distribution
-  metrics::Counter failed_fits;          ///< that made none, for what is known to be wrong
+  metrics::Histogram transfers, fits;    ///< duration of each that made a distribution
+  metrics::Counter failed_fits;          ///< that made none, for a known reason
   std::array<metrics::Counter, 3> jobs;  ///< ended: Done, Failed, Cancelled
 
   void count(const FetchReply& reply, const FetchWatch& watch) noexcept;

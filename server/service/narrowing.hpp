@@ -10,19 +10,19 @@
 
 namespace kinship::service {
 
-/// An admin request of a caller whose certificate is for some tasks or robots only: what it asks
-/// for by name is refused in the same words whether it is there or not, what it asks for by an id
-/// is not found, and of a listing the rows of others are left out (so a page may be short, or
-/// empty, before the last one). Does nothing for other callers.
+/// Restricts the admin requests of a caller whose certificate is for some tasks or robots only: a
+/// request for another name is refused with the same text whether it exists or not, one for another
+/// id is NotFound, and rows of others are left out of a listing (so a page may be short, or empty,
+/// before the last one). Does nothing for other callers.
 class Narrowing {
  public:
-  /// Both outlive it.
+  /// Both outlive the object.
   Narrowing(const store::Store& store, const Caller& caller) : store_(store), caller_(caller) {}
 
-  /// \throws Failure(InvalidInput, NotFound), before anything is done.
+  /// \throws Failure(InvalidInput, NotFound); call it before the request is handled.
   void check(const AdminRequest& request) const;
 
-  /// Takes out of an answer what is about others.
+  /// Removes rows about other tasks and robots from an answer.
   void apply(AdminPage& page) const;
 
  private:

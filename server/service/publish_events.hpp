@@ -10,22 +10,22 @@
 #include "server/runtime/robot_registry.hpp"
 #include "server/service/event_feed.hpp"
 
-/// What the service does, told to people who watch.
+/// Events of the service, for people who watch.
 namespace kinship::service {
 
 void publish_registered(EventFeed& feed, const RobotDescription& description,
                         const RegisterReply& reply);
 
-/// One event per robot and task of a batch, and one for what was refused of it.
+/// One event per robot and task of a batch, and one for its refused attempts.
 /// \param robots  knows labels.
 void publish_report(EventFeed& feed, const runtime::RobotRegistry& robots,
                     std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
 
-/// Attempts that broke a rule before anybody knew whose they are.
+/// Attempts that were refused before their robot was known.
 void publish_refused(EventFeed& feed, std::span<const Receipt> receipts);
 
-/// A fetch of a task's experience alone names no robot: it is answered UnknownRobot, with what was
-/// asked for, and is no refusal.
+/// A fetch of a task's experience alone names no robot: it is answered UnknownRobot, with the
+/// experience, and is no refusal.
 void publish_fetch(EventFeed& feed, const runtime::RobotRegistry& robots,
                    const FetchRequest& request, const FetchReply& reply);
 

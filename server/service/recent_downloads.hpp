@@ -12,9 +12,9 @@
 
 namespace kinship::service {
 
-/// Of which backups the audit log says that a client has them digested or read, since the server
-/// started: it reads them piece by piece, and that is one entry. The last ones are known; of
-/// another there is a second entry. May be shared between threads.
+/// Backups whose digest or bytes a client has requested since the server started, so that the audit
+/// log has an entry: a client reads a backup piece by piece, and that is one entry. Only the latest
+/// are known; an older one gets a second entry. May be shared between threads.
 class RecentDownloads {
  public:
   static constexpr std::size_t kKept = 1024;

@@ -61,8 +61,8 @@ struct ServiceOptions {
   std::chrono::milliseconds store_patience{2000};  ///< see StoreStatusReader
   std::size_t max_queued_attempts = 4096;
   std::size_t client_attempts = 1024;  ///< of one client, taken in and not yet answered
-  quotas::ClientRates client_rates;    ///< what one client may take in the course of time
-  std::size_t max_robots = 1024;       ///< parsed ones in memory; others are read when needed
+  quotas::ClientRates client_rates;    ///< quotas of one client over time
+  std::size_t max_robots = 1024;       ///< parsed and in memory; others are read when needed
   /// Of replies, leases, waiting fetches and fits, in all and of one client.
   catalog::CatalogState::Limits catalog;
   catalog::ExperienceIndex::Limits experience;
@@ -71,12 +71,12 @@ struct ServiceOptions {
   runtime::Clock clock;
   catalog::Catalog::Fit fit;  ///< empty: fit_distribution
   Jobs::Limits jobs;
-  /// Something happened, for people who watch; at most 1000 a second (event_feed.hpp). Called from
-  /// any thread, must not block. Empty: nobody watches.
+  /// Events for people who watch; at most 1000 a second (event_feed.hpp). Called from any thread,
+  /// must not block. Empty: no events.
   std::function<void(const Event&)> on_event;
-  /// There is a newer revision of a followed distribution. Called on a worker.
+  /// A followed distribution has a newer revision. Called on a worker.
   std::function<void(const Announcement&)> on_announcement = [](const Announcement&) {};
-  /// Nobody follows a distribution any more. Called from any thread.
+  /// The last client has stopped following a distribution. Called from any thread.
   std::function<void(const Digest& id)> on_unfollowed = [](const Digest&) {};
   /// next_deadline() is earlier than it was. Called from any thread.
   std::function<void()> wake = [] {};
@@ -98,16 +98,16 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Whether a client may ask for something now, before it is even read; not: when it may. Counts
-  /// what may come in.
-  /// \param client  who asks, here and below; empty: nobody in particular, without a quota.
-  /// \param bytes, attempts  that the request has.
+  /// Whether a client may send a request now, asked before the request is decoded; a refusal says
+  /// when it may. Counts admitted requests.
+  /// \param client  the caller, here and below; empty: no particular client, without a quota.
+  /// \param bytes, attempts  of the request.
   std::optional<quotas::Refusal> admit(const std::string& client, std::size_t bytes,
                                        std::size_t attempts = 0);
-  /// The same of a registration.
+  /// The same for a registration.
   std::optional<quotas::Refusal> admit_robot(const std::string& client, std::size_t bytes);
 
-  /// What memory can answer does not wait for the store. `done` is not called if the server is
+  /// Answers from memory without the store where possible. `done` is not called if the server is
   /// stopping or the store cannot take it: the client asks again.
   /// \param may_take  see RobotRegistry::register_robot.
   void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done,
@@ -115,42 +115,42 @@ class Service {
                       runtime::RobotRegistry::LabelRule may_take = {});
   void report(ReportRequest request, std::function<void(const ReportReply&)> done,
               const std::string& client = {});
-  /// \param waiter  who asks; see Catalog::fetch.
+  /// \param waiter  the caller; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
-  /// \param request_key  the request's name (catalog::client_of); see Administration::answer.
-  /// \param caller  who asks: what it may not (server/access) is refused before anything is done.
+  /// \param request_key  the request's key (catalog::client_of); see Administration::answer.
+  /// \param caller  a request that it may not make (server/access) is refused first.
   void administer(AdminRequest request, const std::string& request_key,
                   const std::function<void(const AdminPage&)>& done, const Caller& caller);
 
-  /// The labels of registered robots; those of others are missing. An error says why one cannot be
-  /// told now: of the store, or Unavailable if too much waits. `done` is called at most once; not
-  /// if the server is stopping.
+  /// The labels of robots; those that are not registered are missing. An error says why a label
+  /// cannot be read now: the store's error, or Unavailable if too many tasks wait. `done` is called
+  /// at most once; not if the server is stopping.
   using RobotLabels = std::map<Digest, Result<std::string>>;
   void name_robots(const std::set<Digest>& robots, std::function<void(const RobotLabels&)> done,
                    const std::string& client);
 
-  /// Answers, and counts, what is refused before it is asked of the service.
+  /// Answers and counts requests that are refused before they reach the service.
   void refuse_registration(const std::string& label, const std::string& why,
                            const std::function<void(const RegisterReply&)>& done);
   void refuse_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
-  /// The same of what cannot be told now: Busy, and when to ask again.
+  /// The same for a fetch that cannot be answered now: Busy, and when to ask again.
   void postpone_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
-  /// What somebody else changed in the store is no longer served from memory. Called by itself
-  /// where a store has several servers. One call at a time. \throws Failure(Storage)
+  /// Stops serving from memory data that another server changed in the store. The service calls it
+  /// itself where a store has several servers. One call at a time. \throws Failure(Storage)
   void take_changes(const store::StoreChanges& changes);
 
-  /// For the loop that waits: when to call expire(), and with what time.
+  /// For the wait loop: when to call expire().
   std::optional<catalog::Catalog::TimePoint> next_deadline() const;
   void expire(catalog::Catalog::TimePoint now);
 
   ServerStatus status() const;
-  /// Everything that is measured, for who watches many servers (service_metrics.cpp). Reads the
-  /// store's status; where that fails, its families are left out and one says so. Not for the
-  /// thread that waits on the network.
+  /// All metrics, for monitoring of many servers (service_metrics.cpp). Reads the store's status;
+  /// if that fails, its families are left out and one family says so. Not for the thread that waits
+  /// on the network.
   void expose(metrics::Exposition& page) const;
 
-  /// Accepts nothing more, makes what was reported durable and answers it, answers waiting
+  /// Accepts no more requests, makes reported attempts durable and answers them, answers waiting
   /// fetches Busy, gives up fits and jobs, and returns when all of that is done. A second call
   /// returns at once. Not to be called from a `done`.
   void shutdown();

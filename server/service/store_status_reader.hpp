@@ -13,25 +13,26 @@
 
 namespace kinship::service {
 
-/// What a store says of itself. It is asked on a thread of its own: nobody waits for long for a
-/// store that does not answer, as one behind a network or on a disk that hangs, and is told what it
-/// said last. May be shared between threads.
+/// Reads the status of a store on a thread of its own: a caller does not wait long for a store that
+/// does not answer, e.g. behind a network or on a disk that hangs, and gets its last status. May be
+/// shared between threads.
 class StoreStatusReader {
  public:
   /// \param store     outlives the reader; it is asked once at the beginning.
-  /// \param patience  how long a question may take.
+  /// \param patience  longest time of a read.
   StoreStatusReader(const store::Store& store, runtime::Clock clock,
                     std::chrono::milliseconds patience);
   ~StoreStatusReader() { stop(); }
   StoreStatusReader(const StoreStatusReader&) = delete;
   StoreStatusReader& operator=(const StoreStatusReader&) = delete;
 
-  /// As it is now; or as it was, not writable, with a message, if the store does not answer. One
-  /// question at a time waits for that, the others are answered at once. A store that has never
-  /// answered is waited for. \throws what the store throws.
+  /// The current status; or the last one, not writable, with a message, if the store does not
+  /// answer. One call at a time waits for that, others return at once. Waits for a store that has
+  /// never answered. \throws the store's exceptions.
   store::StoreStatus read();
 
-  /// Ends the thread, after what the store is answering. From then on whoever reads asks the store.
+  /// Ends the thread, after the store's pending answer. Later calls of read() ask the store
+  /// themselves.
   void stop();
 
  private:
@@ -43,9 +44,9 @@ class StoreStatusReader {
   const std::chrono::milliseconds patience_;
   std::mutex mutex_;  // guards what follows, but for the thread
   std::condition_variable asked_for_, answered_for_;
-  std::uint64_t asked_ = 1;     // questions so far; the first one is ours
+  std::uint64_t asked_ = 1;     // reads so far; the first one is ours
   std::uint64_t answered_ = 0;  // of them
-  bool is_silent_ = false;      // somebody has waited in vain for what the store is answering
+  bool is_silent_ = false;      // a call has waited in vain for the store's pending answer
   bool is_stopping_ = false;
   std::optional<store::StoreStatus> last_;
   std::chrono::steady_clock::time_point last_at_{};

@@ -12,17 +12,17 @@
 
 namespace kinship::service {
 
-/// Tells what anybody changed in a store that has several servers, on a thread of its own. Where
-/// one server has the store to itself there is no thread. A store that cannot be asked is asked
-/// again: nothing is left out then, for what has been told is known by a cursor.
+/// Notifies of changes in a store that has several servers, on a thread of its own. Where one
+/// server has the store to itself there is no thread. A store that cannot be read is read again: a
+/// cursor marks the changes already notified, so none is left out.
 class StoreWatch {
  public:
-  /// How long what another server did may go unnoticed.
+  /// Longest time for which a change of another server goes unnoticed.
   static constexpr std::chrono::milliseconds kInterval{250};
 
   /// \param store    outlives the watch.
-  /// \param changed  called on the watch's thread with what is new; may throw for a store that
-  ///                 cannot be read, and is then called with the same once more.
+  /// \param changed  called on the watch's thread with the new changes; may throw for a store that
+  ///                 cannot be read, and is then called with the same changes again.
   StoreWatch(const store::Store& store, std::function<void(const store::StoreChanges&)> changed);
   ~StoreWatch() { stop(); }
   StoreWatch(const StoreWatch&) = delete;
