@@ -6,17 +6,17 @@
 
 namespace kinship::access {
 
-/// What a withheld source is called; its digest is zeros.
+/// Label of a withheld source; its digest is zeros.
 inline constexpr const char* kOtherRobot = "(another robot)";
 
-/// Whether what is about several robots has to go through withhold_sources() for this caller.
+/// Whether data about several robots must pass withhold_sources() for this caller.
 bool withholds_sources(const Caller& caller) noexcept;
 
-/// Takes out which robots, beside the caller's own, a distribution was made of: labels, digests,
-/// and texts that quote a label. What they contributed stays, in numbers.
+/// Removes the identity of a distribution's source robots, except the caller's own: labels,
+/// digests, and texts that quote a label. The numbers of their contributions stay.
 void withhold_sources(const Caller& caller, Distribution& distribution);
 
-/// The same of a reply to a fetch, its message and its ways.
+/// The same for a reply to a fetch, with its message and its pose paths.
 void withhold_sources(const Caller& caller, const Digest& fetched_for, FetchReply& reply);
 
 }  // namespace kinship::access
