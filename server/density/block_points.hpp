@@ -14,7 +14,7 @@ namespace kinship::density {
 /// block is filled up with its last point, at weight 0. Immutable: threads may share it.
 class BlockPoints {
  public:
-  /// \param configurations  d x N; of them those that `distinct` names, at least one.
+  /// \param configurations  d x N; only the columns in `distinct` are used, at least one.
   /// \param offset          d, becomes the origin.
   /// \throws Stopped.
   BlockPoints(const Eigen::Ref<const Eigen::MatrixXd>& configurations, DistinctPoints distinct,
@@ -52,8 +52,8 @@ class BlockPoints {
 Eigen::VectorXd mean_of(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                         const DistinctPoints& distinct);
 
-/// So many of the points, or all if they are fewer, spread evenly over the block order, which is a
-/// fair sample of space; their weights have the mean 1.
+/// `count` of the points, or all if they are fewer, spread evenly over the block order, which is a
+/// fair sample of space; the mean of their weights is 1.
 BlockPoints thinned(const BlockPoints& points, Eigen::Index count);
 
 }  // namespace kinship::density

@@ -7,9 +7,9 @@
 
 namespace kinship::density {
 
-/// Which columns of a matrix of configurations stand for the distinct ones of positive weight, in
-/// lexicographic order of the configurations, and what each weighs. So neither the order of the
-/// configurations nor repetition matters to what is computed from them.
+/// Columns of a matrix of configurations that hold the distinct ones of positive weight, in
+/// lexicographic order of the configurations, and their weights. So results do not depend on the
+/// order or repetition of configurations.
 struct DistinctPoints {
   std::vector<std::uint32_t> columns;
   std::vector<double> weights;  ///< positive, sum their number: the average point weighs 1

@@ -10,14 +10,14 @@
 
 namespace kinship::density {
 
-/// When to stop, and what to add to variances and covariances.
+/// When to stop, and the terms added to variances and covariances.
 struct EmOptions {
   Eigen::VectorXd floors;  ///< d, squared joint units
   int max_iterations = 50;
   double tolerance = 1e-2;  ///< mean log-likelihood, nats
   Computation computation = {};
-  Eigen::MatrixXd prior_scatter = {};  ///< d x d, as maximisation() takes it; empty: no prior
-  double least_mass_share = 1;         ///< as well
+  Eigen::MatrixXd prior_scatter = {};  ///< d x d, see maximisation(); empty: no prior
+  double least_mass_share = 1;         ///< see maximisation()
 };
 
 struct EmRun {
@@ -25,7 +25,7 @@ struct EmRun {
   std::vector<double> log_likelihoods;  ///< after each iteration; the last is that of `mixture`
 };
 
-/// A start is made of so many points.
+/// Points of which a start is made.
 inline constexpr Eigen::Index kSamplePoints = 20'000;
 
 /// The mixture of at most `components` k-means clusters of (a sample of) the points, without a
@@ -38,8 +38,8 @@ Mixture start_mixture(const BlockPoints& points, Eigen::Index components, std::u
 /// falls.
 EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options);
 
-/// The same mixture, where the expectation of the start is known and nobody asks how likely the
-/// last one is: two passes less.
+/// The same mixture, if the expectation of the start is known and the final likelihood is not
+/// needed: two passes less.
 Mixture run_em_from(Mixture start, Expectation first, const BlockPoints& points,
                     const EmOptions& options);
 

@@ -10,18 +10,18 @@
 
 namespace kinship::density {
 
-/// How sums over points are computed; what comes out differs by rounding only, and by nothing
-/// between numbers of threads.
+/// How sums over points are computed. Options change results by rounding only, the number of
+/// threads not at all.
 struct Computation {
   int threads = 1;
-  bool prune = true;  ///< leave out what no digit of the result shows
+  bool prune = true;  ///< leave out terms below the precision of the result
   const SimdKernels* kernels = &widest_simd_kernels();
-  std::stop_token stop = {};  ///< looked at in each block of points: Stopped is thrown
+  std::stop_token stop = {};  ///< checked in each block of points: throws Stopped
 };
 
-/// What the points say about each component: sums over the points, weighted by point weight and
-/// responsibility, relative to the points' offset. Column k holds those of 1 (the mass), of
-/// q_0 ... q_{d-1}, and of q_i q_j, (0,0), (0,1) ... (1,1) ...
+/// Moments of each component: sums over the points, weighted by point weight and responsibility,
+/// relative to the points' offset. Column k holds those of 1 (the mass), of q_0 ... q_{d-1}, and of
+/// q_i q_j, (0,0), (0,1) ... (1,1) ...
 struct Moments {
   Eigen::MatrixXd sums;  ///< (d + 1) (d + 2) / 2 x K
   int dimension = 0;

@@ -16,28 +16,28 @@
 namespace kinship::density {
 
 struct FitOptions {
-  /// K, lowered to what the configurations can carry. 0: chosen by hold-out of paths.
+  /// K, lowered to a number that the configurations can support. 0: chosen by hold-out of paths.
   int components = 50;
   double covariance_floor = 1e-4;  ///< added to each variance, squared joint units
   /// d, instead of covariance_floor, where joints have different units; empty: all the same.
   Eigen::VectorXd floors_of_joints = {};
-  /// How strongly covariances are drawn towards what the k-means clusters have in common: as so
-  /// many points in each component would (prior_scatter). 0: not. kChosenPrior: chosen by hold-out
-  /// of paths.
+  /// How strongly covariances are drawn towards the mean covariance of the k-means clusters: as
+  /// this many points in each component would (prior_scatter). 0: not at all. kChosenPrior: chosen
+  /// by hold-out of paths.
   double prior = 0;
   int max_iterations = 50;  ///< 0: the start as it is
   double tolerance = 1e-2;  ///< stop when the mean log-likelihood gains less, nats
   std::uint64_t seed = 0;
   Computation computation = {};
-  /// N, counted from 0 without gaps: which path each configuration comes from. Needed to choose K
-  /// or a prior.
+  /// N: the path of each configuration, numbered from 0 without gaps. Needed to choose K or a
+  /// prior.
   std::vector<std::uint32_t> path_of_configuration = {};
   /// 2 x d, lower and upper, joint units: within them scores have their uniform background. Empty:
   /// the box of the configurations.
   Eigen::Matrix2Xd limits = {};
-  /// Where most of the configurations were fitted before: EM begins with that mixture and clusters
-  /// of what it does not know, which are merged down again. With components = 0, K stays what it
-  /// was, and the prior does in any case. Empty: a full fit.
+  /// If most of the configurations were fitted before: EM begins with that mixture and with
+  /// clusters of the configurations that it describes badly, which are merged down again. With
+  /// components = 0, K stays as it was; the prior does in any case. Empty: a full fit.
   std::optional<WarmStart> warm_start = {};
 };
 
@@ -46,10 +46,10 @@ struct FitSummary {
   /// Weighted mean per configuration after each iteration over all of them, nats; the last is that
   /// of `mixture`.
   std::vector<double> log_likelihoods;
-  /// If K was chosen by hold-out: what was tried, from most components to fewest.
+  /// If K was chosen by hold-out: the scores, from most components to fewest.
   std::vector<ComponentScore> curve = {};
-  /// Of the fifth of the paths that held_out_paths() names: the highest of the curve, or that of
-  /// the prior that was chosen.
+  /// On the fifth of the paths given by held_out_paths(): the highest of the curve, or that of the
+  /// chosen prior.
   std::optional<double> held_out_score = {};
   double prior = 0;                    ///< that was used; 0 after a warm start
   Eigen::MatrixXd prior_scatter = {};  ///< d x d, for a warm start; empty: there was no prior
@@ -57,17 +57,17 @@ struct FitSummary {
 
 /// Fits a Gaussian mixture with full covariances: k-means++ start, Lloyd iterations, EM.
 ///
-/// A K that is to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
-/// prune_components) when the others are fitted; the mixture of that K is then refitted to all.
-/// Below kMinPathsToScore paths it is components_of_few_paths, without a curve.
+/// A K to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
+/// prune_components) after a fit to the others; a mixture of that K is then refitted to all. Below
+/// kMinPathsToScore paths it is components_of_few_paths, without a curve.
 ///
-/// A prior that is to be chosen is the one of choose_prior() on at most kPriorPoints of the paths'
-/// points, with as many components as the fit has; kPriorOfOnePath where nothing can be held out.
+/// A prior to be chosen is the one of choose_prior() on at most kPriorPoints of the paths' points,
+/// with as many components as the fit has; kPriorOfOnePath if no path can be held out.
 ///
 /// A warm start adds at most kMaxNewComponents, runs EM on a sample (kIterationsBeforeMerging),
-/// merges down to K and runs EM again, at most kWarmPasses times where the sample is not all there
-/// is: cheaper than a full fit, and what comes out depends on the mixture it began with. It leaves
-/// curve and held_out_score empty.
+/// merges down to K and runs EM again, at most kWarmPasses times if the sample is not all points:
+/// cheaper than a full fit, and its result depends on the mixture it began with. It leaves curve
+/// and held_out_score empty.
 ///
 /// K is lowered so that each component can have 2 (d + 1) distinct configurations, and components
 /// that lose their data on the way are left out. With more than one and a half times kSamplePoints
@@ -91,7 +91,7 @@ inline constexpr Eigen::Index kSamplePointsPerComponent = 400;
 inline constexpr Eigen::Index kPriorPoints = 8'000;
 inline constexpr int kFullPasses = 6;
 
-/// K where there are too few paths to choose it: one per four paths, at least 1.
+/// K if there are too few paths to choose it: one per four paths, at least 1.
 int components_of_few_paths(std::uint32_t paths);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.

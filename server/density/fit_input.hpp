@@ -14,7 +14,7 @@
 #include "server/density/block_points.hpp"
 #include "server/density/distinct_points.hpp"
 
-/// What every estimator asks of its input.
+/// Checks of the input, common to all estimators.
 namespace kinship::density {
 
 inline constexpr double kLargestValue = 1e6;  ///< joint units; squares still leave room for floors
@@ -31,8 +31,9 @@ Result<DistinctPoints> usable_points(const Eigen::Ref<const Eigen::MatrixXd>& co
 /// InvalidInput: a computation with covariances failed, so the floors are too small for the data.
 Error too_flat(const Failure& failure, const Eigen::VectorXd& floors, std::string_view who);
 
-/// What an estimator makes of usable points, or why it cannot.
-/// \param floors  d, added to each variance; named where a Failure says that they are too small.
+/// Runs an estimator on the usable points. \return the estimate, or why there is none.
+/// \param floors  d, added to each variance; named in the message of a Failure that they are too
+///                small.
 /// \param make    DistinctPoints -> the estimate.
 template <typename Make>
 Result<std::invoke_result_t<Make, DistinctPoints>> estimate_of(
@@ -60,13 +61,13 @@ void check_sizes(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
 bool are_paths_of(const std::vector<std::uint32_t>& path_of_configuration,
                   Eigen::Index configurations);
 
-/// Configurations, what each weighs and which path it comes from: all of them, or the parts that
-/// are fitted and scored where some paths are held out. The arguments outlive it.
+/// Configurations with their weights and paths: all of them, or the parts that are fitted and
+/// scored if some paths are held out. The arguments outlive the object.
 class WeightedConfigurations {
  public:
   /// \param configurations         d x N.
   /// \param weights                N.
-  /// \param path_of_configuration  N, or empty where nobody asks for paths.
+  /// \param path_of_configuration  N, or empty if paths are not needed.
   WeightedConfigurations(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                          const Eigen::Ref<const Eigen::VectorXd>& weights,
                          const std::vector<std::uint32_t>& path_of_configuration,
@@ -85,7 +86,7 @@ class WeightedConfigurations {
     DistinctPoints held_out;
   };
   /// \param held_out  one flag per path.
-  /// \return nothing if there is too little on either side.
+  /// \return nothing if either side has too few points.
   std::optional<Split> split(const std::vector<std::uint8_t>& held_out) const;
 
  private:

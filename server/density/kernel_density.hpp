@@ -15,7 +15,7 @@ struct KernelDensityOptions {
   Eigen::VectorXd floors_of_joints;  ///< d, added to each variance, squared joint units
   std::uint64_t seed = 0;
   Computation computation = {};
-  /// N, counted from 0 without gaps: which path each configuration comes from.
+  /// N: the path of each configuration, numbered from 0 without gaps.
   std::vector<std::uint32_t> path_of_configuration;
   /// 2 x d, lower and upper, joint units: centres that lie within stay there, and scores have their
   /// uniform background there. Empty: the box of the configurations.
@@ -34,8 +34,8 @@ struct Bandwidth {
 struct KernelDensity {
   Mixture mixture;  ///< at most kMaxKernels components, one covariance, means that f32 can hold
   Bandwidth bandwidth;
-  /// On the first fifth of the paths (held_out_paths), of kernels of the others with the bandwidth
-  /// that was chosen; none below kMinPathsToScore paths.
+  /// On the first fifth of the paths (held_out_paths), of kernels of the others with the chosen
+  /// bandwidth; none below kMinPathsToScore paths.
   std::optional<double> held_out_score = {};
 };
 
@@ -43,11 +43,11 @@ struct KernelDensity {
 /// configuration, all with one covariance.
 ///
 /// Of more than kMaxKernels configurations a sample of that size is drawn in proportion to weight,
-/// spread evenly over space. The bandwidth is the one that scores best on paths that the kernels
-/// know nothing of: a fifth of the paths (held_out_paths); up to 60 of them the mean over each
-/// fifth in turn, below kMinPathsToScore over each path in turn; with one path it is
-/// scale_of_one_path(d) and one cluster. Centres are rounded to f32, towards the inside of a limit
-/// they would cross. Deterministic: equal input, equal bytes, whatever the number of threads.
+/// spread evenly over space. The bandwidth is the one that scores best on held-out paths: a fifth
+/// of the paths (held_out_paths); up to 60 of them the mean over each fifth in turn, below
+/// kMinPathsToScore over each path in turn; with one path it is scale_of_one_path(d) and one
+/// cluster. Centres are rounded to f32, towards the inside of a limit they would cross.
+/// Deterministic: equal input, equal bytes, whatever the number of threads.
 /// \param configurations  d x N, at most 1e6 in magnitude, joint units.
 /// \param weights         N, non-negative, positive sum.
 /// \return InvalidInput as fit_mixture.
@@ -60,8 +60,8 @@ Result<KernelDensity> estimate_kernel_density(
     const Eigen::Ref<const Eigen::MatrixXd>& configurations,
     const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelDensityOptions& options);
 
-/// Silverman's rule (1986, section 4.3.2) for a sample of one: how far another path may be is a
-/// matter of paths, not of their configurations.
+/// Silverman's rule (1986, section 4.3.2) for a sample of one: the distance to another path depends
+/// on the paths, not on the number of their configurations.
 double scale_of_one_path(Eigen::Index dimension);
 
 }  // namespace kinship::density

@@ -9,7 +9,7 @@ namespace kinship::density {
 
 /// Merges pairs of components until at most `components` are left, each time the pair whose merging
 /// costs least by an upper bound of the Kullback-Leibler divergence; the total mean and covariance
-/// stay what they are.
+/// stay the same.
 /// \param components  at least 1.
 /// \throws Failure(Internal) if a covariance, or by rounding that of each pair, is not definite;
 ///         Stopped.

@@ -10,7 +10,7 @@ namespace kinship::density {
 /// The components of a mixture as the kernels read them (simd_kernels.hpp).
 class PackedMixture {
  public:
-  /// \param offset  d: what the points are relative to.
+  /// \param offset  d: the origin of the points.
   /// \throws Failure(Internal) if a covariance is not positive definite or below about 1e-240.
   /// Source: Bishop, Pattern Recognition and Machine Learning (2006), eq. 2.43.
   PackedMixture(const Mixture& mixture, const Eigen::VectorXd& offset);
@@ -22,7 +22,7 @@ class PackedMixture {
   const double* component(int k) const noexcept {
     return one_by_one_.data() + static_cast<std::ptrdiff_t>(k) * stride_of_component_;
   }
-  /// Number by number, entry e of component k at e * stride() + k; what is added to K repeats the
+  /// Number by number, entry e of component k at e * stride() + k; the padding beyond K repeats the
   /// first component.
   const double* interleaved() const noexcept { return interleaved_.data(); }
 

@@ -4,10 +4,10 @@
 
 namespace kinship::density {
 
-/// Does the parts 0 to parts - 1 of a work, each once, on up to `threads` threads (this one among
-/// them). Which thread does which part is not said: results belong to parts, never to threads.
+/// Runs the parts 0 to parts - 1 of a job, each once, on up to `threads` threads (this one among
+/// them). The thread of a part is unspecified: results belong to parts, never to threads.
 /// \param part  may run at the same time as other parts.
-/// \throws what a part threw; of several the one with the lowest number. All parts are tried.
+/// \throws the exception of a part; of several, that of the lowest number. All parts are tried.
 void for_each_part(int threads, int parts, const std::function<void(int)>& part);
 
 }  // namespace kinship::density

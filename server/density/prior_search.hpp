@@ -14,19 +14,18 @@ namespace kinship::density {
 struct PriorFold {
   BlockPoints training;
   Eigen::Index components = 0;  ///< that the training points may have
-  double share =
-      1;  ///< of the points they stand for that they are: what mass a prior has shrinks by
+  double share = 1;  ///< of these points in those they stand for; the mass of a prior shrinks by it
   BlockPoints held_out;
 };
 
 struct PriorChoice {
   double prior = 0;
-  /// Nats, the first fold's; none if no prior could be computed with, and it is 0.
+  /// Score of the first fold, nats; none if no prior could be computed, then `prior` is 0.
   std::optional<double> score_of_first = {};
 };
 
-/// The scatter that `prior` points have which lie like those of clusters: prior times the mean
-/// covariance of the components, each counted by its weight.
+/// The scatter of `prior` points distributed like those of the clusters: prior times the mean
+/// covariance of the components, weighted by their weights.
 /// \return d x d, or empty for a prior of 0.
 Eigen::MatrixXd prior_scatter(const Mixture& clusters, double prior);
 
@@ -38,7 +37,7 @@ Eigen::MatrixXd prior_scatter(const Mixture& clusters, double prior);
 PriorChoice choose_prior(const std::vector<PriorFold>& folds, double log_uniform,
                          std::uint64_t seed, const EmOptions& options);
 
-/// Where nothing can be held out.
+/// The prior if no path can be held out.
 inline constexpr double kPriorOfOnePath = 40;
 
 }  // namespace kinship::density

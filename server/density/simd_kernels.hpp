@@ -2,15 +2,15 @@
 
 namespace kinship::density {
 
-/// Points per block: so many stay in the nearest cache with the terms of some components.
+/// Points per block: they fit the nearest cache with the terms of some components.
 inline constexpr int kBlockPoints = 128;
 
 /// Numbers in the packed form of a component, of its moments or of a symmetric matrix with a row
 /// more: 1, d and d (d + 1) / 2 of them.
 constexpr int packed_size(int dimension) { return (dimension + 1) * (dimension + 2) / 2; }
 
-/// The inner loops of fits, compiled once per instruction set. Plain numbers only: what includes
-/// this header is built for machines that not every reader of the program is.
+/// The inner loops of fits, compiled once per instruction set. Plain numbers only: sources that
+/// include this header are compiled for instructions that not every machine has.
 ///
 /// A block is d rows of kBlockPoints numbers: row i holds joint i of its points. A *packed*
 /// component is its log scale c, then for each row i of its whitening W the offset b_i and
@@ -31,8 +31,8 @@ struct SimdKernels {
   /// \param terms    out: kBlockPoints.
   /// \param largest  in and out: kBlockPoints, the largest term of each point so far.
   /// \param least_largest  out: the least of `largest` afterwards.
-  /// \return         by how much a term exceeds (or, negative, stays below) the largest of before,
-  ///                 at the point where that is most.
+  /// \return         largest amount by which a term exceeds (or, negative, stays below) the
+  ///                 previous largest one of its point.
   double (*log_terms)(int dimension, const double* points, const double* component, double* terms,
                       double* largest, double* least_largest);
 
@@ -50,13 +50,13 @@ struct SimdKernels {
   void (*add_moments)(int dimension, const double* points, const double* responsibilities,
                       const double* weights, double* sums);
 
-  /// Squared distances to the nearest centre if `centre` is one more.
+  /// Squared distances to the nearest centre after `centre` is added.
   /// \param before   kBlockPoints; `after`: the same with the centre, may be `before`.
   /// \return         their sum, weighted.
   double (*nearer)(int dimension, const double* points, const double* weights, const double* centre,
                    const double* before, double* after);
 
-  /// Which of `count` centres is nearest to each point, the first of equally near ones.
+  /// Index of the nearest of `count` centres for each point, the first of equally near ones.
   /// \param centres  count x d, centre by centre.
   /// \param chosen   out: kBlockPoints numbers below count.
   void (*nearest)(int dimension, const double* points, int count, const double* centres,

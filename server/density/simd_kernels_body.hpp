@@ -1,6 +1,6 @@
 // The kernels, in vectors of kLanes numbers. Included once by each source that is compiled for one
-// instruction set and has defined kLanes; nothing here may have a name outside that source, nor
-// call a function that has: it would be shared with code for machines without the instructions.
+// instruction set and has defined kLanes; nothing here may have external linkage, nor call a
+// function that has: it would be shared with code for machines without the instructions.
 
 #include <utility>
 
@@ -29,8 +29,8 @@ inline Vector lesser(Vector a, Vector b) { return a < b ? a : b; }
 
 inline Vector magnitude(Vector a) { return a < 0 ? -a : a; }
 
-/// Where the lanes of two vectors go that become one: of `kStep` lanes each in turn, the first or
-/// the second ones.
+/// Source lane of a lane of the vector that two become: of groups of `kStep` lanes each in turn,
+/// the first or the second ones.
 template <int kStep, bool kSecond>
 constexpr int source_of(int lane) {
   const int within = lane % (2 * kStep), group = lane - within;
@@ -43,7 +43,7 @@ inline Vector taken(Vector a, Vector b, std::integer_sequence<int, kLane...>) {
   return __builtin_shufflevector(a, b, source_of<kStep, kSecond>(kLane)...);
 }
 
-/// The sums of so many vectors in a row, each in a lane of its own if they are kLanes; of fewer in
+/// The sums of kCount vectors in a row, each in a lane of its own if they are kLanes; of fewer, in
 /// parts, which are repeated.
 template <int kCount>
 inline Vector sums_of(const Vector* vectors) {
@@ -57,7 +57,8 @@ inline Vector sums_of(const Vector* vectors) {
   }
 }
 
-/// What is left of a vector when each lane had to do with one `kStep` further.
+/// Reduces a vector to one number: combines each lane with the one `kStep` further, then with half
+/// the step, down to 1.
 template <int kStep = kLanes / 2, typename Choose>
 inline double folded(Vector value, const Choose& choose) {
   if constexpr (kStep == 0) {
@@ -138,7 +139,7 @@ void bounds(int dimension, const double* components, int stride, const double* c
   }
 }
 
-/// Keeps what log_terms promises besides the terms.
+/// The results of log_terms besides the terms.
 struct Largest {
   double* largest;
   Vector excess = spread(-1.7e308);
@@ -311,7 +312,7 @@ void add_moment_rows(const double* points, const double* responsibilities, const
   }
 }
 
-/// Where a group of rows that begins here ends, so that its sums fit the registers.
+/// End of a group of rows that begins at `begin`, such that its sums fit the registers.
 constexpr int end_of_rows(int dimension, int begin) {
   const int registers = kLanes == 8 ? 26 : 12;
   int count = 0, end = begin;
