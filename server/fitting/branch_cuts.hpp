@@ -12,14 +12,15 @@ namespace kinship::fitting {
 /// per joint an angle in [-pi, pi), or empty for a joint that has limits.
 using BranchCuts = std::vector<std::optional<double>>;
 
-/// Cuts each continuous joint in the middle of the largest gap between its angles; where they are
-/// all around, that gap is small and what lies beside it is torn apart, but nowhere less is.
+/// Cuts each continuous joint in the middle of the largest gap between its angles; if they are all
+/// around the circle, that gap is small and neighbours across it are torn apart, but fewer than at
+/// any other cut.
 /// \param configurations  dof x N, N >= 1, finite.
 /// \return dof entries, or none if no joint of the chain is continuous.
 BranchCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& configurations);
 
-/// Whether earlier cuts are as good as new ones: each in a gap between the angles that is at least
-/// half as wide as the largest.
+/// Whether earlier cuts are still good: each in a gap between the angles that is at least half as
+/// wide as the largest.
 bool still_cuts(const BranchCuts& cuts, const kinematics::Chain& chain,
                 const Eigen::MatrixXd& configurations);
 

@@ -9,8 +9,8 @@
 
 namespace kinship::fitting {
 
-/// What the configurations of a fit were filtered with, how many that left out, and what was not
-/// filtered and why; at most kMaxMessageBytes.
+/// The filters applied to the configurations of a fit, the number left out, and the filters not
+/// applied and why; at most kMaxMessageBytes.
 std::string describe_filters(const TransferParameters& wanted, const runtime::Robot& target,
                              const std::vector<SourceSummary>& sources);
 

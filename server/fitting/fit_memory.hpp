@@ -24,33 +24,33 @@ struct FullFit {
   std::vector<double> masses;  ///< of the sources, in their order
   std::optional<double> held_out_score;
   std::vector<ComponentScore> component_scores;
-  Eigen::MatrixXd prior_scatter = {};  ///< that covariances had besides; empty: none
+  Eigen::MatrixXd prior_scatter = {};  ///< added to the covariances; empty: none
 };
 
-/// What a fit leaves behind for the next one of the same distribution.
+/// State that a fit keeps for the next fit of the same distribution.
 struct WarmState {
   KnownPaths paths;                ///< it used
   std::vector<Digest> sources;     ///< of which it used a path, ascending
   std::optional<Mixture> mixture;  ///< none: the next fit is a full one
   std::uint64_t revision = 0;      ///< of that mixture
   BranchCuts cuts;                 ///< it was fitted with
-  FullFit full;                    ///< itself, or the one it goes back to
+  FullFit full;                    ///< this fit, or the last full one before it
 };
 
-/// What fits left behind, by distribution, bounded by size: the one not used for longest goes
-/// first. In memory only: a server that starts anew makes full fits. May be shared between threads.
+/// Cache of the states of fits, by distribution, bounded by size: evicts the least recently used.
+/// In memory only: after a restart the server makes full fits. May be shared between threads.
 class FitMemory {
  public:
   using State = std::shared_ptr<const WarmState>;
 
-  /// About what 15 distributions of 4000 paths each leave, or 300 of 500 paths.
+  /// About 15 distributions of 4000 paths each, or 300 of 500 paths.
   static constexpr std::size_t kDefaultBytes = std::size_t{256} << 20U;
 
   explicit FitMemory(std::size_t max_bytes = kDefaultBytes) : max_bytes_(max_bytes) {}
 
-  State find(const Digest& id);  ///< null if there are none; the last ones used from now on
+  State find(const Digest& id);  ///< null if there is none; counts as a use
 
-  /// Replaces those of this distribution. What is larger than the limit is not kept.
+  /// Replaces the state of this distribution. A state above the limit is not kept.
   void put(const Digest& id, State warm_state);
 
   void erase(const Digest& id);

@@ -12,7 +12,7 @@
 
 namespace kinship::fitting {
 
-/// What a fit could need at most, from numbers that are known before anything is transferred.
+/// Upper bound of the resources of a fit, from numbers known before the transfer.
 struct FitNeed {
   std::uint64_t paths = 0;      ///< that are transferred
   std::uint64_t poses = 0;      ///< of all of them together
@@ -22,7 +22,7 @@ struct FitNeed {
   std::size_t bytes = 0;        ///< of memory at once
 };
 
-/// Which fit, and how much of each source it wants.
+/// A fit, and the number of paths it reads from each source.
 struct FitSize {
   const DistributionKey& key;
   const std::vector<store::ExperienceSummary>& experience;
@@ -31,12 +31,12 @@ struct FitSize {
   int threads = 1;
 };
 
-/// With as many poses a path as the profile allows; without a limit of its own, as a path may have
+/// With as many poses per path as the profile allows; if it has no limit, as a path may have
 /// waypoints. Reads nothing.
 FitNeed need_at_most(const FitSize& size);
 
-/// The same with the lengths of the paths, which the store has beside them: of each source its
-/// longest ones. Reads a listing of the source's paths. \throws Failure(Storage); Stopped.
+/// The same with the lengths of the paths, which the store has: of each source the longest ones.
+/// Reads a listing of the source's paths. \throws Failure(Storage); Stopped.
 FitNeed need_by_length(const FitSize& size, const store::Store& store, const std::stop_token& stop);
 
 /// One configuration of the pool, with every copy that a fit makes of it.

@@ -11,9 +11,8 @@
 
 namespace kinship::fitting {
 
-/// Values by distribution, each with the bytes it occupies, in the order of their last use: what a
-/// bounded memory drops when it is full is the one not used for longest. Not shared between
-/// threads.
+/// Values by distribution, each with its size in bytes, in the order of their last use, for caches
+/// that evict the least recently used value. Not shared between threads.
 template <typename Value>
 class LastUsed {
  public:
@@ -44,10 +43,10 @@ class LastUsed {
       drop(known->second);
   }
 
-  /// Drops the one not used for longest; there is one.
+  /// Drops the least recently used value. \pre not empty.
   void drop_oldest() { drop(std::prev(nodes_.end())); }
 
-  /// Whose values fulfil a condition, without using them.
+  /// Ids of the values that fulfil a condition; does not count as a use.
   template <typename Condition>
   std::vector<Digest> ids_of(Condition is_one) const {
     std::vector<Digest> ids;

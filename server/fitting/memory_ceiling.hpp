@@ -8,15 +8,15 @@
 
 namespace kinship::fitting {
 
-/// What all fits together may take of memory: each reserves what it could need at most before it
-/// begins, and waits while others have too much of it. May be shared between threads.
+/// Limits the memory of all fits together: each reserves its upper bound before it begins, and
+/// waits while others hold too much. May be shared between threads.
 class MemoryCeiling {
  public:
   explicit MemoryCeiling(std::size_t max_bytes) : max_bytes_(max_bytes) {}
   MemoryCeiling(const MemoryCeiling&) = delete;
   MemoryCeiling& operator=(const MemoryCeiling&) = delete;
 
-  /// Some of it, given back when this ends. The ceiling outlives it.
+  /// Reserved memory, given back on destruction. The ceiling outlives it.
   class Reservation {
    public:
     Reservation() = default;
@@ -42,7 +42,7 @@ class MemoryCeiling {
     std::size_t bytes_ = 0;
   };
 
-  /// Waits for others, if need be.
+  /// Reserves memory; waits for others if necessary.
   /// \param bytes  at most max_bytes().
   /// \throws std::invalid_argument if they are more; Stopped.
   Reservation reserve(std::size_t bytes, const std::stop_token& stop);

@@ -19,14 +19,14 @@
 
 namespace kinship::fitting {
 
-/// What became of one stored path.
+/// Outcome of one stored path.
 struct PathOutcome {
   std::optional<KnownPath> path;  ///< none: it cannot be used
   bool was_known = false;         ///< from an earlier fit
   std::string problem;            ///< why it cannot
 };
 
-/// Transfers paths to one target, several at a time; the others' results do not depend on that.
+/// Transfers paths to one target, several at a time, which does not change the results.
 class PathTransfer {
  public:
   /// \param store, key, target, prepared  outlive it.
@@ -37,24 +37,24 @@ class PathTransfer {
                const transfer::TargetRobot& prepared, const KnownPaths* known, int threads);
 
   /// \param pair  of the paths' robot and the target.
-  /// \param stop  looked at all the time: those that are left have neither path nor problem.
-  /// \return      one per path, in their order. A bad path costs nothing but itself.
+  /// \param stop  checked throughout; then the remaining outcomes have neither path nor problem.
+  /// \return      one per path, in their order. A bad path does not affect the others.
   std::vector<PathOutcome> transfer(std::span<const store::StoredPath> paths,
                                     const transfer::ArmPair& pair, const std::stop_token& stop);
 
  private:
-  /// What one thread needs for itself: worlds of collisions are asked by one at a time.
+  /// State of one thread: a collision world may be used by one thread at a time.
   struct Lane {
     transfer::ConfigurationFilter self;
     SceneFilters scenes;
   };
-  /// A path on its way, and what is known of it before.
+  /// A path in progress, and its known fields.
   struct Prepared {
     std::size_t index = 0;
     transfer::Filters filters;
     KnownPath known;
   };
-  /// The paths of a call, and the next that no thread has taken.
+  /// The paths of a call, and the next one to take.
   struct Queue {
     std::span<const store::StoredPath> paths;
     std::vector<std::size_t> unknown;  // indices of paths

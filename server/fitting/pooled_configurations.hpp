@@ -12,20 +12,20 @@
 
 namespace kinship::fitting {
 
-/// Collects the configurations that paths became, source by source, and decides what each weighs
+/// Collects the configurations of transferred paths, source by source, and computes their weights
 /// in a fit. Not shared between threads.
 class PooledConfigurations {
  public:
   /// \param dof  of the target robot.
   explicit PooledConfigurations(Eigen::Index dof) : dof_(dof) {}
 
-  /// The paths that are added from now on are of another source.
-  /// \param own  it is the target robot itself.
+  /// Begins a source: paths added from now on belong to it.
+  /// \param own  the source is the target robot itself.
   void begin_source(bool own);
 
-  /// \param report  that brought the path.
-  /// \throws std::invalid_argument if the configurations have another number of joints, or as
-  ///         many weights as configurations are not there; std::logic_error without a source.
+  /// \param report  of the path.
+  /// \throws std::invalid_argument if the configurations have another number of joints, or their
+  ///         number differs from that of the weights; std::logic_error without a source.
   void add(std::shared_ptr<const transfer::TransferredPath> path, const Uuid& report = {});
 
   Eigen::Index size() const noexcept { return size_; }  ///< number of configurations
@@ -38,11 +38,11 @@ class PooledConfigurations {
   /// In the order of addition; their configurations one after the other are configurations().
   const std::vector<PooledPath>& paths() const noexcept { return paths_; }
   Eigen::MatrixXd configurations() const;  ///< dof x N, in the order of addition
-  /// N, which of paths() each comes from.
+  /// N: index into paths() of each configuration.
   std::vector<std::uint32_t> path_of_configuration() const;
 
   /// N weights with sum N. Equal path weights: those of every path with configurations of a source
-  /// sum to the same; otherwise as the transfer gave them. Weighting::Sources: each source then
+  /// sum to the same; otherwise the weights of the transfer. Weighting::Sources: each source then
   /// has its mass (source_masses.hpp). Weighting::Paths: sources make no difference.
   Eigen::VectorXd weights(const DensityParameters& parameters) const;
 

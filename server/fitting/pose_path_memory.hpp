@@ -17,15 +17,14 @@
 
 namespace kinship::fitting {
 
-/// The stored paths of tasks as pose paths, kept up with the store: what is known already is not
-/// read and computed again, unless paths of its robot were retired, or the store has begun a new
-/// epoch. Not shared between threads, but
-/// for bytes().
+/// Cache of the stored paths of tasks as pose paths, kept up to date with the store: known paths
+/// are not read and computed again, unless paths of their robot were retired or the store has begun
+/// a new epoch. Not shared between threads, except for bytes().
 class PosePathMemory {
  public:
   struct Limits {
     std::size_t paths = 8192;  ///< of a task: about 45 MB
-    /// Of all tasks. The one not asked for longest goes; the one that is asked for stays.
+    /// Of all tasks. Evicts the least recently used task, never the one being read.
     std::size_t bytes = std::size_t{64} << 20U;
   };
 
@@ -35,11 +34,11 @@ class PosePathMemory {
   PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits)
       : store_(store), robots_(robots), limits_(limits) {}
 
-  /// The usable paths of a task now, in the order of arrival; of more than the limit the newest,
-  /// as many of each robot. Robots and paths that cannot be read are left out.
+  /// The usable paths of a task now, in the order of arrival; above the limit the newest, equally
+  /// many of each robot. Robots and paths that cannot be read are left out.
   /// \param sources   ascending; empty: all.
   /// \param since_ms  received at or after, Unix time, UTC; 0: all.
-  /// \param stop      looked at between pages of paths: what is returned is incomplete then.
+  /// \param stop      checked between pages of paths; the result is then incomplete.
   /// \throws Failure(Storage)
   std::vector<SharedPosePath> read(const std::string& task, const std::vector<Digest>& sources,
                                    std::int64_t since_ms, const std::stop_token& stop);

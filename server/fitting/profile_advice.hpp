@@ -6,14 +6,14 @@
 
 namespace kinship::fitting {
 
-/// The share that a profile recommends for a distribution of this state before attempts have taught
-/// better: a thin one has to show its worth first.
+/// The share that a profile recommends for a distribution of this state before there are attempts:
+/// less for a thin one, which is not yet proven.
 double first_share(const Profile& profile, DistributionState state);
 
-/// What a profile recommends before attempts have taught better.
+/// The advice of a profile before there are attempts.
 Advice advice_of_profile(const Profile& profile);
 
-/// Without a mixture there is nothing to draw guided samples from.
+/// The advice without a mixture: guided samples cannot be drawn.
 Advice advice_without_mixture();
 
 }  // namespace kinship::fitting

@@ -13,15 +13,15 @@
 
 namespace kinship::fitting {
 
-/// What a recorded scene says about the configurations of a target.
+/// Effect of a recorded scene on the configurations of a target.
 struct PathScene {
   transfer::ConfigurationFilter keep;  ///< empty: nothing is left out
-  /// An object that a moving link of the target touches wherever it goes, and that is therefore not
-  /// looked at, in words; empty if there is none. (That a base touches the table it stands on is no
-  /// news.)
+  /// An object that a moving link of the target touches in almost every configuration and that is
+  /// therefore ignored, as text; empty if there is none. (A base that touches its table is not
+  /// mentioned.)
   std::string ignored;
   bool is_approximate = false;  ///< some of its things are solids around meshes
-  bool is_damaged = false;      ///< it could not be read; a report may bring it anew
+  bool is_damaged = false;      ///< it could not be read; a report may restore it
 };
 
 /// The recorded scenes of one fit as filters for its target at its placement, one for each content.
@@ -34,8 +34,8 @@ class SceneFilters {
                collision::RobotSolids solids)
       : store_(store), key_(key), target_(target), solids_(std::move(solids)) {}
 
-  /// That of a path; without a filter if the profile wants none, the path came without a scene or
-  /// its scene is damaged, or the target has no shapes. Valid until the next call.
+  /// The scene of a path; without a filter if the profile has none, the path has no scene or a
+  /// damaged one, or the target has no shapes. Valid until the next call.
   /// \throws Failure(Storage)
   const PathScene& find(const store::StoredPath& path);
 

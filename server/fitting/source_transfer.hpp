@@ -19,32 +19,32 @@
 
 namespace kinship::fitting {
 
-/// How the experience of one source robot fared in a fit.
+/// Outcome of the experience of one source robot in a fit.
 struct SourceSummary {
-  Source source;                     ///< but for its mass
-  std::uint64_t paths_selected = 0;  ///< of them the key wants: all, or those since its date
+  Source source;                     ///< without its mass
+  std::uint64_t paths_selected = 0;  ///< selected by the key: all, or since its date
   std::uint64_t paths_left_out = 0;  ///< bad data
-  std::string problem;               ///< with the robot or the first path left out
-  std::uint64_t paths_blocked = 0;   ///< their recorded scene left nothing of them
+  std::string problem;               ///< of the robot, or of the first path left out
+  std::uint64_t paths_blocked = 0;   ///< no configuration is free in their recorded scene
   std::uint64_t paths_with_approximate_scene = 0;  ///< with solids around meshes in it
-  std::string scene_problem;  ///< what was not looked at in the recorded scenes
+  std::string scene_problem;  ///< an ignored object of a recorded scene; empty: none
   bool has_placed = false, has_unplaced = false;
 };
 
-/// A source before anything of it was transferred; its label is a short digest.
+/// A source before its transfer; its label is a short digest.
 Source source_of(const store::ExperienceSummary& experience);
 
 /// Reads the paths of source robots and transfers them into a pool of the target's configurations.
 class SourceTransfer {
  public:
   struct Options {
-    /// Of an earlier fit of the same key: taken over where the store still has them. Outlives the
+    /// Paths of an earlier fit of the same key, reused if the store still has them. Outlive the
     /// transfer, may be null.
     const KnownPaths* known = nullptr;
-    int threads = 1;  ///< that transfer; what comes out does not depend on them
+    int threads = 1;  ///< of the transfer; the result does not depend on it
     std::function<bool(const Uuid& report)> leaves_out = {};  ///< see FitContext
     MemoryCeiling* memory = nullptr;  ///< outlives the transfer; null: there is no limit
-    TargetMemory* targets = nullptr;  ///< for the target; null: it is prepared anew
+    TargetMemory* targets = nullptr;  ///< cache of targets; null: the target is prepared anew
   };
 
   /// \param robots, store, key, target  outlive it.
@@ -54,27 +54,28 @@ class SourceTransfer {
   SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
                  const DistributionKey& key, const runtime::Robot& target, const Options& options);
 
-  /// How many paths of the source the key wants.
+  /// Number of paths of the source that the key selects.
   std::uint64_t count_selected(const store::ExperienceSummary& experience,
                                const std::stop_token& stop) const;
 
   /// Reserves the memory that the paths and a fit of them could need, until the transfer ends.
   /// \param wanted  paths, one number per source.
-  /// \throws Failure(TooLarge), in words, if there may never be so much; Failure(Storage); Stopped.
+  /// \throws Failure(TooLarge), with both numbers, if it exceeds the limit; Failure(Storage);
+  ///         Stopped.
   void reserve(const std::vector<store::ExperienceSummary>& experience,
                const std::vector<std::uint64_t>& wanted, const std::stop_token& stop);
 
   /// Adds `wanted` of the `selected` paths of a source, spread evenly over their order of arrival.
-  /// Bad paths and robots that cannot be read cost nothing but themselves; the summary says so.
-  /// \param stop  looked at between groups of paths: what was transferred until then is incomplete.
-  /// \throws Failure(Storage); Failure(TooLarge) if they become more than was reserved for.
+  /// Bad paths and robots that cannot be read are left out; the summary says so.
+  /// \param stop  checked between groups of paths; the transfer is then incomplete.
+  /// \throws Failure(Storage); Failure(TooLarge) if they need more than was reserved.
   SourceSummary add(const store::ExperienceSummary& experience, std::uint64_t selected,
                     std::uint64_t wanted, const std::stop_token& stop);
 
   const PooledConfigurations& pool() const noexcept { return pool_; }
-  /// Those used, also if nothing came of them.
+  /// The paths used, including those without configurations.
   const KnownPaths& used() const noexcept { return used_; }
-  std::uint64_t transferred() const noexcept { return transferred_; }  ///< of those used, anew
+  std::uint64_t transferred() const noexcept { return transferred_; }  ///< of those used, new ones
 
  private:
   void add_paths(const runtime::Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
@@ -100,10 +101,9 @@ class SourceTransfer {
 };
 
 /// Adds every source's share of at most `max_paths` paths.
-/// \return how each source fared, in their order.
+/// \return the outcome of each source, in their order.
 /// \throws Failure(Storage); Failure(TooLarge), before the first, if they could need more memory
-/// than
-///         there may be; Stopped.
+///         than the limit; Stopped.
 std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,
                                             const std::vector<store::ExperienceSummary>& experience,
                                             std::size_t max_paths, const std::stop_token& stop);

@@ -11,9 +11,9 @@
 
 namespace kinship::fitting {
 
-/// Target robots prepared for transfers, kept between fits: a new placement of one needs nothing of
-/// it made anew. The one not used for longest goes first. May be shared between threads; no lock is
-/// held while one is made.
+/// Cache of target robots prepared for transfers, kept between fits: a new placement needs no new
+/// preparation. Evicts the least recently used. May be shared between threads; no lock is held
+/// while one is prepared.
 class TargetMemory {
  public:
   using Target = std::shared_ptr<const transfer::TargetRobot>;
@@ -23,8 +23,8 @@ class TargetMemory {
 
   explicit TargetMemory(std::size_t max_robots = kDefaultRobots) : max_robots_(max_robots) {}
 
-  /// With the robot's geometry as it is now.
-  /// \throws Failure(InvalidInput) as collision::RobotSolids says.
+  /// The robot, prepared with its current geometry.
+  /// \throws Failure(InvalidInput), see collision::RobotSolids.
   Target find(const runtime::Robot& robot);
 
   std::size_t size() const;  ///< robots in memory

@@ -10,13 +10,13 @@
 
 namespace kinship::fitting {
 
-/// What is about to be fitted.
+/// Input of the coming fit.
 struct Refit {
   const DistributionKey& key;
-  const KnownPaths& paths;                    ///< used now
-  const std::vector<SourceSummary>& sources;  ///< how each fared
+  const KnownPaths& paths;                    ///< used in it
+  const std::vector<SourceSummary>& sources;  ///< outcome of each
   const std::vector<double>& masses;          ///< of each
-  const Eigen::MatrixXd& configurations;      ///< dof x N, as they were transferred
+  const Eigen::MatrixXd& configurations;      ///< dof x N, as transferred
   const kinematics::Chain& target;
 };
 
@@ -25,13 +25,13 @@ std::vector<Digest> used_sources(const std::vector<SourceSummary>& sources);
 std::vector<double> used_masses(const std::vector<SourceSummary>& sources,
                                 const std::vector<double>& masses);
 
-/// Why a fit may not start from what the one before left, in a few words; empty: it may.
+/// Why a fit may not start from the state of the previous one, as a short text; empty: it may.
 /// \param before  may be null.
 std::string why_full(const Refit& refit, const WarmState* before);
 
-/// From so many times the paths of the last full fit on a refit is a full one.
+/// A refit is a full one from this many times the paths of the last full fit on.
 inline constexpr std::uint64_t kFullFitGrowth = 2;
-/// And if the mass of a source has moved by more since then.
+/// A refit is also a full one if the mass of a source has changed by more since then.
 inline constexpr double kMassJump = 0.1;
 
 }  // namespace kinship::fitting
