@@ -17,15 +17,15 @@ struct Label {
 };
 using Labels = std::initializer_list<Label>;
 
-/// Writes what is measured as Prometheus reads it: its text format, version 0.0.4
-/// (https://prometheus.io/docs/instrumenting/exposition_formats/). Values that are no number are
-/// written as such; label values and help are escaped.
+/// Writes metrics in Prometheus's text format, version 0.0.4
+/// (https://prometheus.io/docs/instrumenting/exposition_formats/). NaN and infinities are written
+/// as such; label values and help are escaped.
 ///
 /// Names that break its conventions throw std::logic_error: a family twice, a counter without
 /// _total, another character than a letter, digit or underscore, a sample of a histogram.
 class Exposition {
  public:
-  /// Begins a family; what follows belongs to it.
+  /// Begins a family; the samples that follow belong to it.
   void family(std::string_view name, Type type, std::string_view help);
 
   void sample(double value, Labels labels = {});

@@ -20,17 +20,16 @@ class Counter {
   std::atomic<std::uint64_t> value_{0};
 };
 
-/// How often something took how long, in the same buckets for everything. May be shared between
-/// threads; observing is two relaxed additions and no lock.
+/// Histogram of durations, with the same buckets for all. May be shared between threads; observing
+/// is two relaxed additions and no lock.
 class Histogram {
  public:
-  /// Upper bounds, s: from what memory answers to what the largest fit takes. One more bucket has
-  /// the rest.
+  /// Upper bounds, s: from an answer from memory to the largest fit. One more bucket has the rest.
   static constexpr std::array<double, 19> kBounds_s = {
       0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
       0.25,   0.5,     1,      2.5,   5,      10,    25,   50,    100};
 
-  /// \param seconds  what is negative or no number counts as 0.
+  /// \param seconds  negative values and NaN count as 0.
   void observe(double seconds) noexcept {
     constexpr double kMax_s = 1e9;  // 30 years: nanoseconds fit
     const double duration_s = seconds > 0 ? (seconds < kMax_s ? seconds : kMax_s) : 0;
@@ -44,7 +43,7 @@ class Histogram {
     observe(std::chrono::duration<double>(duration).count());
   }
 
-  /// Of the bucket up to a bound alone; the last one has no bound.
+  /// Count of one bucket, not cumulative; the last one has no bound.
   std::uint64_t count(std::size_t bucket) const noexcept { return counts_[bucket].value(); }
   double sum_s() const noexcept { return static_cast<double>(sum_ns_.value()) * 1e-9; }
 
