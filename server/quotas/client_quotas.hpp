@@ -19,10 +19,10 @@
 
 namespace kinship::quotas {
 
-/// Who takes how much of the server, and whether one may have more. Clients are told apart by what
-/// the network layer says they are (Caller::client), up to a number of them: then who has taken
-/// nothing for a minute, and has all of its quotas back, makes room. While there is none, newcomers
-/// share the quotas of one client, so that who invents identities wins nothing by it and costs no
+/// Measures the use of the server by each client and enforces quotas. Clients are distinguished by
+/// the identity from the network layer (Caller::client), up to a maximum number: then a client that
+/// has been idle for a minute, with all of its quotas restored, makes room. If none has, new
+/// clients share the quotas of one client, so that invented identities gain nothing and cost no
 /// memory. May be shared between threads.
 ///
 /// The empty client is the server itself: it has no quotas and is not counted.
@@ -30,29 +30,30 @@ class ClientQuotas {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// What newcomers are counted as when all places are taken.
+  /// The client under which new clients are counted when all places are taken.
   static constexpr std::string_view kOthers = "(others)";
-  static constexpr std::chrono::seconds kIdle{60};  ///< then a client may make room
+  static constexpr std::chrono::seconds kIdle{60};  ///< after it a client may make room
 
   /// \param clock  outlives it.
   ClientQuotas(const runtime::Clock& clock, const ClientRates& rates);
 
-  /// Whether a request may come in; then it is counted.
-  /// \param bytes, attempts  that it has.
+  /// Whether a request is admitted; then it is counted.
+  /// \param bytes, attempts  of the request.
   std::optional<Refusal> admit(const std::string& client, std::size_t bytes, std::size_t attempts);
 
-  /// Whether a robot may be registered, or a task begun. Taken once it was: the answer is for now.
+  /// Whether a robot may be registered, or a task begun, now. Takes nothing: count_robot() and
+  /// count_task() do.
   std::optional<Refusal> may_add(const std::string& client, Quota quota);
 
   void count_reply(const std::string& client, std::size_t bytes);
   void count_robot(const std::string& client, const std::string& label, bool is_new);
   void count_task(const std::string& client);
   void count_stored(const std::string& client, std::size_t bytes);
-  /// Something else said that a client has enough.
+  /// Counts a refusal for a quota that is enforced elsewhere.
   void count_refusal(const std::string& client, Quota quota);
 
-  /// All that are counted, who took most in the last minute first; then who was seen last. What
-  /// they have at a time (on_way, waiting, leases, fits) is left at 0.
+  /// All counted clients, those with the most bytes in the last minute first, then the last seen.
+  /// Their current numbers (on_way, waiting, leases, fits) are left at 0.
   std::vector<ClientUse> list() const;
 
   std::size_t size() const;
@@ -63,7 +64,7 @@ class ClientQuotas {
  private:
   static constexpr std::size_t kBuckets = 5;
 
-  /// A mean over about a minute: what was taken counts less the longer ago it was.
+  /// A mean over about a minute, with exponentially decaying weights.
   struct Meter {
     double amount = 0;
     void decay(double passed_s);
@@ -95,7 +96,7 @@ class ClientQuotas {
   std::array<std::atomic<std::uint64_t>, kQuotaNames.size()> refusals_{};
 
   mutable std::mutex mutex_;  // guards what follows
-  Entries entries_;           // who was seen last comes first
+  Entries entries_;           // the last seen comes first
   std::unordered_map<std::string, Entries::iterator> places_;
 };
 

@@ -5,8 +5,7 @@
 
 namespace kinship::quotas {
 
-/// How much of something one may take: `per_s` in the mean, `burst` at once after a while of
-/// taking nothing. `burst` 0: as much as one likes.
+/// A rate limit: `per_s` in the mean, `burst` at once after an idle time. `burst` 0: no limit.
 struct Rate {
   double per_s = 0;
   double burst = 0;
@@ -14,17 +13,17 @@ struct Rate {
   bool is_limited() const noexcept { return burst > 0; }
 };
 
-/// What is left of a rate: a bucket that holds `burst` and fills with `per_s`. It may be emptied
-/// beyond its bottom, by what is known only once it was taken; then it has to fill up again first.
-/// Not shared between threads.
+/// The remainder of a rate: a bucket that holds `burst` and fills with `per_s`. Its level may
+/// become negative, by amounts known only once they were taken; then it has to refill first. Not
+/// shared between threads.
 class TokenBucket {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   TokenBucket(const Rate& rate, TimePoint now) : level_(rate.burst), time_(now) {}
 
-  /// How long until that much may be taken; 0: now. More than the bucket holds may be taken when it
-  /// is full.
+  /// Time until `amount` may be taken; 0: now. More than the bucket holds may be taken when it is
+  /// full.
   std::chrono::duration<double> time_until(const Rate& rate, double amount, TimePoint now) {
     if (!rate.is_limited())
       return {};
