@@ -13,17 +13,18 @@
 
 namespace kinship::rehearsal {
 
-/// A recorded query as one robot has to answer it where it stands.
+/// A recorded query, posed to one robot at its placement.
 struct PosedQuery {
   planning::TrackQuery query;  ///< `without` is the path that once answered it
   std::unique_ptr<collision::CollisionWorld> world;
   std::optional<planning::RegionConstraint> constraint;
 };
 
-/// Start and goals in the recorded scene. A robot whose own path this is starts as it did; another
-/// one at the free configuration with the hand where it was that is nearest to the middle of its
-/// joints. Goals are all free configurations with the hand where it came, up to 20. What touches
-/// wherever the robot goes, as a base and the table it stands on, may touch.
+/// Start and goals in the recorded scene. The robot of the recorded path starts at its recorded
+/// start; another robot at the free configuration with the transfer frame at the recorded start
+/// that is nearest to the middle of its joints' ranges. Goals are all free configurations with the
+/// transfer frame at the recorded goal, up to 20. Pairs that always touch, such as a base and its
+/// table, may touch.
 /// \param T_task_base  of the robot's base in the task frame.
 /// \return nothing if it has no start or no goal.
 std::optional<PosedQuery> pose_query(const runtime::Robot& robot,

@@ -15,17 +15,17 @@
 
 namespace kinship::rehearsal {
 
-/// What a stored path once answered, said without its robot.
+/// The query that a stored path answered, independent of its robot.
 struct RecordedQuery {
-  Uuid path;                       ///< the report that brought the answer
+  Uuid path;                       ///< the report with the answer
   Eigen::Isometry3d T_task_start;  ///< of the transfer frame
   Eigen::Isometry3d T_task_goal;
-  /// Of the robot that is rehearsed, if the path is its own and it stood at its placement of today.
+  /// Of the rehearsed robot, if the path is its own and was recorded at its current placement.
   std::optional<Eigen::VectorXd> start;
   std::shared_ptr<const RecordedScene> scene;  ///< null: none was recorded
 };
 
-/// How the planner of a task's reports went along: "step=0.1 overshoot=1" in their options.
+/// Step parameters of the planner of a task's reports: "step=0.1 overshoot=1" in their options.
 struct RecordedSteps {
   double step = 0.05;
   double overshoot = 1.5;
@@ -33,12 +33,12 @@ struct RecordedSteps {
 
 struct RecordedQueries {
   std::vector<RecordedQuery> queries;
-  RecordedSteps steps;  ///< of the newest report that says them
+  RecordedSteps steps;  ///< of the newest report that has them
 };
 
-/// Queries of the experience that a distribution is made of: at most `most`, as many of each robot,
-/// spread evenly over the order of arrival. Paths and scenes that cannot be read are left out.
-/// \param stop  looked at between pages of paths: what is returned is incomplete then.
+/// Queries of the experience of a distribution: at most `most`, equally many of each robot, spread
+/// evenly over the order of arrival. Paths and scenes that cannot be read are left out.
+/// \param stop  checked between pages of paths; the result is then incomplete.
 /// \throws Failure(Storage)
 RecordedQueries read_queries(const store::Store& store, runtime::RobotRegistry& robots,
                              const fitting::DistributionKey& key, std::size_t most,

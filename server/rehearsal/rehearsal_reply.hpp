@@ -6,10 +6,10 @@
 
 namespace kinship::rehearsal {
 
-/// `done`, called with what is known of the guides of the request's robot and task, beside whatever
-/// else the reply has, unless that is refused, busy or of a robot that nobody knows. A request for
-/// a rehearsed reply waits for it until its deadline.
-/// \param request  one that asks for experience.
+/// A `done` that first adds the known rehearsal of the request's robot and task to the reply, if
+/// the reply is Ready, Failed or Pending. A request for a rehearsed reply waits for the rehearsal
+/// until its deadline.
+/// \param request  a request for experience.
 /// \param rehearsals  outlive the reply.
 catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchRequest& request,
                                   RehearsalScheduler::TimePoint now, catalog::FetchDone done);

@@ -29,16 +29,15 @@
 
 namespace kinship::rehearsal {
 
-/// In memory and on its way to one or many.
+/// Shared by the scheduler's cache and the replies that carry it.
 using SharedRehearsal = std::shared_ptr<const Rehearsal>;
 
-/// How what rehearsals may use is divided.
+/// Resources of rehearsals.
 struct RehearsalSchedulerOptions {
-  /// Of one processor, in the mean, 0 to 1; 0: nothing is rehearsed. Where somebody waits it takes
-  /// what it can get.
+  /// Mean fraction of one processor, 0 to 1; 0: no rehearsals. Not limited while a client waits.
   double processor_fraction = 0.1;
   RehearsalOptions plan = {};
-  std::size_t max_queries = 100;     ///< planned again for one robot and task
+  std::size_t max_queries = 100;     ///< replanned for one robot and task
   std::size_t max_rehearsals = 256;  ///< in memory
   std::size_t max_waiters = 1024;
   /// next_deadline() is earlier than it was. Called from any thread.
@@ -47,29 +46,29 @@ struct RehearsalSchedulerOptions {
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
 
-/// What it has done since it was made.
+/// Totals of a scheduler since construction.
 struct RehearsalTotals {
   std::uint64_t done = 0, queued = 0;
   double processor_time_s = 0;
 };
 
-/// What a rehearsal is a function of, besides the store.
+/// The inputs that determine a rehearsal, besides the store.
 struct RehearsalKey {
   fitting::DistributionKey distribution;
-  std::uint32_t experience_bytes = 0;  ///< of the stored ways that the robot gets
+  std::uint32_t experience_bytes = 0;  ///< of the stored pose paths that the robot gets
 };
 
-/// Which guide serves a robot and task best, found out before its first query: on a thread of its
-/// own that yields to all others. What is known is kept until the experience has grown by a fifth
-/// and ten paths, or lost one; a server that starts anew knows nothing. May be shared between
-/// threads; no lock is held across the store, a plan or an answer.
+/// Finds the best guide for a robot and task before its first query, on a low-priority thread of
+/// its own. A rehearsal is valid until the experience has grown by a fifth and ten paths, or lost
+/// one; after a restart there is none. May be shared between threads; no lock is held across the
+/// store, a plan or an answer.
 class RehearsalScheduler {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
-  /// Called once; with nothing if nothing is known by then.
+  /// Called once; with null if there is no rehearsal by then.
   using Done = std::function<void(const SharedRehearsal&)>;
 
-  /// What rehearsals work with; all of it outlives the scheduler.
+  /// References; they outlive the scheduler.
   struct Parts {
     const store::Store& store;
     runtime::RobotRegistry& robots;
@@ -83,9 +82,9 @@ class RehearsalScheduler {
   RehearsalScheduler(const RehearsalScheduler&) = delete;
   RehearsalScheduler& operator=(const RehearsalScheduler&) = delete;
 
-  /// What is known; null: nothing is. Begins to rehearse if that may be out of date.
+  /// The known rehearsal; null: none. Begins a rehearsal if it may be out of date.
   SharedRehearsal ask(const RehearsalKey& key);
-  /// The same, answered when nothing more is to come, at the deadline, or in stop(). `done` must
+  /// The same, answered when the rehearsal is complete, at the deadline, or in stop(). `done` must
   /// not block.
   void wait(const RehearsalKey& key, TimePoint deadline, const Done& done);
 
@@ -95,14 +94,15 @@ class RehearsalScheduler {
   void new_experience(std::string_view task);  ///< there are new paths
   void forget(std::string_view task);          ///< paths were retired
 
-  /// What is known of a distribution, by its id; begins nothing.
+  /// The known rehearsal of a distribution, by its id; begins none.
   SharedRehearsal find(const Digest& distribution) const;
   RehearsalTotals totals() const;
   std::uint64_t geometry_revision(const Digest& robot) const {
     return parts_.robots.geometry_revision(robot);
   }
 
-  /// Answers everybody with what is known and ends the thread. A second call returns at once.
+  /// Answers all waiters with the known rehearsal and ends the thread. A second call returns at
+  /// once.
   void stop();
 
  private:
@@ -140,7 +140,7 @@ class RehearsalScheduler {
   const std::stop_source stop_source_;
 
   mutable std::mutex mutex_;            // guards what follows, but for the pool
-  std::condition_variable_any urgent_;  // somebody waits, or all ends
+  std::condition_variable_any urgent_;  // a client waits, or the scheduler stops
   catalog::ExperienceVersions versions_;
   std::map<Digest, Entry> entries_;  // by the id of the distribution
   std::size_t waiters_ = 0;

@@ -22,36 +22,36 @@ namespace kinship::rehearsal {
 inline constexpr std::size_t kHalves = 2;
 std::size_t half_of(const Uuid& path);
 
-/// What is rehearsed: one robot, where it stands, with the guidance that it would get.
+/// Subject of a rehearsal: one robot at its placement, with its guidance.
 struct Subject {
   std::shared_ptr<const runtime::Robot> robot;
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
   RecordedQueries recorded;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< not null
-  /// Fitted without the paths of half 0, and of half 1; missing: nothing could be fitted.
+  /// Fitted without the paths of half 0, and of half 1; missing: there is no mixture.
   std::array<std::optional<Mixture>, kHalves> mixtures = {};
 };
 
 struct RehearsalOptions {
   std::size_t rounds = 4;  ///< times that each query is planned with each guide, each with a seed
   std::uint64_t max_checks = 20'000;  ///< of one plan
-  std::stop_token stop = {};          ///< looked at before each check
+  std::stop_token stop = {};          ///< tested before each check
 };
 
-/// Plans recorded queries with each guide in turn, a query a step, so that who runs it may rest
-/// between steps. A guide that costs half as much again as the best one after a round over at least
-/// 20 queries is left. Equal subject, equal steps: equal costs.
+/// Plans recorded queries with each guide in turn, one query per step, so that the caller may rest
+/// between steps. A guide of at least 20 plans whose mean cost at the end of a round exceeds 1.5
+/// times that of the best one is dropped. Equal subject, equal steps: equal costs.
 class Rehearsing {
  public:
   explicit Rehearsing(Subject subject, const RehearsalOptions& options = {});
 
-  /// Plans the next query. \return false: there was none. \throws Stopped.
+  /// Plans the next query. \return false if there was none. \throws Stopped.
   bool step();
 
-  std::size_t rounds() const noexcept { return round_; }  ///< that are over
+  std::size_t rounds() const noexcept { return round_; }  ///< completed
 
-  /// What is known so far: the guide with the fewest checks in the mean; of those that cost up to
-  /// 3 % more the one that has the least to prepare. All of them until each query was planned once.
+  /// The result so far: the guide with the fewest checks in the mean; of guides that cost up to 3 %
+  /// more, the one with the least preparation. All guides until each query was planned once.
   Rehearsal result() const;
 
  private:
