@@ -14,23 +14,23 @@
 
 namespace kinship::runtime {
 
-/// What can go wrong for a client, one kind each; kTroubleNames says it in words.
+/// Kinds of errors for a client; kTroubleNames has their names.
 enum class Trouble : std::uint8_t {
   ReportRefused,    ///< an attempt breaks a rule; final
   ReportTryAgain,   ///< the store cannot take it, or too much waits
   ReportUnknown,    ///< an attempt of a robot that is not registered
-  ReportQuota,      ///< one client has too many attempts on their way
+  ReportQuota,      ///< one client has too many unanswered attempts
   RobotRefused,     ///< a registration breaks a rule
   RobotUnanswered,  ///< a registration for which the store, memory or the queue had no room
   RobotUnreadable,  ///< a stored robot that cannot be read any more
   FetchRefused,     ///< a fetch breaks a rule
   FetchBusy,        ///< too many wait, or the server stops
   FetchQuota,       ///< one client has too many leases, waiting fetches or fits
-  FitMemory,        ///< a fit would need more memory than there may be
+  FitMemory,        ///< a fit would exceed the memory limit
   FitEnded,         ///< a fit ended for want of memory, threads or the store; tried again later
-  AdminRefused,     ///< an admin request breaks a rule or names what is not there
+  AdminRefused,     ///< an admin request breaks a rule or names a missing object
   AdminFailed,      ///< an admin request that the store or the queue could not serve
-  ClientQuota,      ///< one client took more than its share, of whatever kind
+  ClientQuota,      ///< one client is over a quota of any kind
 };
 
 inline constexpr std::array<std::string_view, 15> kTroubleNames = {"report refused",
@@ -54,7 +54,7 @@ inline constexpr std::array<std::string_view, 15> kTroubleNames = {"report refus
 /// threads; the log is called without the lock.
 class ErrorCounters {
  public:
-  /// A burst ends when a kind was quiet for so long.
+  /// A burst ends when its kind was quiet for this long.
   static constexpr std::chrono::seconds kQuiet{60};
 
   /// \param clock  outlives it.
@@ -62,7 +62,7 @@ class ErrorCounters {
   ErrorCounters(const Clock& clock, std::function<void(std::string_view)> log)
       : clock_(clock), log_(std::move(log)) {}
 
-  /// \param detail  of the last one, in words; cut to kMaxMessageBytes.
+  /// \param detail  text of the last one; cut to kMaxMessageBytes.
   void add(Trouble what, std::string_view detail, std::uint64_t count = 1);
 
   /// Kinds that have happened, in the order of the enumeration.

@@ -8,8 +8,8 @@
 
 namespace kinship::runtime {
 
-/// Items of several clients, taken in turns: one of each client that has any, in the order in which
-/// they came to have some; a client's own in the order of arrival. So whoever brings one item waits
+/// Items of several clients, served round-robin: one of each client that has any, in the order in
+/// which clients joined; a client's own in the order of arrival. So a client with one item waits
 /// for at most one of each other client. Not shared between threads.
 template <typename Item>
 class FairQueue {

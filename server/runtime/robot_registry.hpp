@@ -29,27 +29,28 @@ struct Robot {
   Digest digest;
   std::string label;
   kinematics::Chain chain;
-  /// Of the URDF's meshes the solids that a client fitted around them, if one did; nothing if the
+  /// For the URDF's meshes, the solids that a client fitted around them, if any; empty if the
   /// geometry cannot be read.
   geometry::RobotShapes shapes = {};
   GeometryGrade grade = GeometryGrade::None;
-  std::string geometry = {};            ///< what the shapes are, in words
-  std::uint64_t geometry_revision = 0;  ///< how often better geometry was taken over
+  std::string geometry = {};            ///< description of the shapes
+  std::uint64_t geometry_revision = 0;  ///< number of times better geometry was taken over
 };
 
-/// Knows the robots of a store and keeps those that were used last parsed in memory. May be
-/// shared between threads; no lock is held while it parses or reads the store.
+/// The robots of a store, with a cache of the most recently used, parsed. May be shared between
+/// threads; no lock is held while it parses or reads the store.
 class RobotRegistry {
  public:
-  /// The registry and whoever computes with the robot share it: it never changes.
+  /// Shared by the registry and the users of the robot: it never changes.
   using RobotPointer = std::shared_ptr<const Robot>;
 
-  /// Why a robot of this label is not for who asks; nothing if it is.
+  /// Why the caller may not use a robot of this label; nothing if it may.
   using LabelRule = std::function<std::optional<Error>(const std::string& label)>;
 
   struct Options {
-    std::size_t max_robots = 1024;  ///< in memory; the one not used for longest goes first
-    /// A stored robot cannot be read, with its name and why. Called from any thread.
+    std::size_t max_robots = 1024;  ///< in memory; the least recently used is dropped first
+    /// Called if a stored robot cannot be read, with its name and the reason. Called from any
+    /// thread.
     std::function<void(const std::string& message)> on_unreadable = [](const std::string&) {};
   };
 
@@ -57,71 +58,69 @@ class RobotRegistry {
   explicit RobotRegistry(store::Store& store) : RobotRegistry(store, Options{}) {}
   RobotRegistry(store::Store& store, Options options);
 
-  /// Parses, identifies and stores a robot, and tells which other robots of the store are the same
-  /// arm: at most kMaxSameArms labels, in their order, none if the store cannot tell. Refused, with
-  /// the reason, if the description breaks a rule or its label belongs to another robot.
+  /// Parses, identifies and stores a robot, and lists other robots of the store that are the same
+  /// arm: at most kMaxSameArms labels, in their order, fewer if the store cannot be read. Refused,
+  /// with the reason, if the description breaks a rule or its label belongs to another robot.
   ///
-  /// A known robot's description takes the place of the one before, but for its label, if its
-  /// geometry is better: exact shapes before solids around meshes before those of some links only
-  /// before none; of equals the first stays.
+  /// The description replaces a known robot's, except the label, if its geometry is better: exact
+  /// shapes before solids around meshes before those of some links only before none; of equals the
+  /// first stays.
   ///
-  /// It is compared with robots of as many joints, the first kMaxSameArms of them; those that are
-  /// not in memory are read.
+  /// It is compared with the first kMaxSameArms robots of as many joints; those not in memory are
+  /// read.
   ///
-  /// Where other servers share the store, one that is in memory is known without asking the store,
-  /// and compared with what is in memory: it is answered also while the store cannot be reached.
+  /// If other servers share the store, a robot in memory is known without reading the store, and
+  /// compared with robots in memory: it is answered even while the store cannot be reached.
   /// \param now_ms    Unix time, UTC.
-  /// \param may_take  asked with the label under which the robot is known, before anything of it
-  ///                  is changed or told; empty: whoever registers a known robot may.
-  /// \throws Failure(Storage), also if that label cannot be told now.
+  /// \param may_take  called with the label under which the robot is known, before any of its data
+  ///                  is changed or returned; empty: every caller may register a known robot.
+  /// \throws Failure(Storage), also if that label cannot be read now.
   RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms,
                                const LabelRule& may_take = {});
 
-  /// The same if memory can answer it, which asks the store nothing: where other servers share the
-  /// store, for a robot in memory whose geometry is not better than what is known, and for what is
-  /// refused whatever the store has. Nothing: register_robot() is to be asked.
+  /// The same from memory, without the store: if other servers share the store, for a robot in
+  /// memory if the new geometry is not better than the known one, and for registrations that are
+  /// refused whatever the store has. \return nothing if register_robot() has to be called.
   std::optional<RegisterReply> register_known(const RobotDescription& description,
                                               const LabelRule& may_take = {}) const;
 
-  /// Takes over the geometry of a known robot that somebody else knows better, as
-  /// register_robot() does of who registers it again. \return whether it was better.
+  /// Takes over geometry of a known robot from another store if it is better, as register_robot()
+  /// does for a repeated registration. \return whether it was better.
   /// \throws Failure(Storage)
   bool offer_geometry(const Digest& robot, const RobotDescription& description,
                       std::int64_t now_ms);
 
   /// From memory, or read from the store and parsed.
   /// \return NotFound if the store has no such robot; Storage if its row is damaged, its
-  /// description
-  ///         cannot be read any more (as after an upgrade with a stricter parser) or the store
-  ///         cannot be read: a fault of the server's own, which nobody else's report is refused
-  ///         for.
+  /// description cannot be read any more (e.g. after an upgrade with a stricter parser) or the
+  /// store cannot be read: a fault of the server, for which no report is refused.
   Result<RobotPointer> find(const Digest& robot);
 
-  /// Gives a robot another label, durably. \return as Store::rename_robot() does.
+  /// Gives a robot another label, durably. \return see Store::rename_robot().
   Result<bool> rename_robot(const Digest& robot, const std::string& label,
                             const AuditEntry* audit = nullptr);
 
-  /// Takes a robot out, durably. \return as Store::remove_robot() does.
+  /// Removes a robot, durably. \return see Store::remove_robot().
   Result<store::RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {},
                                            const AuditEntry* audit = nullptr);
 
-  /// Another server of the same store changed a robot, or took it out: it is read when somebody
-  /// asks for it next. \return whether it is there. \throws Failure(Storage)
+  /// Call when another server of the same store changed or removed a robot: it is read again when
+  /// it is used next. \return whether the store has it. \throws Failure(Storage)
   bool read_again(const Digest& robot);
 
-  /// The store said that it has no such robot (any more): whoever registers it next is not told
-  /// that it is known.
+  /// Call when the store has no such robot (any more): the next registration is not answered as
+  /// known.
   void forget(const Digest& robot) { forget(robot, false); }
 
-  /// From memory only; null if it is not there.
+  /// From memory only; null if it is not in memory.
   RobotPointer find_in_memory(const Digest& robot) const;
   std::size_t in_memory() const;
 
-  /// How often better geometry of a robot was taken over: what was made for it before is of another
-  /// geometry. From memory; 0 also for robots that are not known.
+  /// Number of times better geometry of a robot was taken over: earlier results for it are of
+  /// another geometry. From memory; 0 also for unknown robots.
   std::uint64_t geometry_revision(const Digest& robot) const;
 
-  /// Comparing with other robots ends: whoever registers is told of those found until then.
+  /// Ends comparisons with other robots: a registration lists the same arms found until then.
   void stop() noexcept { is_stopping_ = true; }
 
  private:

@@ -29,10 +29,10 @@ class WorkerPool {
   struct Job {
     std::function<void()> run;
     std::function<void()> abandon;  ///< may be empty
-    std::string client = {};        ///< who wants it; empty: the server itself, without a limit
+    std::string client = {};        ///< its client; empty: the server itself, without a limit
   };
 
-  /// What stop() does with jobs that nobody has begun.
+  /// Treatment of jobs not yet begun in stop().
   enum class Leftovers { Run, Abandon };
 
   /// \throws Failure(Internal) if the operating system has no room for that many threads.
@@ -45,12 +45,12 @@ class WorkerPool {
   ///         stops.
   bool submit(Priority priority, Job job);
 
-  /// Accepts nothing more, deals with the queue, and returns when every thread has ended. Not to
-  /// be called from a job. A second call returns at once.
+  /// Accepts no more jobs, runs or abandons the queue, and returns when every thread has ended. Not
+  /// to be called from a job. A second call returns at once.
   void stop(Leftovers leftovers);
 
-  std::size_t queued() const;                              ///< jobs that nobody has begun
-  std::size_t queued_of(const std::string& client) const;  ///< interactive ones of them
+  std::size_t queued() const;                              ///< jobs not yet begun
+  std::size_t queued_of(const std::string& client) const;  ///< interactive ones
   std::size_t threads() const noexcept { return thread_count_; }
 
  private:
