@@ -7,8 +7,8 @@
 
 namespace kinship::sites {
 
-/// How long to wait before the next try: twice as long each time, up to a limit, and at random
-/// around that, so that sites that were cut off together do not come back together.
+/// Waiting time before the next try: doubles each time, up to a limit, times a random factor from
+/// 0.5 to 1, so that sites that lost the connection together do not reconnect together.
 class Backoff {
  public:
   Backoff(std::chrono::milliseconds first, std::chrono::milliseconds longest, std::uint64_t seed)

@@ -11,26 +11,26 @@
 
 namespace kinship::sites {
 
-/// Takes over a description whose geometry is better than what is known of its robot; by the rule
-/// of who registers a robot again (RobotRegistry). \return whether it was better.
+/// Takes over a description whose geometry is better than the known one of its robot, by the rule
+/// for a repeated registration (RobotRegistry). \return whether it was better.
 using TakeGeometry = std::function<bool(const Digest& robot, const RobotDescription& description)>;
 
-/// Brings the better geometry of robots to whichever of two stores has a worse one. Where both are
-/// as good each keeps its own, so what is better spreads and nothing goes to and fro.
+/// Copies the better geometry of a robot to the one of two stores that has a worse one. If both are
+/// equally good each keeps its own, so better geometry spreads and none goes to and fro.
 class GeometryExchange {
  public:
   /// \param here, above  outlive it.
   GeometryExchange(store::Store& here, store::Store& above, TakeGeometry take_here,
                    TakeGeometry take_above);
 
-  /// A robot that both have by now: compared once.
+  /// Compares a robot that both stores have, once.
   void compare_new(const Digest& robot);
 
-  /// Those where either of both took better geometry over since they were compared.
+  /// Compares robots of which either store took over better geometry since the last comparison.
   void compare_changed();
 
  private:
-  /// How often better geometry was taken over: here, above.
+  /// Number of times better geometry was taken over: here, above.
   using Revisions = std::pair<std::uint64_t, std::uint64_t>;
 
   void compare(const Digest& robot);

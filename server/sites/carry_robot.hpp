@@ -8,10 +8,10 @@
 
 namespace kinship::sites {
 
-/// Registers a robot of one store at another one unless it is there. Where another robot has its
-/// label it is registered with the beginning of its digest behind the label: a label is a name at
-/// one site, the digest says which robot it is.
-/// \return why it cannot be registered; nothing if it is there.
+/// Registers a robot of one store at another one unless it is there. If another robot has its
+/// label, the beginning of its digest is appended to the label: a label is a name at one site, the
+/// digest identifies the robot.
+/// \return why it cannot be registered; nothing on success.
 /// \throws Failure of either store.
 std::optional<Error> carry_robot(const store::Store& from, store::Store& to, const Digest& robot);
 

@@ -22,15 +22,15 @@
 
 namespace kinship::sites {
 
-/// What a site's own server does with what comes down, and what it wants.
+/// Hooks of the site's own server for data that comes down, and the tasks it wants.
 struct SiteHooks {
-  /// Commits what came down; empty: the store alone is told.
+  /// Commits reports that came down; empty: directly into the store.
   std::function<void(std::vector<store::SharedReport>, store::Store::ReportsDone)> commit = {};
-  /// What is wrong with an attempt that came down.
+  /// The fault of an attempt that came down.
   std::function<std::optional<Error>(const Attempt&)> check = {};
   std::function<void(const Retirement&)> on_retired = [](const Retirement&) {};
-  TakeGeometry take_geometry = {};  ///< empty: a registry that nobody else asks
-  /// Tasks that robots here use just now.
+  TakeGeometry take_geometry = {};  ///< empty: a registry of its own
+  /// Tasks that robots of the site use now.
   std::function<std::set<std::string>()> tasks_in_use = [] { return std::set<std::string>(); };
 };
 
@@ -39,56 +39,56 @@ struct ExchangeOptions {
   Piece up;
   /// Smaller: robots of the site wait for each commit.
   Piece down = {.reports = 256, .commit = 32, .bytes = std::size_t{1} << 20U, .retirements = 64};
-  std::vector<std::string> task_patterns;      ///< of tasks that are always brought down
-  std::chrono::milliseconds look_every{5000};  ///< at a stream that had nothing
-  /// How far it came is written no more often: each time is a write of the site's store, for which
-  /// robots wait that report just then.
+  std::vector<std::string> task_patterns;      ///< of tasks whose experience always comes down
+  std::chrono::milliseconds look_every{5000};  ///< polling interval of a stream that had no news
+  /// Shortest interval between saves of the positions: each is a write to the site's store, for
+  /// which reporting robots wait.
   std::chrono::milliseconds save_every{1000};
-  /// A task that nobody here asked for is not brought down any more.
+  /// A task's experience comes down until this long after its last use here.
   std::chrono::hours task_use{std::chrono::days(30)};
-  /// Called between two transactions of a step, with what was taken of this machine since the last
-  /// time.
+  /// Called between two transactions of a step, with the load on this machine since the last call.
   std::function<void(std::chrono::nanoseconds load, const std::stop_token&)> rest =
       [](std::chrono::nanoseconds, const std::stop_token&) {};
-  /// Lines for people: what begins again, what is refused.
+  /// Lines for people: restarts and refusals.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
 
 /// Since the server started.
 struct ExchangeCounts {
-  std::uint64_t sent = 0;           ///< reports that are new to the memory
-  std::uint64_t received = 0;       ///< that are new here
-  std::uint64_t retired_above = 0;  ///< retirements told
+  std::uint64_t sent = 0;           ///< reports new to the memory
+  std::uint64_t received = 0;       ///< reports new here
+  std::uint64_t retired_above = 0;  ///< retirements sent
   std::uint64_t retired_here = 0;   ///< paths
-  std::uint64_t left_out = 0;       ///< reports that could not be read whole where they are
+  std::uint64_t left_out = 0;       ///< reports that their store could not read whole
 };
 
-/// What a site and the memory above it tell each other while they are connected: piece by piece,
-/// the site's reports up, and down those of each wanted task. Used by one thread.
+/// Exchanges reports between a site and the memory above it while they are connected: in pieces,
+/// the site's reports up and those of each wanted task down. Used by one thread.
 class Exchange {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// Notices whether either side lost something since, and then begins again.
+  /// Begins again from the start if either side has lost data since the last exchange.
   /// \param positions, counts  outlive it, as the stores do.
   Exchange(store::Store& site, store::Store& memory, Positions& positions, ExchangeCounts& counts,
            SiteHooks hooks, ExchangeOptions options);
 
   struct Step {
     bool has_worked = false;
-    std::chrono::nanoseconds load{0};  ///< that it was to this machine since it last rested
-    TimePoint next;                    ///< when there is something to look at again
+    std::chrono::nanoseconds load{0};  ///< on this machine since the last rest
+    TimePoint next;                    ///< when the next step is due
   };
-  /// Carries one piece of the stream whose turn it is. \throws Failure of either store.
+  /// Carries one piece of the next stream in turn. \throws Failure of either store.
   Step step(const std::stop_token& stop = {});
 
-  /// Writes how far it came: for who lets go of the connection. What is not written goes again.
+  /// Saves the positions, before the connection is closed. Data behind unsaved positions is carried
+  /// again.
   /// \throws Failure(Storage)
   void save_positions();
 
-  /// There are new reports of the site.
+  /// Call when the site has new reports.
   void look_up_now() { up_due_ = {}; }
-  /// There are new tasks in use.
+  /// Call when new tasks are in use.
   void look_for_tasks_now() { tasks_due_ = {}; }
 
  private:
@@ -120,12 +120,12 @@ class Exchange {
   std::map<std::string, TimePoint> down_due_;  // by task
   std::set<Digest> robots_of_both_;
   GeometryExchange geometry_;
-  std::string last_;  // task that had its turn
+  std::string last_;  // task of the last turn
   bool is_ups_turn_ = true;
   bool has_tried_refused_ = false;
   bool has_written_ = false;                      // in this step
   std::chrono::nanoseconds processor_before_{0};  // when it last rested
-  /// How long commits here took since. Shared with their callbacks, which may come after the
+  /// Time of commits here since then. Shared with their callbacks, which may come after the
   /// exchange.
   std::shared_ptr<std::atomic<std::int64_t>> commits_ns_ =
       std::make_shared<std::atomic<std::int64_t>>(0);

@@ -20,26 +20,26 @@
 namespace kinship::sites {
 
 struct ForwarderOptions {
-  /// Connects with the memory above. Called on the forwarder's thread, as often as the line was
-  /// lost. \throws Failure
+  /// Connects to the memory above. Called on the forwarder's thread, again after each lost
+  /// connection. \throws Failure
   std::function<std::unique_ptr<store::Store>()> open;
   std::string name;  ///< of the memory, for people; without passwords
   ExchangeOptions exchange;
   SiteHooks hooks;
   int niceness = 10;
-  /// Reports of robots that wait at this site: they come first.
+  /// Number of reports that wait at this site; they take precedence.
   std::function<std::size_t()> queued_reports = [] { return std::size_t{0}; };
-  /// The line came, or went and why. Called on the forwarder's thread.
+  /// Called when the connection is made, or lost with the reason. On the forwarder's thread.
   std::function<void(std::string_view)> on_line = [](std::string_view) {};
   std::chrono::milliseconds first_retry{1000};
   std::chrono::milliseconds longest_retry{60'000};
-  /// How long it rests for what it took of this machine: 3 is a quarter of one processor at most.
+  /// Ratio of rest to load on this machine: 3 is a quarter of one processor at most.
   double rest = 3;
   std::uint64_t seed = std::random_device()();
 };
 
-/// Keeps a site's store and the memory above it together, on a thread of its own: connects, and
-/// again when the line was lost, and exchanges what is new. The site never waits for it.
+/// Synchronises a site's store with the memory above it, on a thread of its own: connects,
+/// reconnects after a lost connection, and exchanges new data. The site never waits for it.
 class Forwarder {
  public:
   /// \param site  outlives it.
@@ -48,21 +48,21 @@ class Forwarder {
   Forwarder(const Forwarder&) = delete;
   Forwarder& operator=(const Forwarder&) = delete;
 
-  /// There is something new at the site. From any thread; returns at once.
+  /// Call when the site has new data. From any thread; returns at once.
   void wake();
 
-  /// A robot of the site uses a task that none used lately. As wake().
+  /// Call when a robot of the site uses a task that none used lately. Otherwise as wake().
   void wake_for_task();
 
-  /// Returns when nothing is carried any more. What was on its way is carried again at the next
+  /// Returns when no data is carried any more. An interrupted piece is carried again at the next
   /// start. A second call returns at once.
   void stop();
 
-  /// \param attempts  that the site's store has.
+  /// \param attempts  in the site's store.
   UpstreamStatus status(std::uint64_t attempts) const;
 
  private:
-  /// While it lives, whoever stops can end what waits for the memory.
+  /// While it lives, stop() can end calls that wait for the memory.
   class Connected;
   class Saved;
 

@@ -10,13 +10,13 @@
 
 namespace kinship::sites {
 
-/// The tasks that robots of a site asked for of late. May be shared between threads.
+/// The tasks that robots of a site requested lately. May be shared between threads.
 class UsedTasks {
  public:
   static constexpr std::chrono::hours kLately{1};
   static constexpr std::size_t kMaxTasks = 10'000;  ///< beyond that new ones are not noted
 
-  /// \return whether it is new among them.
+  /// \return whether it is new.
   bool note(const std::string& task, std::int64_t now_ms) {
     const std::lock_guard lock(mutex_);
     const auto found = tasks_.find(task);

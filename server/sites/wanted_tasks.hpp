@@ -6,10 +6,10 @@
 
 namespace kinship::sites {
 
-/// Whether a name is of a pattern: `*` stands for any characters, `?` for one.
+/// Whether a name matches a pattern: `*` stands for any characters, `?` for one.
 bool matches(std::string_view pattern, std::string_view name);
 
-/// Whether a name is of one of them.
+/// Whether a name matches one of the patterns.
 bool matches_any(const std::vector<std::string>& patterns, std::string_view name);
 
 }  // namespace kinship::sites
