@@ -16,7 +16,7 @@ class ArmPair {
  public:
   /// \param source  outlives the pair.
   ArmPair(const kinematics::Chain& source, std::shared_ptr<const TargetArm> target);
-  /// The same for a target that nothing else comes to.
+  /// The same with a target of its own.
   ArmPair(const kinematics::Chain& source, const kinematics::Chain& target);
 
   const kinematics::Chain& source() const noexcept { return source_; }
@@ -25,13 +25,13 @@ class ArmPair {
   const inverse::Solver& target_solver() const noexcept { return target_->solver(); }
   const inverse::Descent& target_descent() const noexcept { return target_->descent(); }
 
-  /// Where the target's shape is looked at; see shape_marks.
+  /// Points of the target's shape; see shape_marks.
   const std::optional<inverse::LaneMarks>& target_marks() const noexcept {
     return target_->marks();
   }
 
-  /// Whether waypoints are taken over between robots whose bases stand like this: the same arm at
-  /// the same place (within 1e-9 m and rad).
+  /// Whether waypoints are taken over between robots with these bases: the same arm at the same
+  /// place (within 1e-9 m and rad).
   bool takes_over(const Eigen::Isometry3d& T_target_source) const;
 
  private:

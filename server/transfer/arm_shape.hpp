@@ -11,7 +11,7 @@
 
 namespace kinship::transfer {
 
-/// Where along an arm its shape is looked at: shares of the length of the line from the first
+/// Positions of the points of an arm's shape: shares of the length of the line from the first
 /// joint's origin over the other joints' origins to the transfer frame.
 inline constexpr std::array<double, 4> kShapeShares = {0.2, 0.4, 0.6, 0.8};
 
@@ -25,11 +25,11 @@ ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::V
 /// \param T_base_joints  kinematics::joint_poses of the configuration.
 ArmShape arm_shape(const kinematics::Chain& arm, std::span<const Eigen::Isometry3d> T_base_joints);
 
-/// Where the points of a shape lie on an arm, for the kernels; none for an arm with sliding joints,
-/// along which they wander.
+/// Places of the points of a shape on an arm, for the kernels; none for an arm with prismatic
+/// joints, along which they move.
 std::optional<inverse::LaneMarks> shape_marks(const kinematics::Chain& arm);
 
-/// A shape, and how it and the transfer frame move with the joints.
+/// A shape, with its derivative and that of the transfer frame with respect to the joints.
 struct ArmShapeMotion {
   static constexpr int kRows = ArmShape::RowsAtCompileTime * ArmShape::ColsAtCompileTime;
   template <int Rows>
@@ -38,7 +38,7 @@ struct ArmShapeMotion {
 
   ArmShape shape;
   /// x, y, z of one point after the other, m per joint unit, each point fixed to the link it lies
-  /// on. (With prismatic joints the shares of the length wander on; that part is left out.)
+  /// on. (With prismatic joints the points also move along the arm; that part is left out.)
   Derivative<kRows> J_points;
   Derivative<6> J_pose;  ///< of the transfer frame: linear velocity, then angular, in the base link
 };
@@ -50,7 +50,7 @@ ArmShapeMotion arm_shape_motion(const kinematics::Chain& arm,
 /// The same shape seen from another frame.
 ArmShape moved(const Eigen::Isometry3d& T_a_b, const ArmShape& shape_in_b);
 
-/// How far two shapes are apart, m: the root of the summed squared distances of their points.
+/// Distance of two shapes, m: the root of the summed squared distances of their points.
 inline double shape_distance(const ArmShape& a, const ArmShape& b) { return (a - b).norm(); }
 
 }  // namespace kinship::transfer

@@ -5,13 +5,13 @@
 
 namespace kinship::transfer {
 
-/// Keeps the configurations of a robot that touch nothing: neither the robot itself nor what
-/// surrounds it. Without surroundings, a filter against self-collision; empty if the robot has no
-/// shapes. Not shared between threads.
+/// Keeps the configurations in which the robot touches neither itself nor its surroundings. Without
+/// surroundings, a filter against self-collision; empty if the robot has no shapes. Not shared
+/// between threads.
 ///
-/// A standing part of the robot that touches an obstacle makes every configuration collide
-/// (CollisionWorld); who gives a scene allows such pairs.
-/// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
+/// A fixed link of the robot that touches an obstacle makes every configuration collide
+/// (CollisionWorld); the caller allows such pairs in the surroundings.
+/// \throws Failure(InvalidInput), see CollisionWorld's constructor.
 ConfigurationFilter collision_filter(const collision::RobotSolids& robot,
                                      const collision::Surroundings& surroundings = {});
 

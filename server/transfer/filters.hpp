@@ -6,26 +6,27 @@
 
 namespace kinship::transfer {
 
-/// How many of some configurations of the target robot (dof x n, joint units, within limits), from
-/// the first on, may be used before one may not. Whether one may depends on that one only.
+/// Number of leading configurations of the target robot (dof x n, joint units, within limits) that
+/// pass, before the first that does not. Whether one passes depends on that one only.
 using ConfigurationFilter =
     std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
 
-/// What the configurations of a path have to pass, in this order. An empty one passes everything.
+/// Filters of the configurations of a path, applied in this order. An empty one passes every
+/// configuration.
 struct Filters {
-  ConfigurationFilter self;   ///< ends where the target touches itself
-  ConfigurationFilter scene;  ///< where it touches the scene that was recorded with this path
+  ConfigurationFilter self;   ///< rejects self-collisions of the target
+  ConfigurationFilter scene;  ///< rejects collisions with the scene recorded with this path
 };
 
-/// Filters, how often they were asked, and how often they said no.
+/// Filters with counts of their checks and rejections.
 class CountedFilters {
  public:
   /// \param filters  outlive it.
   explicit CountedFilters(const Filters& filters) : filters_(filters) {}
   explicit CountedFilters(Filters&&) = delete;  // would not outlive it
 
-  /// How many configurations (dof x n), from the first on, every filter keeps before one is left
-  /// out. Counts as if they had been asked about one after the other, up to that one.
+  /// Number of leading configurations (dof x n) that every filter keeps, before the first that is
+  /// left out. Counts checks as if they were made one after the other, up to that one.
   Eigen::Index keep_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
   std::uint64_t checks() const noexcept { return checks_; }  ///< 0 without filters

@@ -8,7 +8,8 @@
 
 namespace kinship::transfer {
 
-/// A resampled path of a source robot as its target sees it: n poses and how the source took them.
+/// A resampled path of a source robot in the frame of its target: n poses, and the shapes and
+/// motion of the source there.
 struct PathPoses {
   std::vector<Eigen::Isometry3d> T_base_transfer;  ///< n, in the target's base link
   std::vector<ArmShape> source_shapes;             ///< n, in the target's base link

@@ -11,27 +11,27 @@
 
 namespace kinship::transfer {
 
-/// What surrounds a robot that stands among recorded objects and holds in its transfer frame what
-/// was held. Pairs that touch in at least 38 of 40 random configurations within the limits may
-/// touch, as a base and the table below it (seeded: equal input, equal answers); of two links that
-/// is not asked. \param scene keeps the rules of check_scene().
+/// Surroundings of a robot among the recorded objects, with the held objects in its transfer frame.
+/// Pairs that touch in at least 38 of 40 random configurations within the limits may touch, such as
+/// a base and the table below it (seeded: equal input, equal answers); pairs of links are not
+/// tested.
+/// \param scene  keeps the rules of check_scene().
 collision::Surroundings recorded_surroundings(const collision::RobotSolids& robot,
                                               const RecordedScene& scene,
                                               const Eigen::Isometry3d& T_task_base);
 
 /// A filter made of a recorded scene for one robot.
 struct SceneFilter {
-  /// Empty if there is nothing to touch: no shapes of the robot, or no object.
+  /// Empty if no contact is possible: no shapes of the robot, or no object.
   ConfigurationFilter keep;
-  /// Names of two things that touch wherever the robot goes, as a base and the table below it, or
-  /// a wrist and what is held: they say nothing about a configuration and are not looked at.
+  /// Names of pairs that touch in almost every configuration, such as a base and the table below
+  /// it, or a wrist and a held object: they are ignored.
   std::vector<std::pair<std::string, std::string>> always_touching;
 };
 
-/// Keeps the configurations in which the robot, standing among the recorded objects and holding in
-/// its transfer frame what was held, touches no object, and what it holds touches neither an object
-/// nor the robot. Whether the robot touches itself is another filter's question. The scene's
-/// constraint is ignored.
+/// Keeps the configurations in which the robot, among the recorded objects and with the held
+/// objects in its transfer frame, touches no object, and the held objects touch neither an object
+/// nor the robot. Self-collision is left to another filter. The scene's constraint is ignored.
 ///
 /// Pairs that touch in at least 38 of 40 random configurations within the limits are left out
 /// (seeded: equal input, equal answers). Not shared between threads.

@@ -12,7 +12,7 @@
 
 namespace kinship::transfer {
 
-/// Lanes in the order in which they came.
+/// A queue of lanes, first in, first out.
 template <int kCapacity>
 class LaneQueue {
  public:
@@ -30,24 +30,24 @@ class LaneQueue {
   int first_ = 0, size_ = 0;
 };
 
-/// Configurations of a pair's target, moved side by side: each lane has a pose to be at, a shape to
-/// look like and a configuration, and is given something to do of its own, at any time. What
-/// becomes of it does not depend on the other lanes. Not shared between threads.
+/// Configurations of a pair's target, moved side by side: each lane has a target pose, a wanted
+/// shape and a configuration, and gets tasks of its own, at any time. Its results do not depend on
+/// the other lanes. Not shared between threads.
 ///
-/// There are more lanes than the kernels take at once: as many for the one that descends, as many
-/// that wait for the one that pulls, and as many again that have ended, so that all have enough.
+/// There are more lanes than the kernels take at once: enough for the one that descends, for the
+/// one that pulls, and for lanes that have ended, so that the kernels stay full.
 class ShapeLanes {
  public:
   static constexpr int kCount = 4 * inverse::kLanes;
 
-  /// What a lane is at.
+  /// State of a lane.
   enum class State : std::uint8_t {
-    Idle,       ///< nothing
-    Reaching,   ///< descends to its pose from the one before, or waits to
+    Idle,       ///< no task
+    Reaching,   ///< descends to its pose from the previous one, or waits for that
     Measuring,  ///< is at its pose and waits for the kernel that pulls
-    Settling,   ///< descends back to its pose, pulled, or waits to
-    Arrived,    ///< has done what it was to do
-    Failed,     ///< could not, and stayed where it was
+    Settling,   ///< descends back to its pose after a pull, or waits for that
+    Arrived,    ///< has completed its task
+    Failed,     ///< could not complete it; its configuration is unchanged
   };
 
   /// \param pair  outlives it.
@@ -59,17 +59,17 @@ class ShapeLanes {
   void put(int lane, const inverse::JointVector& q);
   const inverse::JointVector& at(int lane) const { return q_[static_cast<std::size_t>(lane)]; }
 
-  /// What a lane is to do: descend to its pose, which fails if a joint would have to leave its
-  /// limits or the lane to move by more than `most_motion` (joint units), and then as begin_pull,
-  /// where that leads no farther.
+  /// Task of a lane: descend to its pose, which fails if a joint would have to leave its limits or
+  /// the lane to move by more than `most_motion` (joint units), then pull as begin_pull does,
+  /// within the same motion.
   void begin_step(int lane, double most_motion, int steps);
 
-  /// What a lane is to do that is at its pose: move through the self-motion towards its shape, in
-  /// at most `steps`; see pull_alone.
+  /// Task of a lane at its pose: move through the self-motion towards its shape, in at most
+  /// `steps`; see pull_alone.
   void begin_pull(int lane, int steps);
 
-  /// Works until the lanes at work no longer fill the kernels and a share of all has ended, so that
-  /// others can take their place.
+  /// Works until the working lanes no longer fill the kernels and enough lanes have ended that new
+  /// tasks can replace them.
   /// \return false: every lane is idle.
   bool run();
 
@@ -78,21 +78,21 @@ class ShapeLanes {
   bool has_ended(int lane) const {
     return state(lane) == State::Arrived || state(lane) == State::Failed;
   }
-  /// Leaves a lane that has ended without anything to do.
+  /// Makes a lane that has ended idle.
   void rest(int lane) { set(lane, State::Idle); }
 
-  /// Of each lane whether it is idle or has arrived and `configurations` (one column per lane) put
-  /// the transfer frame at its pose, by forward kinematics of the target within kPoseTolerance.
+  /// For each lane, whether it is idle, or has arrived and its column of `configurations` puts the
+  /// transfer frame at its pose, by forward kinematics of the target within kPoseTolerance.
   std::array<bool, kCount> verified(const Eigen::MatrixXd& configurations);
 
  private:
-  /// How far a lane has come with it.
+  /// Progress of a lane in its task.
   struct Work {
     double most_motion = 0;
     inverse::JointVector start;    ///< before the step
-    inverse::JointVector reached;  ///< where it came to its pose
-    inverse::JointVector settled;  ///< where the pull came back to it
-    inverse::JointVector raw;      ///< where the kernels are, in their values
+    inverse::JointVector reached;  ///< first at its pose
+    inverse::JointVector settled;  ///< back at its pose after the pull
+    inverse::JointVector raw;      ///< current, in the kernels' values
     int iterations = 0;            ///< of the descent
     int steps_left = 0;            ///< of the pull
     double distance_m = 0;         ///< of the shapes
@@ -109,21 +109,20 @@ class ShapeLanes {
   }
   /// Lanes in a state.
   int count(State state) const { return counts_[static_cast<std::size_t>(state)]; }
-  /// Lets a lane wait for a kernel.
+  /// Queues a lane for a kernel.
   void begin_descent(int lane, State state);
   void begin_measuring(int lane);
-  /// Gives seats of the kernel that descends to lanes that wait for one.
+  /// Gives free seats of the descending kernel to waiting lanes.
   void seat();
-  /// One iteration of the lanes that have a seat.
+  /// Runs one iteration of the lanes that have a seat.
   void descend();
   void reached(int lane);
   void settled(int lane);
   void start_pull(int lane, int steps);
-  /// One step of as many lanes that are pulled as the kernel takes: measures their shapes and moves
-  /// on from there.
+  /// Runs one pull step of as many lanes as the kernel takes: measures their shapes and moves them.
   void measure();
   void measured(int lane, int seat);
-  /// A lane that was pulled too far goes back to where it came to its pose.
+  /// Ends the pull of a lane; one pulled too far returns to its first configuration at its pose.
   void end_pull(int lane);
 
   const ArmPair& pair_;
@@ -141,8 +140,8 @@ class ShapeLanes {
   std::array<int, static_cast<std::size_t>(State::Failed) + 1> counts_ = {kCount};  // per state
 };
 
-/// How far the shapes of configurations (one per column) of a pair's target are from a wanted one,
-/// m; measured by the kernels.
+/// Distances of the shapes of configurations (one per column) of a pair's target from a wanted one,
+/// m; computed by the kernels.
 Eigen::VectorXd shape_distances_m(const ArmPair& pair, const Eigen::MatrixXd& configurations,
                                   const ArmShape& wanted);
 

@@ -10,7 +10,7 @@
 
 namespace kinship::transfer {
 
-/// The arm of a target robot, prepared once for whatever comes to it. Immutable, may be shared
+/// The arm of a target robot, prepared once for all transfers to it. Immutable, may be shared
 /// between threads.
 class TargetArm {
  public:
@@ -19,7 +19,7 @@ class TargetArm {
   const kinematics::Chain& chain() const noexcept { return chain_; }
   const inverse::Solver& solver() const noexcept { return solver_; }
   const inverse::Descent& descent() const noexcept { return descent_; }
-  /// Where the arm's shape is looked at; see shape_marks.
+  /// Points of the arm's shape; see shape_marks.
   const std::optional<inverse::LaneMarks>& marks() const noexcept { return marks_; }
 
  private:
@@ -29,10 +29,10 @@ class TargetArm {
   std::optional<inverse::LaneMarks> marks_;
 };
 
-/// What all transfers to one robot have in common, whatever they come from and wherever it stands.
+/// Preparation common to all transfers to one robot, from any source and at any placement.
 /// Immutable, may be shared between threads.
 struct TargetRobot {
-  /// \throws Failure(InvalidInput) as RobotSolids says.
+  /// \throws Failure(InvalidInput), see RobotSolids.
   TargetRobot(const kinematics::Chain& chain, const geometry::RobotShapes& shapes);
 
   std::shared_ptr<const TargetArm> arm;  ///< pairs of arms share it

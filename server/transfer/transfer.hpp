@@ -20,8 +20,8 @@ struct PathToTransfer {
   const Path& path;
   /// Pose of the source robot's base in the target robot's base: T_task_target^-1 * T_task_source.
   Eigen::Isometry3d T_target_source;
-  /// Asked about every configuration that inverse kinematics found; what they reject is left out
-  /// and counted. Waypoints that are taken over were free on their robot and are not asked about.
+  /// Applied to every configuration found by inverse kinematics; rejected ones are left out and
+  /// counted. Waypoints that are taken over were free on their robot and are not checked.
   const Filters& filters;
 };
 
@@ -31,10 +31,10 @@ struct PathToTransfer {
 /// unless `parameters.take_over` is false: at most one configuration a pose, with solution_index 0.
 /// The task axes that matter are the target robot's.
 ///
-/// Each path becomes what it becomes alone, but sooner: the kernels of inverse kinematics work on
-/// several paths at once, and take the next where one has ended.
+/// The result of each path is the same as alone, but faster: the kernels of inverse kinematics work
+/// on several paths at once, and take the next when one has ended.
 /// \param seed  equal input and seed: equal bytes. A pose's solutions depend on the seed and that
-///              pose only; whether it is searched with patience depends on the poses beside it
+///              pose only; whether the search is exhaustive depends on the neighbouring poses
 ///              (uncovered_poses.hpp).
 /// \return      one per path, in their order.
 /// \throws std::invalid_argument if path.dof() is not that of the pair's source, or `parameters`
@@ -45,16 +45,16 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
                                             const TransferParameters& parameters,
                                             std::uint64_t seed, const std::stop_token& stop = {});
 
-/// Where transfers get their paths from, and who is given what they became.
+/// Source of paths and sink of transferred paths.
 struct PathStream {
-  /// Valid until it is done; null: there are no more.
+  /// Valid until `done` is called for it; null: there are no more.
   std::function<const PathToTransfer*()> next;
   std::function<void(const PathToTransfer& path, TransferredPath transferred)> done;
 };
 
-/// The same of as many paths as there are, each done when it is; so that several threads may share
-/// them out as they go.
-/// \throws as above, and what the functions throw: those under way are not done then.
+/// The same for a stream of paths; `done` is called for each as it completes, so that several
+/// threads may share the paths.
+/// \throws as above, and exceptions of the functions; `done` is not called for paths in progress.
 void transfer_stream(const PathStream& paths, const ArmPair& pair,
                      const TransferParameters& parameters, std::uint64_t seed,
                      const std::stop_token& stop = {});
