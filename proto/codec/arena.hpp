@@ -20,7 +20,7 @@ class Arena {
     return copy;
   }
 
-  /// Gives a sequence of Cyclone DDS room for `size` elements, all zero. The arena keeps them.
+  /// Gives a sequence of Cyclone DDS `size` elements, all zero. The arena owns them.
   template <typename Sequence>
   void resize(Sequence& sequence, std::size_t size) {
     using Element = std::remove_pointer_t<decltype(sequence._buffer)>;

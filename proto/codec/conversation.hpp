@@ -8,11 +8,11 @@
 #include "proto/types/robot_description.hpp"
 #include "proto/types/uuid.hpp"
 
-/// The four conversations as types: what is asked, what is answered, and how a request that
-/// cannot be served is refused. And the two publications: what is told without being asked.
+/// The four conversations as types: request, reply, and the refusal of a request that cannot be
+/// served. And the two publications, which are sent without a request.
 namespace kinship::codec {
 
-/// How a reply finds its request; the first members of every message.
+/// Identifies the request of a reply; the first members of every message.
 struct Head {
   Uuid client_id;
   std::uint64_t sequence_number = 0;

@@ -12,7 +12,7 @@ namespace kinship::codec {
 void write_distribution(const Distribution& distribution, Arena& arena,
                         kinship_wire_Distribution& wire);
 
-/// Broken rules are left in the reader.
+/// Broken rules are recorded in the reader.
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader);
 
 }  // namespace kinship::codec

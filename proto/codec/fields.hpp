@@ -19,7 +19,7 @@
 /// sources of this folder only.
 namespace kinship::codec {
 
-/// What stands for a member in the structure that idlc makes.
+/// Type of a member in the structure that idlc generates.
 template <typename T>
 struct WireMember {
   using Type = std::conditional_t<std::is_enum_v<T> || std::is_same_v<T, int>, std::uint32_t, T>;
@@ -37,7 +37,7 @@ struct WireMember<std::optional<Digest>> {
   using Type = dds_sequence_octet;
 };
 
-/// Where a member lies that follows `end` bytes of others, as C lays structures out.
+/// Offset of a member after `end` bytes of others, as C lays out structures.
 template <typename Type>
 constexpr std::size_t place_after(std::size_t end) {
   return (end + alignof(Type) - 1) / alignof(Type) * alignof(Type);
@@ -155,7 +155,7 @@ std::vector<Value> read_list(const Sequence& wire, Reader& reader, const std::st
   return values;
 }
 
-/// What may be missing as a sequence of one or none.
+/// An optional value as a sequence of one element or none.
 template <typename Value, typename Sequence>
 void write_optional(const std::optional<Value>& value, Arena& arena, Sequence& wire) {
   if (value)

@@ -14,8 +14,8 @@ namespace kinship::codec {
 
 void check_mixture(const Mixture& mixture, Rules& rules);
 
-/// Means of components that share a covariance are rounded to f32; whose fit made them such numbers
-/// loses nothing.
+/// Means of components that share a covariance are rounded to f32, without loss if the fit already
+/// made them f32 numbers.
 /// \param mixture  checked by check_mixture.
 void write_mixture(const Mixture& mixture, Arena& arena, kinship_wire_Distribution& wire);
 

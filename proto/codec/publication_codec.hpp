@@ -14,8 +14,8 @@ std::optional<Error> check(const Event& event);
 Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement);
 Result<Announcement> decode(const kinship_wire_Announcement& wire);
 
-/// Its text is made one line, and texts that are too long are cut: what happened is told in any
-/// case, also when it was that somebody sent an impossible name.
+/// Its text is made one line, and texts that are too long are cut: every event is sent, also one
+/// about an invalid name.
 Result<Message<kinship_wire_Event>> encode(const Event& event);
 Result<Event> decode(const kinship_wire_Event& wire);
 

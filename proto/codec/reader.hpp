@@ -24,9 +24,9 @@ auto elements(const Sequence& sequence) {
 Digest read_digest(const std::uint8_t (&bytes)[32]);
 Uuid read_uuid(const std::uint8_t (&bytes)[16]);
 
-/// Turns members of an incoming message into parts of a value and remembers the first that cannot
-/// be one. Sizes are checked before anything is allocated; what it returns after a broken rule
-/// means nothing.
+/// Converts members of an incoming message to parts of a value and records the first broken rule.
+/// Sizes are checked before memory is allocated; values returned after a broken rule are
+/// meaningless.
 class Reader {
  public:
   /// \param value  may be null (a shorter message left it out): reads as empty.

@@ -7,8 +7,8 @@
 
 namespace kinship::codec {
 
-/// The rule of the contract that a robot description breaks, if any. Whether its URDF makes sense
-/// is for robots/kinematics to say.
+/// The rule of the contract that a robot description breaks, if any. Its URDF is checked by
+/// robots/kinematics.
 std::optional<Error> check(const RobotDescription& description);
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,

@@ -5,13 +5,12 @@
 #include "proto/idl/fetch.h"
 #include "proto/types/rehearsal.hpp"
 
-/// What a server found by planning recorded queries again, as part of a reply. For the sources of
-/// this folder only.
+/// A rehearsal as part of a reply. For the sources of this folder only.
 namespace kinship::codec {
 
 void write_rehearsal(const Rehearsal& rehearsal, Arena& arena, kinship_wire_Rehearsal& wire);
 
-/// What its fields break stays in the reader; check() says the rest.
+/// Broken rules of its fields are recorded in the reader; check() tests the others.
 Rehearsal read_rehearsal(const kinship_wire_Rehearsal& wire, Reader& reader);
 
 }  // namespace kinship::codec

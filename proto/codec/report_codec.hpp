@@ -8,8 +8,8 @@ namespace kinship::codec {
 /// \return InvalidInput or TooLarge if an attempt breaks a rule or the batch is too large.
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request);
 
-/// Attempts that break a rule come out as refused receipts; the others are not affected. An error
-/// only if there are more attempts than a batch may have.
+/// Attempts that break a rule become refused receipts; the others are not affected. \return an
+/// error only if the batch has too many attempts.
 Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire);
 
 Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportReply& reply);

@@ -7,11 +7,11 @@
 #include "proto/idl/register.h"
 #include "proto/idl/report.h"
 
-/// How much a request is, told from its message alone: without decoding it, and without memory.
+/// Size of a request, from its message alone: without decoding it, and without allocating memory.
 namespace kinship::codec {
 
 struct RequestSize {
-  std::size_t bytes = 0;     ///< about what it took on the network
+  std::size_t bytes = 0;     ///< approximate, on the network
   std::size_t attempts = 0;  ///< of a report
 };
 

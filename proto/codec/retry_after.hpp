@@ -6,8 +6,7 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/limits.hpp"
 
-/// When to ask again, as a member of messages: never longer than a client may be kept waiting,
-/// whoever says so.
+/// The time until a retry as a member of messages: at most kMaxRetryAfter_ms, also when it is read.
 namespace kinship::codec {
 
 inline std::uint32_t retry_after_ms(RetryAfter time) {

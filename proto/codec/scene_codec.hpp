@@ -10,11 +10,11 @@ namespace kinship::codec {
 
 void write_scene(const RecordedScene& scene, Arena& arena, kinship_wire_RecordedScene& wire);
 
-/// Counts and bytes are checked before anything is allocated, names, sizes and bounds as
-/// check_scene() does.
+/// Counts and bytes are checked before memory is allocated; names, sizes and bounds as in
+/// check_scene().
 RecordedScene read_scene(const kinship_wire_RecordedScene& wire, Reader& reader);
 
-/// What a message's scenes count against kMaxSceneBytes, read from its lengths.
+/// Bytes of a message's scene that count against kMaxSceneBytes, computed from its lengths.
 std::size_t scene_bytes(const kinship_wire_RecordedScene& wire);
 
 }  // namespace kinship::codec
