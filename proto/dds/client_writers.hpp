@@ -21,19 +21,20 @@ namespace kinship::dds {
 /// threads.
 ///
 /// A client's is made when a reader of the client is discovered, or a reply to it is sent; it is
-/// freed some time after the last reader has gone. So there are as many as clients are there. One
-/// whom the directory does not know when it is discovered gets its writer once it does. Of a
-/// publication (on_new) a writer goes with what it keeps for late readers, a second or two after
-/// its client was revoked or its rights changed, to which another one is made then.
+/// freed some time after the last reader has gone. So there are as many as connected clients. A
+/// client that the directory does not know when it is discovered gets its writer once the directory
+/// knows it. A publication's writer (on_new) is freed, with its samples for late readers, a second
+/// or two after its client was revoked or the client's rights changed; in the latter case a new one
+/// is made.
 class ClientWriters {
  public:
-  /// Called with a new writer that a reader of its client was discovered for.
+  /// Called with a new writer made for a discovered reader of its client.
   using OnNew = std::function<void(const std::string& name, const Entity& writer)>;
 
   /// \param topic   of these writers; outlives them.
   /// \param name    of the topic.
-  /// \param loop    on whose thread readers are noticed.
-  /// \param matched_readers  that the writers are made with, if any; outlive them.
+  /// \param loop    whose thread notices readers.
+  /// \param matched_readers  used to make the writers, if any; outlive them.
   ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
                 std::string name, Qos qos, MatchedReaders* matched_readers = nullptr);
   ClientWriters(const ClientWriters&) = delete;
@@ -42,8 +43,7 @@ class ClientWriters {
   /// To be set before the loop runs.
   void on_new(OnNew handler) { on_new_ = std::move(handler); }
 
-  /// The client's writer, made if there is none. Shared: it may be freed on another thread while
-  /// something is written.
+  /// The client's writer, made if there is none. Shared: another thread may drop it during a write.
   /// \throws Failure(Internal) if it cannot be made.
   std::shared_ptr<const Entity> of(const std::string& name);
 
@@ -58,7 +58,7 @@ class ClientWriters {
   using Clock = std::chrono::steady_clock;
   struct Writer {
     std::shared_ptr<const Entity> writer;  // owns its publisher too
-    Clock::time_point used;                // last time that it was asked for or had a reader
+    Clock::time_point used;                // last time that it was used or had a reader
     Caller rights = {};                    // for which it was made, if for a reader
   };
 
@@ -77,8 +77,8 @@ class ClientWriters {
   Qos qos_;
   MatchedReaders* matched_readers_;  // null: the writers are made without it
   OnNew on_new_;
-  Entity readers_;                 // reader of what DDS knows of readers
-  std::set<std::string> unknown_;  // who has a reader and is not let in; of the loop's thread
+  Entity readers_;                 // reader of the built-in topic of readers
+  std::set<std::string> unknown_;  // clients with a reader, not admitted; of the loop's thread
   mutable std::mutex mutex_;       // guards what follows
   std::map<std::string, Writer> writers_;
   Clock::time_point swept_;

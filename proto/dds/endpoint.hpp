@@ -12,7 +12,7 @@ struct FreeEndpoint {
   }
 };
 
-/// What DDS says of a reader or writer that is matched. For sources of proto/dds only.
+/// Built-in topic data of a matched reader or writer. For sources of proto/dds only.
 using Endpoint = std::unique_ptr<dds_builtintopic_endpoint_t, FreeEndpoint>;
 
 }  // namespace kinship::dds

@@ -2,12 +2,12 @@
 
 namespace kinship::dds {
 
-/// As long as one lives, this process hears only of readers and writers that say what security
-/// they have. Cyclone DDS 0.10.2 looks at the permissions of those only that say they are to be
-/// checked, and takes others for what its own side is: with a certificate of any client, somebody
-/// could write and read in the partition of another one. May be shared between threads.
+/// While one lives, this process discovers only remote readers and writers that announce their
+/// security attributes. Cyclone DDS 0.10.2 checks the permissions only of endpoints that announce
+/// them, and assumes its own attributes for others: a process with any client's certificate could
+/// write and read in the partition of another client. May be shared between threads.
 ///
-/// For the whole process: Cyclone DDS tells nobody which domain a remote reader or writer is of.
+/// For the whole process: Cyclone DDS does not expose the domain of a remote reader or writer.
 class EndpointGuard {
  public:
   EndpointGuard();
@@ -16,8 +16,8 @@ class EndpointGuard {
   ~EndpointGuard();
 };
 
-/// Whether Cyclone DDS asks this library before it hears of a reader or writer: not if a program
-/// loaded it before this library, or has another copy of this one.
+/// Whether Cyclone DDS calls this library before it discovers a reader or writer: not if a program
+/// loaded Cyclone DDS before this library, or has another copy of this library.
 bool is_endpoint_guard_in_place();
 
 }  // namespace kinship::dds

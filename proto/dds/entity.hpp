@@ -12,7 +12,7 @@ using Handle = std::int32_t;  ///< dds_entity_t of Cyclone DDS
 /// Keep members in creation order (participant first) so that destruction runs child to parent.
 class Entity {
  public:
-  /// \param handle  what dds_create_* returned.
+  /// \param handle  return value of dds_create_*.
   /// \param what    named in the message, e.g. "reader kinship/fetch/request".
   /// \throws Failure(Internal) if `handle` is a negative return code.
   Entity(Handle handle, std::string_view what);
@@ -31,8 +31,8 @@ class Entity {
   Handle handle_;  // 0: moved from
 };
 
-/// What Cyclone DDS returned if that is no error.
-/// \throws Failure(Internal) naming `what` and the code otherwise.
+/// A return value of Cyclone DDS if it is no error. \throws Failure(Internal) with `what` and the
+/// code otherwise.
 Handle require(Handle result, std::string_view what);
 
 }  // namespace kinship::dds

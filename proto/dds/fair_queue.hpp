@@ -13,27 +13,27 @@
 
 namespace kinship::dds {
 
-/// Requests that wait for the server: those of one client in order, clients in turn, so that who
-/// sends many waits for his own. A request may be held: it waits like all others, and is passed
-/// over until its time has come or it is released. For sources of proto/dds only.
+/// Requests that wait for the server: those of one client in order, clients in turn, so that a
+/// client that sends many delays only itself. A request may be held: it waits like all others, and
+/// is skipped until its time has come or it is released. For sources of proto/dds only.
 template <typename Request>
 class FairQueue {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  static constexpr Time kNow = Time::min();  ///< as a time to be held until: not held
+  static constexpr Time kNow = Time::min();  ///< as `held_until`: not held
   static constexpr Time kNever = Time::max();
 
   explicit FairQueue(std::size_t capacity) : capacity_(capacity) {}
 
   std::size_t size() const noexcept { return size_; }
 
-  /// Room for one request: as long as nothing else is done to the queue.
+  /// A place for one request: valid until the queue is changed.
   class Opening;
 
-  /// \param client  whose turn it is (Caller::client).
-  /// \return room for the request: there is some, or of somebody else more wait, of whom the newest
-  ///         has to go then, and is sent again. None if it would have to go itself, or waits
-  ///         already.
+  /// \param client  of the request (Caller::client).
+  /// \return a place for the request: a free one, or that of the newest request of a client with
+  ///         more waiting requests, which is dropped and will be resent. None if the request itself
+  ///         would have to be dropped, or is already waiting.
   std::optional<Opening> opening_for(const std::string& client, const codec::Head& head) {
     const auto mine = waiting_.find(client);
     const std::size_t count = mine == waiting_.end() ? 0 : mine->second.size();
@@ -50,7 +50,7 @@ class FairQueue {
     return Opening(client, head, longest);
   }
 
-  /// \param opening  of this queue, to which nothing was done since.
+  /// \param opening  of this queue, which was not changed since.
   void push(const Opening& opening, Request&& request, Time held_until = kNow) {
     if (opening.gives_way_ != waiting_.end()) {
       release(opening.gives_way_->second.back());
@@ -66,7 +66,7 @@ class FairQueue {
       ++held_;
   }
 
-  /// The next one that is not held any more.
+  /// The next request that is not held any more.
   std::optional<std::pair<codec::Head, Request>> pop(Time now) {
     for (auto turn = turns_.begin(); turn != turns_.end(); ++turn) {
       const auto mine = waiting_.find(*turn);
@@ -91,7 +91,7 @@ class FairQueue {
 
   bool holds_some() const noexcept { return held_ > 0; }
 
-  /// If it is held.
+  /// Releases a request if it is held.
   void release(const std::string& client, const codec::Head& head) {
     if (const auto mine = waiting_.find(client); held_ > 0 && mine != waiting_.end())
       for (Entry& each : mine->second)
@@ -99,7 +99,7 @@ class FairQueue {
           release(each);
   }
 
-  /// Those that are held and of which `is_free` says so.
+  /// Releases the held requests for which `is_free` returns true.
   template <typename IsFree>
   void release_if(const IsFree& is_free) {
     for (auto& [client, entries] : waiting_)
@@ -108,7 +108,7 @@ class FairQueue {
           release(each);
   }
 
-  /// When there will be something to pop, as long as nothing is pushed or released.
+  /// When pop() will return a request, unless one is pushed or released before.
   Time next() const {
     if (size_ == 0 || held_ < size_)
       return size_ == 0 ? kNever : kNow;
@@ -152,7 +152,7 @@ class FairQueue<Request>::Opening {
 
   std::string client_;
   codec::Head head_;
-  typename Waiting::iterator gives_way_;  // the end: nobody has to
+  typename Waiting::iterator gives_way_;  // the end: none has to
 };
 
 }  // namespace kinship::dds

@@ -33,7 +33,7 @@ class Loan {
 
   std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
 
-  /// The message, or null if this sample only tells about an instance.
+  /// The message, or null if this sample only has the state of an instance.
   const void* operator[](std::size_t i) const noexcept {
     return infos_[i].valid_data ? samples_[i] : nullptr;
   }

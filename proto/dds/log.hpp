@@ -10,12 +10,12 @@ namespace kinship::dds {
 /// DDS, one at a time; must not call back into DDS.
 using LogSink = std::function<void(std::string_view line)>;
 
-/// Where the log of Cyclone DDS goes; by default to stderr. At most 20 lines in 10 s are passed
-/// on, then one that says how many were left out: a peer that sends garbage makes Cyclone DDS
-/// write a line per packet. For the whole process.
+/// Sets the sink of the log of Cyclone DDS; the default is stderr. At most 20 lines in 10 s are
+/// passed on, then one with the number left out: a peer that sends garbage makes Cyclone DDS write
+/// a line per packet. For the whole process.
 void set_log_sink(LogSink sink);
 
-/// Puts the limit in front of Cyclone DDS's log; done by the first participant.
+/// Limits the rate of Cyclone DDS's log; called by the first participant.
 void limit_log();
 
 /// The newest line, to explain a failure; may be empty.

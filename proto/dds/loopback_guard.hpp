@@ -3,8 +3,8 @@
 namespace kinship::dds {
 
 /// While one lives, sockets that Cyclone DDS opens on this thread for all addresses of the machine
-/// are for its loopback address alone. Cyclone DDS 0.10.2 sends by the interface that it is told,
-/// but hears on all: who is told "lo" would be heard by the network.
+/// are bound to its loopback address alone. Cyclone DDS 0.10.2 sends on the configured interface
+/// but listens on all: with "lo" it would still receive from the network.
 class LoopbackGuard {
  public:
   LoopbackGuard();

@@ -24,7 +24,7 @@ class MatchedReaders {
   MatchedReaders(const MatchedReaders&) = delete;
   MatchedReaders& operator=(const MatchedReaders&) = delete;
 
-  /// A writer whose readers are noticed; it must not outlive this.
+  /// A writer whose readers are tracked; it must not outlive the object.
   /// \throws Failure(Internal) if it cannot be made.
   Entity make_writer(const Entity& publisher, Handle topic, const dds_qos* qos,
                      std::string_view what);
@@ -32,8 +32,8 @@ class MatchedReaders {
   /// \param participant  its instance handle.
   bool has(const Entity& writer, std::uint64_t participant) const;
 
-  const Entity& guard() const noexcept { return guard_; }            ///< set when there is one more
-  std::uint64_t departures() const noexcept { return departures_; }  ///< how many have gone
+  const Entity& guard() const noexcept { return guard_; }            ///< set when one has come
+  std::uint64_t departures() const noexcept { return departures_; }  ///< number that have gone
 
  private:
   using Reader = std::pair<Handle, std::uint64_t>;  // of which writer, and its handle

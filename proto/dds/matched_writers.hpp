@@ -12,32 +12,33 @@ struct dds_qos;
 
 namespace kinship::dds {
 
-/// Whether a sender hears the replies to its requests.
+/// Whether a sender receives the replies to its requests.
 enum class Hearing {
   Unknown,
   Heard,    ///< a reader of its participant was there
-  Awaited,  ///< was waited for once, and is not again
+  Awaited,  ///< was waited for once; not again
 };
 
-/// Who writes requests, as far as DDS knows it and not the request.
+/// The sender of requests, as known from DDS, not from the request.
 struct Sender {
-  /// The client's name; without security the identifier of its participant, which is another
-  /// one in each process.
+  /// The client's name; without security the identifier of its participant, which differs in each
+  /// process.
   std::string client;
   std::string name = {};  ///< common name of its certificate; empty without security
-  /// All of its participant's addresses are of this machine. Without security it says them itself.
+  /// All of its participant's addresses are of this machine. Without security the participant
+  /// states them itself.
   bool is_local = false;
   std::uint64_t participant = 0;  ///< its instance handle
   Hearing hearing = Hearing::Unknown;
 };
 
-/// Finds matched_writers by the writers of samples, and remembers them. For sources of proto/dds
+/// Looks up the senders of samples by their writers, and caches them. For sources of proto/dds
 /// only; not to be shared between threads.
 class MatchedWriters {
  public:
   explicit MatchedWriters(const Participant& participant);
 
-  /// \param reader  which took the sample.
+  /// \param reader  that took the sample.
   /// \param writer  its publication handle.
   /// \return null if the writer is gone, or is in no partition of one client (with security); valid
   ///         until the next call.
@@ -50,12 +51,12 @@ class MatchedWriters {
   bool is_local(std::uint64_t participant) const;
 
   bool has_security_;
-  Entity participants_;                              // reader of what DDS knows of participants
+  Entity participants_;                              // reader of the built-in topic of participants
   std::unordered_map<std::uint64_t, Sender> known_;  // by writer
 };
 
-/// The common name of the client's certificate whose partition, and no other, is in the QoS of a
-/// reader or writer.
+/// The common name of the client's certificate if the QoS of a reader or writer has that client's
+/// partition and no other.
 std::optional<std::string> client_of_partitions(const dds_qos* qos);
 
 /// Whether all addresses are of this machine: the form of Cyclone DDS, "udp/10.0.0.5:7411,...", or

@@ -12,11 +12,11 @@ struct NetworkInterface {
   bool is_up = false;
 };
 
-/// All network interfaces, in the system's order; empty if the system does not tell.
+/// All network interfaces, in the system's order; empty if the system does not list them.
 std::vector<NetworkInterface> network_interfaces();
 
-/// Why the conversations cannot use the interface of this name, and what to do about it: it does
-/// not exist, is down, or has no IPv4 address. Empty if they can, or if `interfaces` is empty.
+/// Why the conversations cannot use the interface of this name (it does not exist, is down, or has
+/// no IPv4 address), and a remedy. Empty if they can, or if `interfaces` is empty.
 std::string explain_unusable(const std::string& name,
                              const std::vector<NetworkInterface>& interfaces);
 

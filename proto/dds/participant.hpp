@@ -17,8 +17,9 @@
 
 namespace kinship::dds {
 
-/// The process that made something with threads of Cyclone DDS or of Kinship. A process forked from
-/// it has what was made and none of the threads: nothing there answers, and an end waits for ever.
+/// The process that created an object with threads of Cyclone DDS or of Kinship. A process forked
+/// from it has the object without the threads: calls get no answer, and a destructor waits for
+/// ever.
 class OwningProcess {
  public:
   /// Whether this is a process forked from the owner.
@@ -28,7 +29,7 @@ class OwningProcess {
   pid_t id_ = getpid();
 };
 
-/// What to do in a forked process, in words.
+/// Advice for a forked process, as text.
 std::string forked_process_advice();
 
 class EndpointGuard;
@@ -38,9 +39,9 @@ enum class Role {
   Client   ///< announces itself to the server, never to other clients
 };
 
-/// Whom the server knows by the name in its certificate; an error, which the client is told, if it
-/// knows nobody of that name, or not any more. Asked for each request: has to be quick. Called from
-/// any thread.
+/// Looks up a client by the name in its certificate; an error, which is sent to the client, if the
+/// server does not know that name, or not any more. Called for each request: has to be quick.
+/// Called from any thread.
 using Directory = std::function<Result<Caller>(const std::string& name)>;
 
 struct ParticipantOptions {
@@ -48,17 +49,17 @@ struct ParticipantOptions {
   Role role = Role::Client;
   std::string server = "127.0.0.1";  ///< client: host of kinshipd
   /// E.g. "eth0". Empty: at a server, or for a server on a loopback address, "lo"; otherwise
-  /// what Cyclone DDS finds best.
+  /// Cyclone DDS chooses.
   std::string network_interface = {};
-  /// Folder of credentials (kinshipd secure): only who has some of the same authority is heard.
-  /// Empty: no security.
+  /// Folder of credentials (kinshipd secure): only participants with credentials of the same
+  /// authority are accepted. Empty: no security.
   std::filesystem::path security = {};
-  Directory directory = {};  ///< of a server with security; it refuses everybody without one
+  Directory directory = {};  ///< of a server with security; without one it refuses every client
 };
 
 inline constexpr std::uint32_t kMaxDomain = 230;  ///< ports stay below 65536
 
-/// UDP port at which the server of a domain is found: 7400 + 250 domain + 10.
+/// UDP port of discovery at the server of a domain: 7400 + 250 domain + 10.
 std::uint16_t discovery_port(std::uint32_t domain);
 
 /// UDP ports that the server of a domain needs: discovery_port(), and the next one for data.
@@ -66,15 +67,15 @@ std::array<std::uint16_t, 2> server_ports(std::uint32_t domain);
 
 /// Name of the network interface that a participant asks for: the one of its options; loopback for
 /// servers without one and for clients of this machine; empty: Cyclone DDS chooses.
-/// \throws Failure(InvalidInput) for a name that cannot be.
+/// \throws Failure(InvalidInput) for an invalid name.
 std::string chosen_interface(const ParticipantOptions& options);
 
-/// The configuration of Cyclone DDS that a participant is given, as XML: a star over unicast.
-/// \throws Failure(InvalidInput) for a domain or host that cannot be.
+/// The configuration of Cyclone DDS for a participant, as XML: a star over unicast.
+/// \throws Failure(InvalidInput) for an invalid domain or host.
 std::string cyclone_configuration(const ParticipantOptions& options);
 
-/// Says that CYCLONEDDS_URI is set, with its value and what follows from it, as the end of a
-/// message about what was not found or joined; empty if it is not set.
+/// A note that CYCLONEDDS_URI is set, with its value and consequence, to append to a message about
+/// a failed search or join; empty if it is not set.
 std::string note_of_environment();
 
 /// A member of a DDS domain: root of every other entity. May be shared between threads.
@@ -83,10 +84,10 @@ std::string note_of_environment();
 /// participants of a process on one domain share one configuration and one folder of credentials.
 class Participant {
  public:
-  /// \throws Failure(InvalidInput) if the options cannot be, also for credentials with which nobody
-  ///         can join; Failure(Unavailable) if the domain cannot be joined, e.g. because its
-  ///         discovery port is taken by another server, or this process was forked from one that
-  ///         is in a domain: threads of Cyclone DDS do not come along.
+  /// \throws Failure(InvalidInput) if the options are invalid, also for unusable credentials;
+  ///         Failure(Unavailable) if the domain cannot be joined, e.g. because its discovery port
+  ///         is taken by another server, or this process was forked from one that is in a domain: a
+  ///         fork does not copy threads of Cyclone DDS.
   explicit Participant(const ParticipantOptions& options);
   ~Participant();
   Participant(Participant&&) noexcept;
@@ -94,7 +95,7 @@ class Participant {
   Handle get() const noexcept { return entity_.get(); }
   const ParticipantOptions& options() const noexcept { return options_; }
 
-  /// As whom it joined, with what role; nothing without security.
+  /// Name and role with which it joined; nothing without security.
   const std::optional<security::Credentials>& credentials() const noexcept { return credentials_; }
 
  private:

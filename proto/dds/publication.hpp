@@ -16,24 +16,24 @@ template <typename Publication>
 class Publisher {
  public:
   using Value = typename Publication::Value;
-  /// With security each client has a writer of its own, and is told what it may hear.
+  /// Whether a client may receive a value; with security each client has a writer of its own.
   using MayHear = std::function<bool(const Caller&, const Value&)>;
 
-  /// \param loop      on whose thread clients are noticed, with security; it outlives the publisher
-  ///                  and does not run yet.
-  /// \param may_hear  asked with security, from any thread; empty: everybody may.
+  /// \param loop      whose thread notices clients, with security; it outlives the publisher and
+  ///                  does not run yet.
+  /// \param may_hear  called with security, from any thread; empty: every client may.
   /// \throws Failure(Internal) if an entity cannot be created.
   Publisher(const Participant& participant, WaitLoop& loop, MayHear may_hear = {});
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
-  /// Sends to whoever subscribes; a slow subscriber loses samples and holds nobody up. A value
+  /// Sends to all subscribers; a slow subscriber loses samples and does not delay others. A value
   /// that breaks a rule of the contract is not sent. Never throws.
   void publish(const Value& value) const noexcept;
 
-  /// Forgets the announcement of a distribution: who subscribes from now on is not told of it.
-  /// Never throws.
+  /// Withdraws the announcement of a distribution: later subscribers do not receive it. Never
+  /// throws.
   void withdraw(const Digest& distribution_id)
       const noexcept requires std::same_as<Publication, codec::AnnouncementPublication>;
 
@@ -50,18 +50,18 @@ class Subscriber {
  public:
   struct Handlers {
     std::function<void(const typename Publication::Value&)> on_sample;
-    /// There is a server that was not there before, at first or after a restart. May be empty.
+    /// Called when a new server appears, at first or after a restart. May be empty.
     std::function<void()> on_server;
-    /// A server has gone: at once if it ended, after the lease of discovery if it died. May be
-    /// empty.
+    /// Called when a server has gone: at once if it ended, after the lease of discovery if it died.
+    /// May be empty.
     std::function<void()> on_server_gone = {};
   };
 
   /// \throws Failure(Internal) if an entity cannot be created; Failure(InvalidInput) if the role in
-  ///         the participant's credentials may not hear of it.
+  ///         the participant's credentials may not receive it.
   Subscriber(const Participant& participant, Handlers handlers);
 
-  /// Waits for the handler that runs; none is called afterwards.
+  /// Waits for the running handler; none is called afterwards.
   ~Subscriber();
   Subscriber(const Subscriber&) = delete;
   Subscriber& operator=(const Subscriber&) = delete;

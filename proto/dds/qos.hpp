@@ -9,7 +9,7 @@
 
 struct dds_qos;
 
-/// The QoS of every entity; proto/CONTRACT.md says the same for other languages.
+/// The QoS of every entity; proto/CONTRACT.md has it for other languages.
 namespace kinship::dds {
 
 struct DeleteQos {
@@ -24,23 +24,21 @@ Qos request_qos();
 /// holds them until they are taken.
 Qos request_reader_qos(int depth);
 
-/// Reliable, keep last 64, volatile, without autodispose: a writer never blocks, and a lost reply
-/// is asked for again.
+/// Reliable, keep last 64, volatile, without autodispose: a writer never blocks, and the client
+/// resends the request of a lost reply.
 Qos reply_qos();
 
 /// Both sides of announcements: reliable, the newest of each distribution, also for readers that
 /// come later (transient local), without autodispose.
 Qos announcement_qos();
 
-/// Both sides of events: reliable, keep last 64, volatile: who comes later, or does not keep up,
-/// misses some.
+/// Both sides of events: reliable, keep last 64, volatile: a late or slow subscriber misses some.
 Qos event_qos();
 
 /// Of a participant with security: the plugins of Cyclone DDS, and their files.
 Qos security_qos(const std::filesystem::path& credentials);
 
-/// Partition of a client with security, for all that it writes and reads.
-/// \pre it has credentials.
+/// Partition of a client with security, for all its writers and readers. \pre it has credentials.
 std::string client_partition(const Participant& participant);
 
 /// Of a publisher or subscriber in one partition.
@@ -48,7 +46,7 @@ Qos partition_qos(const std::string& partition);
 
 inline constexpr unsigned kReplyPartitions = 16;
 
-/// Partitions of all clients, for who reads in a domain with security.
+/// Partitions of all clients, for the server's readers in a domain with security.
 inline constexpr const char* kAllClients = "client_*";
 
 std::string reply_partition(unsigned number);  ///< "reply_00" to "reply_15"

@@ -6,14 +6,13 @@
 
 namespace kinship::dds {
 
-/// How many requests of a client that may not ask at all are answered: ten a second, so that who
-/// has a certificate of old cannot have the server work as much as it likes. Not to be shared
-/// between threads.
+/// Limits the replies to a client without any rights to ten a second, so that a client with an old
+/// certificate cannot cause unlimited work. Not to be shared between threads.
 class RefusalRateLimit {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// \return whether one more is answered; the rest of them is dropped.
+  /// \return whether one more request is answered; the others are dropped.
   bool take(const std::string& client, Clock::time_point now) {
     constexpr std::chrono::seconds kWindow{1};
     constexpr int kAnswered = 10;

@@ -13,8 +13,8 @@
 
 namespace kinship::dds {
 
-/// Where the reply to one request goes. Copyable; may be called from any thread, at any time,
-/// also after the replier is gone (then nothing is sent).
+/// Sends the reply to one request. Copyable; may be called from any thread, at any time, also after
+/// the replier is gone (then nothing is sent).
 ///
 /// The first call sends, later calls do nothing: a deadline and a late result may race. Never
 /// called: the client's next resend of the request is handled anew.
@@ -28,8 +28,8 @@ class Answer {
   /// says so. Never throws.
   void operator()(const typename Conversation::Reply& reply) const noexcept;
 
-  const codec::Head& head() const noexcept;  ///< which request this answers
-  const Caller& caller() const noexcept;     ///< who sent it
+  const codec::Head& head() const noexcept;  ///< of the request
+  const Caller& caller() const noexcept;     ///< sender of the request
 
  private:
   std::shared_ptr<State> state_;  // shared by the copies; the last one frees the place
@@ -45,19 +45,19 @@ class Replier {
   /// Runs on the loop's thread. A Failure it throws becomes a refusal.
   using Handler = std::function<void(typename Conversation::Request, Answer<Conversation>)>;
 
-  /// Asked about each request before it is decoded, on the loop's thread: the reply to one that may
-  /// not come in now. Must not throw.
+  /// Called for each request before it is decoded, on the loop's thread; returns a reply to refuse
+  /// it. Must not throw.
   using Gate = std::function<std::optional<typename Conversation::Reply>(
       const Caller&, const codec::RequestSize&)>;
 
-  /// \param gate  empty: everything may come in.
+  /// \param gate  empty: every request is admitted.
   /// \throws Failure(Internal) if an entity cannot be created.
   Replier(const Participant& participant, WaitLoop& loop, Handler handler, Gate gate = {});
   ~Replier();
   Replier(const Replier&) = delete;
   Replier& operator=(const Replier&) = delete;
 
-  std::size_t clients() const;  ///< that could send a request now. Callable from any thread
+  std::size_t clients() const;  ///< that can send a request now. Callable from any thread
 
  private:
   class Implementation;

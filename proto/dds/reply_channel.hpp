@@ -18,28 +18,28 @@
 namespace kinship::dds {
 
 /// The part of a Replier that does not depend on the conversation: the request reader, a reply
-/// writer per partition (with security per client), and which requests are being answered. For
-/// sources of proto/dds only. May be shared between threads.
+/// writer per partition (with security per client), and the requests being answered. For sources of
+/// proto/dds only. May be shared between threads.
 class ReplyChannel {
  public:
-  /// Which request is answered, and to whom.
+  /// A request being answered, and its sender.
   struct Place {
     std::string name;  ///< in the certificate; empty without security
     codec::Head head;
     friend auto operator<=>(const Place&, const Place&) = default;
   };
 
-  /// \param loop  on whose thread clients are noticed, with security.
+  /// \param loop  whose thread notices clients, with security.
   ReplyChannel(const Participant& participant, WaitLoop& loop, const Topics& topics);
 
   const Entity& reader() const noexcept { return reader_; }
   const std::string& name() const noexcept { return name_; }
 
-  /// Who sent a request; null if nobody can say any more. Valid until the next call.
+  /// The sender of a request; null if it is not known any more. Valid until the next call.
   /// \param writer  of the sample. Of one thread only.
   Sender* sender(std::uint64_t writer);
 
-  /// Whether a reply would reach a reader of the sender's participant by now.
+  /// Whether a reply would reach a reader of the sender's participant now.
   bool reaches(const Sender& sender, const codec::Head& head);
 
   const Entity& hearer_came() const noexcept {
@@ -47,7 +47,7 @@ class ReplyChannel {
   }  ///< a guard condition
 
   bool is_being_answered(const Place& place) const;
-  bool begin(const Place& place);  ///< false: it is being answered already
+  bool begin(const Place& place);  ///< false if it is being answered already
   void end(const Place& place);
 
   std::size_t clients() const;  ///< whose requests would reach it now
@@ -64,7 +64,7 @@ class ReplyChannel {
   Entity subscriber_;
   Entity reader_;
   MatchedWriters matched_writers_;
-  std::uint64_t departures_ = 0;  // that matched_writers_ knows of
+  std::uint64_t departures_ = 0;  // known to matched_writers_
   MatchedReaders matched_readers_;
   std::optional<ClientWriters> client_writers_;  // with security
   std::vector<Entity> publishers_;               // without: one per partition

@@ -16,8 +16,8 @@ namespace kinship::dds {
 /// The part of a Requester that does not depend on the conversation: sends, resends, and hands
 /// each reply to the call that waits for it. For sources of proto/dds only.
 ///
-/// There is no thread of its own: whichever caller sees replies first hands them out and wakes
-/// the others.
+/// It has no thread of its own: the first caller that sees replies hands them out and wakes the
+/// others.
 class RequestChannel {
  public:
   using Clock = std::chrono::steady_clock;
@@ -34,8 +34,8 @@ class RequestChannel {
                const std::function<void(const void*)>& on_reply);
 
   void cancel();
-  bool has_server() const;        ///< whether one is known right now
-  std::uint64_t count_servers();  ///< that came since construction, the same one again too
+  bool has_server() const;        ///< whether one is known now
+  std::uint64_t count_servers();  ///< that have appeared since construction, a restarted one again
 
  private:
   struct Waiter {
@@ -53,7 +53,7 @@ class RequestChannel {
   void release_waiter(std::unique_ptr<Waiter> waiter);
   Outcome wait_for_reply(const Call& call, const void* request, Clock::time_point deadline);
   void wait(const Waiter& waiter, Clock::time_point until) const;
-  void hand_out_replies(const Call& own);  ///< and wakes the callers of others
+  void hand_out_replies(const Call& own);  ///< and wakes other callers
   bool notice_servers();                   ///< whether there is one
   void wake_all();
 

@@ -25,17 +25,17 @@ class Requester {
   /// Sends the request and waits for its reply. Sends it again after 100 ms, 300 ms, then every
   /// second, and whenever a server appears: requests are idempotent.
   /// \return the reply; InvalidInput or TooLarge if the request breaks a rule, or if the role in
-  ///         the participant's credentials has no part in the conversation (nothing is sent);
-  ///         Unavailable if nobody answered until the deadline or cancel() was called; Internal
-  ///         if the reply breaks a rule.
+  ///         the participant's credentials may not use the conversation (the request is not sent);
+  ///         Unavailable if no reply came until the deadline or cancel() was called; Internal if
+  ///         the reply breaks a rule.
   Result<typename Conversation::Reply> call(const typename Conversation::Request& request,
                                             Clock::time_point deadline);
 
-  /// How many servers have come since construction, one that was started anew each time: whoever
-  /// remembers the number sees that there is a new one. Does not wait.
+  /// Number of servers that have appeared since construction, a restarted one again: a change of
+  /// the number shows a new server. Does not wait.
   std::uint64_t count_servers();
 
-  /// Ends calls under way, and makes later ones end at once. For shutting down.
+  /// Ends pending calls, and makes later ones end at once. For shutdown.
   void cancel();
 
  private:

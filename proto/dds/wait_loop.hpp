@@ -22,19 +22,20 @@ class WaitLoop {
   WaitLoop& operator=(const WaitLoop&) = delete;
 
   /// Serves until stop().
-  /// \param on_wake  called before every wait: does what is due and returns when to be called
-  ///                 again at the latest (Clock::time_point::max(): when woken).
+  /// \param on_wake  called before every wait: does the due work and returns the latest time of its
+  ///                 next call (Clock::time_point::max(): when woken).
   void run(const std::function<Clock::time_point()>& on_wake);
 
   void wake();  ///< has on_wake called soon
   void stop();  ///< run() returns after the handler it is in; also if called before run()
 
-  /// What on_data returns besides times: again after the others' turn; when there are samples.
+  /// Return values of on_data besides times: call again after the others' turn; call when there are
+  /// samples.
   static constexpr Clock::time_point kAgain = Clock::time_point::min();
   static constexpr Clock::time_point kWithSamples = Clock::time_point::max();
 
   /// For repliers: `on_data` is called on the loop's thread when `reader` has samples, at the time
-  /// that it returned last, and when `guard`, a guard condition, is set, if there is one. Call
+  /// that it last returned, and when `guard`, a guard condition, is set, if there is one. Call
   /// before run(); both must live as long as the loop runs.
   void attach(const Entity& reader, std::function<Clock::time_point()> on_data,
               const Entity* guard = nullptr);

@@ -17,14 +17,14 @@
 /// The messages and topics of each conversation and publication. For sources of proto/dds only.
 namespace kinship::dds {
 
-/// How many requests a reader holds until they are taken: a flood sends thousands while the thread
-/// that takes them waits for a processor. Long ones are fewer, for the memory.
+/// Requests that a reader holds until they are taken: a flood sends thousands while the thread that
+/// takes them waits for a processor. Fewer in conversations with long requests, to limit memory.
 inline constexpr int kHeldRequests = 256;
 inline constexpr int kHeldShortRequests = 2048;
-/// Of requests of such a conversation that are longer only some are let in (message_guard.hpp).
+/// Of longer requests in a conversation with short ones only some are admitted (message_guard.hpp).
 inline constexpr std::size_t kMaxShortRequestBytes = 65'536;
 
-/// What the type-erased parts need to know of a conversation.
+/// Topics of a conversation, for the type-erased parts.
 struct Topics {
   std::string name;  ///< e.g. "fetch": topics kinship/fetch/request and kinship/fetch/reply
   const dds_topic_descriptor_t& request;
@@ -76,7 +76,7 @@ struct Wire<codec::AdminConversation> {
   }
 };
 
-/// What the type-erased parts need to know of a publication.
+/// Topic of a publication, for the type-erased parts.
 struct PublicationTopic {
   std::string name;
   const dds_topic_descriptor_t& type;
@@ -99,7 +99,7 @@ struct Wire<codec::EventPublication> {
   }
 };
 
-/// The first members of every message of a conversation, in their place.
+/// The first members of every message of a conversation, at their offsets.
 struct WireHead {
   std::uint8_t client_id[16];
   std::uint64_t sequence_number;
