@@ -8,8 +8,8 @@
 namespace kinship::evidence {
 
 /// The newest judged attempts of a (task, robot), oldest first, at most kJudgedAttemptsPerMode of
-/// each sampling mode. The server fills it with what all machines report, a client goes on with its
-/// own.
+/// each sampling mode. The server fills it with the attempts of all machines, a client continues it
+/// with its own.
 class AttemptWindow {
  public:
   AttemptWindow() = default;

@@ -6,7 +6,7 @@
 
 namespace kinship::evidence {
 
-/// What is believed of log(cost of a uniform query / cost of a guided one): above 0 guidance helps.
+/// Estimate of log(cost of a uniform query / cost of a guided one): above 0 guidance helps.
 struct CostRatio {
   double mean = 0;
   double variance = 1;
@@ -17,10 +17,10 @@ struct CostRatio {
   double quantile(double deviates) const;
 };
 
-/// An attempt weighs half as much after so many others of either mode.
+/// The weight of an attempt halves after this many others of either mode.
 inline constexpr double kHalfLife = 400;
 
-/// What judged attempts say about the worth of guidance.
+/// Estimates the worth of guidance from judged attempts.
 ///
 /// The checks of an attempt are log-normal about the level of the task, which both modes share and
 /// which may wander, and the effect of guidance:
@@ -28,20 +28,20 @@ inline constexpr double kHalfLife = 400;
 ///     log(checks) = level -+ log(ratio) / 2 + noise,   - guided, + control
 ///
 /// A Kalman filter (drift_filter.hpp) follows level and effect through the attempts, so each is
-/// compared with its neighbours in time: what makes the task dearer for both modes moves the level
-/// and leaves the ratio. How fast level and effect wander is not known: six answers are followed
-/// side by side, from "not at all" to "any moment", and averaged by how well they foretold the
-/// attempts. Nothing is dropped; an attempt's weight is 2^(-age / kHalfLife).
+/// compared with its neighbours in time: a change that makes the task dearer for both modes moves
+/// the level, not the ratio. The speed at which level and effect wander is unknown: six filters
+/// with different speeds, from zero to very fast, run side by side and are averaged by how well
+/// they predicted the attempts. No attempt is dropped; an attempt's weight is 2^(-age / kHalfLife).
 ///
 /// - An unsolved attempt is censored: it would have needed its checks or more.
 /// - One report moves little: log(checks) is brought to within 3.5 robust standard deviations of
-///   the median of all, and to within 3 of what a filter foretold.
+///   the median of all, and to within 3 of a filter's prediction.
 /// - Attempts without checks are left out. Without any of a mode the answer is the prior: a ratio
 ///   of 1 / 0.7, give or take a factor e.
 ///
-/// Compared are typical queries (geometric means), not sums: a few very dear queries of one mode
-/// weigh no more than as many that are clearly dearer. Checks of both modes times any factor change
-/// nothing.
+/// Typical queries are compared (geometric means), not sums: a few very dear queries of one mode
+/// weigh no more than as many clearly dearer ones. Scaling the checks of both modes by a factor
+/// does not change the ratio.
 ///
 /// \param recent  oldest first, age falling.
 /// Sources: West and Harrison, Bayesian Forecasting and Dynamic Models (1997), section 4.5 (filter

@@ -2,7 +2,7 @@
 
 namespace kinship::evidence {
 
-/// One attempt as a drift filter sees it.
+/// One attempt as input of a drift filter.
 struct LogCost {
   double value = 0;          ///< log(checks)
   double effect = 0;         ///< of guidance: -1/2 guided, +1/2 control
@@ -14,9 +14,9 @@ struct LogCost {
 /// Follows a level and the effect of guidance, both of which may wander, through attempts.
 ///
 /// State (level, log ratio), observation level + effect x log ratio + noise of variance V / weight;
-/// V is learned with the state (conjugate, inverse gamma). All covariances are in units of V.
-/// A censored attempt moves the state to the mean and variance that it has if the checks are known
-/// to be above a bound (moments of a truncated normal distribution).
+/// V is learned with the state (conjugate, inverse gamma). All covariances are in units of V. A
+/// censored attempt moves the state to its mean and variance given that the checks are above a
+/// bound (moments of a truncated normal distribution).
 /// Source: West and Harrison, Bayesian Forecasting and Dynamic Models (1997), section 4.5; Johnson,
 /// Kotz and Balakrishnan, Continuous Univariate Distributions 1 (1994), section 13.10.
 class DriftFilter {
@@ -28,14 +28,14 @@ class DriftFilter {
     double ratio = 0;
   };
 
-  /// \param level  where the level may be about, give or take two standard deviations.
+  /// \param level  prior mean of the level, give or take two standard deviations.
   DriftFilter(Steps steps, double level);
 
   void add(const LogCost& cost);
 
   double ratio() const noexcept { return ratio_; }                    ///< mean of the log ratio
   double variance() const;                                            ///< of the log ratio
-  double log_likelihood() const noexcept { return log_likelihood_; }  ///< of what was added
+  double log_likelihood() const noexcept { return log_likelihood_; }  ///< of the attempts added
 
  private:
   Steps steps_;
