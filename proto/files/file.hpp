@@ -12,12 +12,12 @@
 
 namespace kinship::files {
 
-/// What a program did when the system refused it.
+/// The operation that the system refused.
 enum class Step { Make, Open, Read, Write, Sync, SyncFolder, Name, Lock };
 
 /// A file that the system refused: "file 'F': cannot be written: No space left on device". Conflict
-/// if a file or a process is in the way, otherwise Storage. A caller whose messages have other
-/// words catches it.
+/// if a file or a process is in the way, otherwise Storage. A caller with other messages catches
+/// it.
 class FileError : public Failure {
  public:
   FileError(std::filesystem::path file, Step step, int reason);
@@ -25,7 +25,7 @@ class FileError : public Failure {
   const std::filesystem::path& file() const noexcept { return file_; }
   Step step() const noexcept { return step_; }
   int reason() const noexcept { return reason_; }  ///< an errno
-  std::string reason_text() const;                 ///< in the system's words
+  std::string reason_text() const;                 ///< the system's text
 
  private:
   std::filesystem::path file_;
@@ -33,11 +33,11 @@ class FileError : public Failure {
   int reason_;
 };
 
-/// The sole owner of an open file. Its methods throw FileError and go on after an interrupt.
+/// The sole owner of an open file. Its methods throw FileError and continue after an interrupt.
 class File {
  public:
-  /// \param flags  of open(2); O_CLOEXEC is added. A failure with O_EXCL is that of Step::Make.
-  /// \param mode   of a file that is made, as far as the umask lets it.
+  /// \param flags  of open(2); O_CLOEXEC is added. A failure with O_EXCL has Step::Make.
+  /// \param mode   of a new file, restricted by the umask.
   /// \param named  in messages, instead of `path`.
   explicit File(const std::filesystem::path& path, int flags, mode_t mode = 0,
                 const std::filesystem::path& named = {});
@@ -72,7 +72,7 @@ std::string read_file(const std::filesystem::path& file, std::size_t limit);
 /// Renames without replacing. \return 0, or errno: EEXIST if `to` is there.
 int rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Brings a file to the disk. \throws FileError.
+/// Syncs a file to the disk. \throws FileError.
 void sync_file(const std::filesystem::path& file);
 
 /// Makes the names in the folder of `file` durable. \throws FileError that names the folder.

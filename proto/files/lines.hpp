@@ -15,8 +15,8 @@ inline constexpr std::size_t kMaxLineBytes = 64'000'000;
 
 /// A line of a text file that is not blank.
 struct Line {
-  std::size_t number = 0;    ///< counts from 1, blank ones too
-  Result<std::string> text;  ///< without the line feed; TooLarge instead of one beyond the limit
+  std::size_t number = 0;    ///< counts from 1, including blank ones
+  Result<std::string> text;  ///< without the line feed; TooLarge for a line above the limit
 };
 
 /// Hands over the lines of a stream one after another; at most one of them is in memory.

@@ -6,8 +6,8 @@
 
 namespace kinship::files {
 
-/// The exclusive lock of a file, for one owner on this machine. It ends with its process, however
-/// that ends; the file stays, with the process id of its last holder.
+/// The exclusive lock of a file, for one owner on this machine. It ends with its process in any
+/// case; the file stays, with the process id of its last holder.
 class LockFile {
  public:
   /// \return empty if another owner holds it.

@@ -6,15 +6,15 @@
 
 namespace kinship::files {
 
-/// How a file is made.
+/// Options of a new file.
 struct NewFileOptions {
-  mode_t mode = 0600;        ///< as far as the umask lets it
+  mode_t mode = 0600;        ///< restricted by the umask
   bool may_replace = false;  ///< a file of that name
   bool is_durable = true;    ///< published content and name survive a power cut
 
-  /// What a file of this kind begins with. If it is named, one process at a time writes a file, and
-  /// what killed processes left of it is removed first: parts of this user that are empty or begin
-  /// like this. Otherwise they stay.
+  /// First bytes of files of this kind. If set, one process at a time writes a file, and leftovers
+  /// of killed processes are removed first: parts of this user that are empty or begin like this.
+  /// Otherwise they stay.
   std::string_view magic = {};
   std::span<const char* const> sidecars =
       {};  ///< suffixes of files that go with an unpublished one
@@ -24,8 +24,8 @@ struct NewFileOptions {
 /// a name that no other file has, which is removed with its sidecars unless it is published.
 class NewFile {
  public:
-  /// \throws FileError that names the file: a Conflict if it is there and may not be replaced, or
-  ///         if another process is writing it.
+  /// \throws FileError that names the file: a Conflict if it exists and may not be replaced, or if
+  ///         another process is writing it.
   explicit NewFile(std::filesystem::path file, const NewFileOptions& options = {});
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -33,14 +33,14 @@ class NewFile {
 
   const std::filesystem::path& part() const noexcept { return part_; }
 
-  /// Writes the content, and the time of writing, so that files of one process have times in their
+  /// Writes the content, and the time of writing, so that times of files of one process are in
   /// order. \throws FileError.
   void write(std::string_view content) const;
 
-  /// Brings to the disk what was written so far. \throws FileError.
+  /// Syncs the content so far to the disk. \throws FileError.
   void sync() const { open_.sync(); }
 
-  /// Gives the file its name; durably unless the options say otherwise.
+  /// Gives the file its name; durable unless the options say otherwise.
   /// \throws FileError: a Conflict if a file of that name was made meanwhile.
   void publish();
 
@@ -59,7 +59,7 @@ class NewFile {
 void write_file(const std::filesystem::path& file, std::string_view content,
                 const NewFileOptions& options);
 
-/// Whether the name is one of an unpublished file, whose writer may have been killed.
+/// Whether the name is that of an unpublished file, whose writer may have been killed.
 bool is_part(const std::filesystem::path& path);
 
 }  // namespace kinship::files

@@ -6,18 +6,18 @@
 
 namespace kinship::files {
 
-/// Where a program writes what it was asked for: a file that has its name only once it is whole,
-/// or a stream if no file was named.
+/// Output of a program: a file that has its name only once it is complete, or a stream if no file
+/// is named.
 ///
 /// The file is written as `<file>.part` and renamed by keep(). Without keep() the old file stays as
-/// it was, and what was written stays as `<file>.part`, unless it is empty. What is there already
-/// and is no regular file (/dev/null, a FIFO, a symbolic link) is never replaced: it is written
-/// through, at once. Not for several threads; two programs must not write one file.
+/// it was, and the content stays as `<file>.part`, unless it is empty. An existing non-regular file
+/// (/dev/null, a FIFO, a symbolic link) is never replaced: it is written directly. Not for several
+/// threads; two programs must not write one file.
 class OutputFile {
  public:
-  /// \param file       empty: `otherwise` is written to.
-  /// \param otherwise  must outlive this.
-  /// \throws Failure(Storage) that names the file if it cannot be written; nothing is changed then.
+  /// \param file       empty: write to `otherwise`.
+  /// \param otherwise  outlives the object.
+  /// \throws Failure(Storage) that names the file if it cannot be written; then nothing is changed.
   OutputFile(std::filesystem::path file, std::ostream& otherwise);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -25,14 +25,14 @@ class OutputFile {
 
   std::ostream& stream() noexcept { return *stream_; }
 
-  /// Everything is written: the file gets its name. The stream is not to be used afterwards.
-  /// \throws Failure(Storage) if something could not be written; the old file stays then.
+  /// Completes the file and gives it its name. The stream must not be used afterwards.
+  /// \throws Failure(Storage) if writing failed; then the old file stays.
   void keep();
 
-  /// Whether something is written that is not kept: it stays as part().
+  /// Whether there is content that is not kept: it stays as part().
   bool has_part();
 
-  /// Where the content is as long as it is not kept; empty for a stream or what is written through.
+  /// File of the content until it is kept; empty for a stream or a file that is written directly.
   const std::filesystem::path& part() const noexcept { return part_; }
 
  private:
