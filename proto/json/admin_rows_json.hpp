@@ -12,10 +12,10 @@
 #include "proto/types/summaries.hpp"
 
 /// The rows of the admin conversation and of `--json` listings: the server writes them, clients
-/// read them. Member names are those of the structs and stay.
+/// read them. Member names are those of the structs and never change.
 namespace kinship::json {
 
-/// What a row is called in a refusal; empty: the value is no row.
+/// Name of a row in a refusal; empty: the value is not a row.
 template <typename Row>
 inline constexpr std::string_view kRowName = {};
 template <>
@@ -54,11 +54,11 @@ concept AdminRow = !kRowName<Row>.empty();
 template <AdminRow Row>
 std::string to_json(const Row& row);
 
-/// Of an Explanation the distribution may lack its mixture (weights, means, covariances null).
+/// The distribution of an Explanation may lack its mixture (weights, means, covariances null).
 template <AdminRow Row>
 Result<Row> row_from_json(std::string_view text);
 
-/// What `kinship backup download --json` says: `{"file", "bytes", "sha256"}`.
+/// The document of `kinship backup download --json`: `{"file", "bytes", "sha256"}`.
 std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256);
 
 }  // namespace kinship::json

@@ -9,7 +9,7 @@
 /// A line of an experience file: `paths export` and `import`, and a client's outbox.
 namespace kinship::json {
 
-/// An attempt as a file has it: its robot may be named by label.
+/// An attempt in a file, where the robot may be named by label.
 struct NamedAttempt {
   Attempt attempt;    ///< `robot` is all zeros if a label was given: the reader looks it up
   std::string label;  ///< empty if the digest was given
@@ -21,7 +21,7 @@ std::string to_json(const Attempt& attempt);  ///< robot as digest
 ///         64 hexadecimal digits are a digest, anything else is a label.
 Result<NamedAttempt> attempt_from_json(std::string_view text);
 
-/// The same of a store's attempt, whose path may have been dropped: solved, without waypoints.
+/// The same for an attempt of a store, whose path may have been dropped: solved, without waypoints.
 Result<NamedAttempt> stored_attempt_from_json(std::string_view text);
 
 }  // namespace kinship::json

@@ -6,7 +6,8 @@
 
 namespace kinship::json {
 
-/// The document of `kinshipd secure list --json`. Member names are those of the struct and stay.
+/// The document of `kinshipd secure list --json`. Member names are those of the struct and never
+/// change.
 std::string to_json(const CredentialList& list);
 
 }  // namespace kinship::json

@@ -12,8 +12,8 @@ namespace kinship::json {
 /// distribution has no mixture.
 std::string to_json(const Distribution& distribution);
 
-/// \return the distribution, or InvalidInput or TooLarge that names field, value and limit.
-///         Doubles of mixture, limits and times come back bit by bit.
+/// \return the distribution, or InvalidInput or TooLarge that names field, value and limit. Doubles
+///         of mixture, limits and times are restored bit by bit.
 Result<Distribution> distribution_from_json(std::string_view text);
 
 }  // namespace kinship::json

@@ -17,7 +17,7 @@ using ExperienceLine = std::variant<RobotDescription, NamedAttempt>;
 /// `{"robot_description": {...}}`
 std::string to_experience_line(const RobotDescription& description);
 
-/// \return what the line is, or InvalidInput or TooLarge that names field, value and limit.
+/// \return the content of the line, or InvalidInput or TooLarge that names field, value and limit.
 Result<ExperienceLine> experience_line_from_json(std::string_view text);
 
 }  // namespace kinship::json

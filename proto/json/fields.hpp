@@ -46,7 +46,7 @@ void read_members(const Reader& reader, const Table& fields, Value& value) {
   std::apply([&](const auto&... field) { (read(field), ...); }, fields);
 }
 
-/// An object with the fields of a value, in their order; a list; null for what is missing; a
+/// An object with the fields of a value, in their order; a list; null for a missing optional; a
 /// number, text or word.
 template <typename T>
 OrderedJson json_of(const T& value) {
@@ -74,7 +74,7 @@ OrderedJson json_of(const T& value) {
   }
 }
 
-/// What stands at a place, within the limits of its field.
+/// The value at a reader's place, within the limits of its field.
 template <typename T>
 T read_as(const Reader& reader, const FieldRules& rules) {
   if constexpr (kIsOptional<T>) {

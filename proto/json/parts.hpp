@@ -7,7 +7,7 @@
 #include "proto/types/robot_description.hpp"
 
 /// Documents that are also parts of other documents; for this library's sources only. Reading
-/// throws what Reader throws.
+/// throws the exceptions of Reader.
 namespace kinship::json {
 
 NamedAttempt read_attempt(const Reader& reader);

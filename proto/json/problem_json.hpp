@@ -21,7 +21,7 @@ Result<ProblemResult> problem_result_from_json(std::string_view text);
 
 std::string to_json(const RecordedSearch& search);
 
-/// Every parent stands before its child, and the path's nodes are there.
+/// Refused unless every parent precedes its child and the path's nodes exist.
 Result<RecordedSearch> recorded_search_from_json(std::string_view text);
 
 }  // namespace kinship::json

@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxDocumentDepth = 32;
 
 /// A JSON value and the name of its place in the document, e.g. `record.share`. Borrows from its
 /// Document. Every method throws Failure(InvalidInput), or TooLarge, that names place, value and
-/// limit if the value is not what is asked for.
+/// limit if the value does not fit.
 class Reader {
  public:
   Reader(const nlohmann::json& value, std::string name) : value_(&value), name_(std::move(name)) {}
@@ -38,7 +38,7 @@ class Reader {
   std::optional<Reader> find(std::string_view key) const;      ///< empty if missing or null
   std::vector<std::string> keys(std::size_t max_count) const;  ///< of an object
 
-  /// Refuses an object with a member that is not listed: where a misspelt one would be dropped.
+  /// Refuses an object with a member that is not listed, where a misspelt one would be ignored.
   void allow_only(std::initializer_list<std::string_view> members) const;
 
   std::vector<Reader> elements(std::size_t max_count) const;  ///< of an array
@@ -79,7 +79,7 @@ class Document {
   Document& operator=(const Document&) = delete;
   ~Document();
 
-  Reader root() const;      ///< \throws Failure(InvalidInput) if it is no object
+  Reader root() const;      ///< \throws Failure(InvalidInput) if it is not an object
   Reader any_root() const;  ///< a value of any type
 
  private:
@@ -87,7 +87,7 @@ class Document {
   std::string what_;
 };
 
-/// Parses `text` and applies `read` to its root; a Failure on the way becomes the error.
+/// Parses `text` and applies `read` to its root; a Failure becomes the error.
 template <typename Read>
 Result<std::invoke_result_t<Read, const Reader&>> read_document(std::string_view text,
                                                                 std::string_view what, Read read) {

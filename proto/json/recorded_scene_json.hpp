@@ -10,8 +10,8 @@ namespace kinship::json {
 
 OrderedJson recorded_scene_object(const RecordedScene& scene);
 
-/// Absent lists are empty ones, an absent or null constraint is none. Refuses what check_scene()
-/// does; objects come in the order of the lists: boxes, cylinders, spheres, capsules.
+/// Absent lists are empty, an absent or null constraint is none. Refuses scenes that break
+/// check_scene(); objects are in the order of the lists: boxes, cylinders, spheres, capsules.
 RecordedScene read_recorded_scene(const Reader& reader);
 
 }  // namespace kinship::json

@@ -11,7 +11,7 @@
 #include "proto/types/robot_links.hpp"
 #include "proto/types/transferability.hpp"
 
-/// What `robots register`, `check`, `fk`, `ik`, `links`, `frames` and `compare` print and read.
+/// Output and input of `robots register`, `check`, `fk`, `ik`, `links`, `frames` and `compare`.
 namespace kinship::json {
 
 std::string to_json(const InverseAnswer& answer);  ///< reason null if there are solutions
@@ -19,7 +19,8 @@ std::string to_json(const RobotCheck& check);
 
 std::string to_json(const ForwardAnswer& answer);
 
-/// `robots compare`: {"task": ..., "rows": [...]}, a pair a row; worth null where it is not known.
+/// `robots compare`: {"task": ..., "rows": [...]}, one row per pair; worth is null if it is not
+/// known.
 std::string to_json(const std::string& task, const std::vector<Transferability>& pairs);
 
 std::string to_json(const RobotLinks& links);
@@ -30,7 +31,7 @@ std::string to_json(const SrdfSuggestion& suggestion);
 std::string to_json(const RegisterReply& reply, const std::string& label);
 
 /// A line [x, y, z, qx, qy, qz, qw].
-/// \return the pose, or InvalidInput that names what is wrong.
+/// \return the pose, or InvalidInput that names the fault.
 Result<Eigen::Isometry3d> pose_from_json(std::string_view text);
 
 /// A line [q_1, q_2, ...] of at most kMaxDof numbers, joint units.

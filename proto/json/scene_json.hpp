@@ -12,9 +12,9 @@ OrderedJson attached_object(const AttachedObject& attached);
 
 OrderedJson shape_object(const Shape& shape);
 
-/// Absent lists are empty ones. Meshes come as their files' names.
+/// Absent lists are empty. Meshes are given by file name.
 Scene read_scene(const Reader& reader);
-/// What is no mesh of an object that may have other members too.
+/// The solids, without meshes, of a JSON object that may have other members too.
 Scene read_solids(const Reader& reader);
 AttachedObject read_attached(const Reader& reader);
 /// Refuses a mesh.

@@ -6,7 +6,7 @@
 
 namespace kinship::json {
 
-/// The document of `kinshipd check --json`. Member names are those of the struct and stay.
+/// The document of `kinshipd check --json`. Member names are those of the struct and never change.
 std::string to_json(const StoreCheck& check);
 
 }  // namespace kinship::json

@@ -6,8 +6,8 @@
 
 namespace kinship::json {
 
-/// What `tasks experience` prints. The revision is text, 16 hexadecimal digits: as a number it
-/// would not be exact in every language.
+/// Output of `tasks experience`. The revision is text, 16 hexadecimal digits: as a number it would
+/// not be exact in every language.
 std::string to_json(const TaskExperience& experience);
 
 }  // namespace kinship::json

@@ -10,7 +10,7 @@ namespace kinship::json {
 /// `{"T0_w": pose, "Tw_e": pose, "Bw": [[lower, upper] x 6]}`; null for an infinite bound.
 OrderedJson region_object(const TaskSpaceRegion& region);
 
-/// All members are required. Throws what Reader throws, also for crossed bounds.
+/// All members are required. Throws the exceptions of Reader, also for crossed bounds.
 TaskSpaceRegion read_region(const Reader& reader);
 
 }  // namespace kinship::json
