@@ -13,14 +13,14 @@ enum class Shell { Bash, Zsh, Fish };
 
 std::optional<Shell> shell_of(std::string_view name);  ///< "bash", "zsh", "fish"
 
-/// A script that completes the command line of a program: verbs, options, their values, and what a
-/// server knows (`kinship candidates`), if one answers at once.
+/// A script that completes the command line of a program: verbs, options, their values, and names
+/// that a server knows (`kinship candidates`), if one answers at once.
 std::string completion(const CommandUsage& program, Shell shell);
 
-/// For the sources of this folder: what the three scripts share.
+/// For the sources of this folder: parts of the three scripts.
 namespace script {
 
-/// Options of a command, own ones and inherited.
+/// Options of a command, its own and the inherited ones.
 std::vector<const OptionUsage*> options_of(const CommandUsage& command);
 
 /// Names of programs and of functions that complete them: "kinship_plan".
@@ -29,7 +29,7 @@ std::string function_name(const CommandUsage& program);
 /// Within single quotes of a shell.
 std::string shell_quoted(const std::string& text);
 
-/// The first sentence or clause of a description, on one line: what fits beside a candidate.
+/// The first sentence or clause of a description, on one line, to show beside a candidate.
 std::string short_description(const std::string& description);
 
 /// The patterns "/paths/list --task" of all options that take a value, with '|' between them;

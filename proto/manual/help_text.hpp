@@ -8,7 +8,7 @@ class FormatterBase;
 
 namespace kinship::manual {
 
-/// Help in 80 columns: options as one types them, what they take, and what they are about.
+/// Help in 80 columns: options as typed, their values and their descriptions.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
 }  // namespace kinship::manual

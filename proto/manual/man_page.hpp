@@ -7,7 +7,7 @@
 namespace kinship::manual {
 
 struct ManPageFrame {
-  int section = 1;  ///< 1: a program for everybody, 8: a server
+  int section = 1;  ///< 1: a user's program, 8: a server
   std::string version, date;
   std::string see_also;  ///< "kinship(1), kinshipd(8)"
 };

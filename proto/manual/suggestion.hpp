@@ -10,13 +10,13 @@ class ParseError;
 
 namespace kinship::manual {
 
-/// What a misspelt word of a command line may have meant, for the end of a line about it:
-/// " (did you mean 'register'?)"; empty if nothing is near. Verbs are sought among those of the
-/// deepest verb that was understood, options ("--...") among its own and those above it.
+/// A correction of a misspelt word of a command line, to append to a message: " (did you mean
+/// 'register'?)"; empty if no name is near. Verbs are searched among those of the deepest verb that
+/// was recognised, options ("--...") among its own and those above it.
 std::string suggestion_for(const CLI::App& app, const std::string& word);
 
-/// Says what is wrong with a command line, what a misspelt word may have meant, or what --help and
-/// --version are asked for.
+/// Writes the fault of a command line with corrections of misspelt words, or the text of --help and
+/// --version.
 /// \return an exit code (proto/types/exit_code.hpp).
 int explain(const CLI::App& app, const CLI::ParseError& error, std::ostream& out,
             std::ostream& err);
