@@ -7,8 +7,8 @@
 
 namespace kinship::mixture {
 
-/// Natural logarithm of the mixture's density at each configuration, in the log domain, so that
-/// one far from every component still has a number.
+/// Natural logarithm of the mixture's density at each configuration, in the log domain, so that it
+/// is finite even far from every component.
 /// \param configurations  d x N, joint units.
 /// \return                N, in nats. O(K d^3 + N K d^2).
 /// \throws std::invalid_argument if dimensions differ.
@@ -17,8 +17,8 @@ namespace kinship::mixture {
 Eigen::VectorXd log_density(const Mixture& mixture,
                             const Eigen::Ref<const Eigen::MatrixXd>& configurations);
 
-/// The same of a distribution's mixture, not truncated to its limits; continuous joints are turned
-/// to where its means lie.
+/// The same for a distribution's mixture, not truncated to its limits; continuous joints are turned
+/// into the range of its means.
 /// \param distribution  with a mixture.
 Eigen::VectorXd log_density(const Distribution& distribution,
                             const Eigen::Ref<const Eigen::MatrixXd>& configurations);

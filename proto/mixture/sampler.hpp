@@ -11,8 +11,8 @@
 namespace kinship::mixture {
 
 /// Draws configurations from a mixture truncated to joint limits, by rejection of whole draws
-/// (component too, so that the truncated mixture is what is sampled).
-/// Immutable after construction: may be shared between threads with a generator each.
+/// (including the component, so that the samples follow the truncated mixture). Immutable after
+/// construction: may be shared between threads with a generator each.
 class Sampler {
  public:
   /// \param limits  2 x d: lower, upper, joint units.
@@ -22,13 +22,13 @@ class Sampler {
 
   Eigen::Index dimension() const noexcept { return dimension_; }
 
-  /// One configuration inside the limits; empty if none came out of `kMaxDraws` draws, which
-  /// says that the mixture lies outside the limits. Takes one number from the generator.
+  /// One configuration inside the limits; empty if none of `kMaxDraws` draws is inside, i.e. the
+  /// mixture lies outside the limits. Takes one number from the generator.
   std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator) const;
 
-  /// Many configurations at once, a fraction of the time of as many single ones. Takes one number
-  /// from the generator.
-  /// \return d x count; fewer columns if none came out of `kMaxDraws` draws.
+  /// Many configurations at once, in a fraction of the time of single ones. Takes one number from
+  /// the generator.
+  /// \return d x count; fewer columns if none of `kMaxDraws` draws is inside.
   Eigen::MatrixXd sample(std::mt19937_64& generator, Eigen::Index count) const;
 
   static constexpr int kMaxDraws = 1000;
