@@ -11,48 +11,48 @@ namespace kinship::security {
 /// The authorities of a fleet and their keys: DIR/authority. Mostly one; two while the fleet
 /// changes from the previous one to the next.
 ///
-///     ca.pem       authorities that are trusted, first the one that issues
+///     ca.pem       trusted authorities, the issuing one first
 ///     ca.key       its key; may be kept elsewhere
-///     crossed.pem  while there are two: the first one's key, vouched for by the second; nothing
-///                  vouches for the second one's key, so that it counts for nothing once retired
+///     crossed.pem  while there are two: the first one's key, certified by the second; no
+///                  certificate vouches for the second one's key, so that it is worthless once
+///                  retired
 ///     previous.key while there are two: the key of the second, which still issues the server's
 ///                  certificate
 ///     retired-F.key that of the authority with fingerprint F
 ///
-/// A change that was interrupted may be made again, and no key of a trusted authority is lost by
-/// it.
+/// An interrupted change may be repeated, and loses no key of a trusted authority.
 ///
-/// Each function throws Failure that names the file and what to do.
+/// Each function throws Failure that names the file and a remedy.
 class AuthorityFolder {
  public:
   /// Makes the folder with its first authority.
   static AuthorityFolder init(const std::filesystem::path& folder, std::chrono::sys_seconds now);
 
   /// \param key  file of the issuing authority's key; empty: ca.key.
-  /// \throws Failure(NotFound) if it is no such folder.
+  /// \throws Failure(NotFound) if it is not such a folder.
   explicit AuthorityFolder(std::filesystem::path folder, std::filesystem::path key = {});
 
-  /// Certificates of all, first the one that issues.
+  /// Certificates of all authorities, the issuing one first.
   std::vector<Certificate> trusted() const;
   bool has_two() const { return trusted().size() > 1; }
 
-  /// Who vouches for clients: the one that issues. It signs everybody's documents: while there are
-  /// two, who trusts one of them only can verify these.
+  /// The authority for clients: the issuing one. It signs all documents: while there are two, a
+  /// participant that trusts only one of them can verify these.
   Vouchers for_clients() const { return vouchers(0); }
-  /// For the server, whose certificate clients with files by either authority have to trust: while
-  /// there are two, the previous one issues it.
+  /// The authority for the server, whose certificate clients of either authority have to trust:
+  /// while there are two, the previous one issues it.
   Vouchers for_server() const { return vouchers(trusted().size() - 1); }
 
-  /// A second authority, which issues from now on.
+  /// Adds a second authority, which issues from now on.
   /// \throws Failure(Conflict) if there are two.
   void add_second(std::chrono::sys_seconds now);
 
-  /// Only the issuing authority is left; the key of the previous one is kept under another name.
-  /// \return that file; empty if the key is kept elsewhere.
-  /// \throws Failure(Conflict) if there is one only.
+  /// Removes the previous authority and keeps its key under another name.
+  /// \return the file of that key; empty if the key is kept elsewhere.
+  /// \throws Failure(Conflict) if there is only one authority.
   std::filesystem::path retire_previous();
 
-  /// A new authority in the place of all that there are, whose keys are not asked for.
+  /// Replaces all authorities by a new one; their keys are not needed.
   void replace(std::chrono::sys_seconds now);
 
  private:

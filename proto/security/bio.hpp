@@ -16,7 +16,7 @@ struct DeleteBio {
 };
 using Bio = std::unique_ptr<BIO, DeleteBio>;
 
-/// An empty one to write into.
+/// An empty stream to write into.
 inline Bio memory_bio() {
   Bio bio(BIO_new(BIO_s_mem()));
   if (!bio)
@@ -24,7 +24,7 @@ inline Bio memory_bio() {
   return bio;
 }
 
-/// One that reads `text`, which has to outlive it.
+/// A stream that reads `text`, which has to outlive it.
 inline Bio bio_of(std::string_view text) {
   Bio bio(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())));
   if (!bio)
@@ -32,7 +32,7 @@ inline Bio bio_of(std::string_view text) {
   return bio;
 }
 
-/// What was written into it and not read yet.
+/// The text written into a stream and not yet read.
 inline std::string text_of(BIO& bio) {
   std::string text(BIO_ctrl_pending(&bio), '\0');
   const int size = text.empty() ? 0 : BIO_read(&bio, text.data(), static_cast<int>(text.size()));

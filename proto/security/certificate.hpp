@@ -11,7 +11,7 @@
 
 namespace kinship::security {
 
-/// From when to when something is valid, UTC.
+/// A period of validity, UTC.
 struct Validity {
   std::chrono::sys_seconds begin = {};
   std::chrono::sys_seconds end = {};
@@ -20,15 +20,15 @@ struct Validity {
 /// `days` from now on; begins a day earlier, for robots whose clocks are behind.
 Validity valid_for(std::chrono::days days, std::chrono::sys_seconds now);
 
-/// What a certificate may be used for.
+/// Use of a certificate.
 enum class Use {
   Authority,         ///< issues certificates
-  CrossedAuthority,  ///< the key of another authority, as one that issues certificates
-  Identity,          ///< who a participant is: signs no documents
-  Documents          ///< signs governance and permissions: no participant's
+  CrossedAuthority,  ///< for the key of another authority, which issues certificates
+  Identity,          ///< of a participant: signs no documents
+  Documents          ///< signs governance and permissions: of no participant
 };
 
-/// What is to stand in a certificate.
+/// Content of a new certificate.
 struct CertificateText {
   std::string name;  ///< common name; the organization is Kinship
   Use use = Use::Identity;
@@ -50,10 +50,10 @@ std::string to_pem(evp_pkey_st& key);  ///< PKCS#8, not encrypted
 
 /// All certificates of a PEM text, in order; none if it has none.
 /// \param what  names the text in messages.
-/// \throws Failure(InvalidInput) for one that cannot be read.
+/// \throws Failure(InvalidInput) for an unreadable one.
 std::vector<Certificate> certificates_from_pem(std::string_view pem, std::string_view what);
 
-/// \throws Failure(InvalidInput) if there is no private key in it.
+/// \throws Failure(InvalidInput) if it has no private key.
 Key key_from_pem(std::string_view pem, std::string_view what);
 
 std::string common_name(x509_st& certificate);  ///< of its subject; empty if there is none
@@ -61,10 +61,10 @@ std::string serial_text(x509_st& certificate);  ///< hexadecimal, lower case
 std::string fingerprint(x509_st& certificate);  ///< first 16 hexadecimal digits of its SHA-256
 std::chrono::sys_seconds expiry(x509_st& certificate);
 
-/// Whether the key is the one that the certificate is for.
+/// Whether the certificate is for this key.
 bool belongs_to(evp_pkey_st& key, x509_st& certificate);
 
-/// Why one of `authorities` does not vouch for the certificate at `now`; nothing if it does.
+/// Why none of `authorities` vouches for the certificate at `now`; nothing if one does.
 std::optional<Error> check_issued(x509_st& certificate, const std::vector<Certificate>& authorities,
                                   std::chrono::sys_seconds now);
 

@@ -8,9 +8,10 @@
 
 namespace kinship::security {
 
-/// Who a certificate is of. Each renewal of a client has the next generation, which stands in the
-/// name behind a point: "arm_7", "arm_7.2", "arm_7.3". So certificates of one client have subjects,
-/// permissions and partitions of their own, and the server can tell them apart.
+/// The client of a certificate and its generation. Each renewal of a client has the next
+/// generation, which follows a point in the name: "arm_7", "arm_7.2", "arm_7.3". So certificates of
+/// one client have subjects, permissions and partitions of their own, and the server can tell them
+/// apart.
 struct CertificateName {
   std::string client;
   std::uint32_t generation = 1;
@@ -19,10 +20,10 @@ struct CertificateName {
 /// The common name of the certificate.
 std::string common_name(const CertificateName& name);
 
-/// \return an error for what is no client's: another form, or the server's.
+/// \return an error for a name that is not a client's: another form, or the server's.
 Result<CertificateName> read_certificate_name(std::string_view common_name);
 
-/// The client whose certificate has this common name; what is no client's as it is.
+/// The client whose certificate has this common name; other names are returned unchanged.
 std::string client_of(std::string_view common_name);
 
 }  // namespace kinship::security

@@ -13,24 +13,23 @@
 
 namespace kinship::security {
 
-/// The records of DIR/clients as the server asks for them with every request: from memory, and a
-/// record that was changed, came or went is noticed a second later at most. May be shared between
-/// threads.
+/// Cache of the records of DIR/clients, which the server looks up with every request: a changed,
+/// new or removed record is noticed within a second. May be shared between threads.
 class ClientDirectory {
  public:
   using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
-  /// \param folder  DIR/clients; need not be there yet.
+  /// \param folder  DIR/clients; need not exist yet.
   explicit ClientDirectory(
       std::filesystem::path folder, Clock clock = [] { return std::chrono::steady_clock::now(); });
   ~ClientDirectory();
 
   /// The record of a client, also of a revoked or expired one.
-  /// \return Failure(NotFound) if there is none, Failure(InvalidInput) for a name or a record that
-  ///         cannot be: who has no valid record has no rights.
+  /// \return Failure(NotFound) if there is none, Failure(InvalidInput) for an invalid name or
+  ///         record: a client without a valid record has no rights.
   Result<ClientRecord> find(const std::string& name) const;
 
-  /// What a request with a certificate may do: its client's rights, or why none at `now`.
+  /// The rights of a certificate's client, or why it has none at `now`.
   /// \param common_name  see CertificateName.
   Result<Caller> caller(const std::string& common_name, std::chrono::sys_seconds now) const;
 

@@ -12,13 +12,13 @@
 
 namespace kinship::security {
 
-/// Common name of the server's certificate, and what no client may be called.
+/// Common name of the server's certificate; no client may have it.
 inline constexpr const char* kServerName = "server";
 
-/// How long before credentials end people are told.
+/// Time before the expiry of credentials from which programs warn.
 inline constexpr std::chrono::days kWarnedBefore{30};
 
-/// Files of a credentials folder: what a participant needs to prove who it is.
+/// Files of a credentials folder, with which a participant proves its identity.
 struct CredentialFiles {
   explicit CredentialFiles(const std::filesystem::path& folder)
       : authorities(folder / "ca.pem"),
@@ -29,7 +29,7 @@ struct CredentialFiles {
         permissions(folder / "permissions.p7s"),
         identity(folder / "identity.toml") {}
 
-  std::filesystem::path authorities;  ///< first the one that issued the certificate
+  std::filesystem::path authorities;  ///< the issuer of the certificate first
   std::filesystem::path trusted;      ///< a folder with the same authorities, one in each file
   std::filesystem::path certificate;
   std::filesystem::path key;
@@ -38,7 +38,7 @@ struct CredentialFiles {
   std::filesystem::path identity;
 };
 
-/// What a credentials folder says, without its key.
+/// Content of a credentials folder, without its key.
 struct Credentials {
   std::string name;  ///< common name of the certificate: CertificateName, or "server"
   std::string role;  ///< of a client, or "server"
@@ -47,35 +47,34 @@ struct Credentials {
 };
 
 /// Reads a credentials folder and checks that its files belong together and are valid now. Cyclone
-/// DDS would only say that the participant cannot be made.
-/// \return an error that names the file, and what to do about it.
+/// DDS would only report that the participant cannot be made.
+/// \return an error that names the file and a remedy.
 Result<Credentials> read_credentials(const std::filesystem::path& folder,
                                      std::chrono::sys_seconds now);
 
-/// Words for who starts a program: that the credentials are valid for less than 30 days; nothing
-/// before that.
+/// A warning at the start of a program that the credentials are valid for less than 30 days;
+/// nothing before that.
 std::optional<std::string> expiry_warning(const Credentials& credentials,
                                           std::chrono::sys_seconds now);
 
-/// Whose credentials are to be written.
+/// Content of credentials to write.
 struct CredentialWish {
   std::string name;
-  std::string role;  ///< as it goes into identity.toml
+  std::string role;  ///< as written to identity.toml
   Validity validity;
   std::string permissions;  ///< text, unsigned
 };
 
-/// Who vouches for credentials.
+/// The authorities behind credentials.
 struct Vouchers {
   Authority issuer;                  ///< of the certificate
   Authority signer;                  ///< of the documents
-  std::vector<Certificate> trusted;  ///< by whoever has the folder; first the issuer
+  std::vector<Certificate> trusted;  ///< by the owner of the folder; the issuer first
 };
 
-/// Writes a credentials folder, which must be empty or not be there yet, with a new key that nobody
-/// else has.
+/// Writes a credentials folder, which must be empty or not be there yet, with a new private key.
 /// \return its certificate.
-/// \throws Failure that names the file; what was written is removed then.
+/// \throws Failure that names the file; then the written files are removed.
 Certificate write_credentials(const std::filesystem::path& folder, const CredentialWish& wish,
                               const Vouchers& vouchers);
 

@@ -20,8 +20,8 @@ using Key = std::unique_ptr<evp_pkey_st, DeleteKey>;
 /// Owner of one OpenSSL certificate.
 using Certificate = std::unique_ptr<x509_st, DeleteCertificate>;
 
-/// \throws Failure(Internal) with `what` and the oldest reason that OpenSSL's queue of this thread
-///         has; the queue is empty then.
+/// \throws Failure(Internal) with `what` and the oldest reason in OpenSSL's queue of this thread,
+///         and empties the queue.
 [[noreturn]] void throw_openssl(std::string_view what);
 
 }  // namespace kinship::security

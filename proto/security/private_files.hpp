@@ -4,25 +4,25 @@
 #include <string>
 #include <string_view>
 
-/// Files that hold keys and what vouches for them. Each function throws Failure that names the file
-/// and the reason.
+/// Files with keys and certificates. Each function throws Failure that names the file and the
+/// reason.
 namespace kinship::security {
 
-/// A folder for its owner only (0700), with folders above it as the umask has them.
-/// \throws Failure(Conflict) if it is there and has anything in it.
+/// Makes a folder for its owner only (0700); the folders above it follow the umask.
+/// \throws Failure(Conflict) if it exists and is not empty.
 void make_private_folder(const std::filesystem::path& folder);
 
 enum class Readers {
   Owner,     ///< 0600
-  Everybody  ///< 0644, as far as the folder lets them
+  Everybody  ///< 0644, within the rights of the folder
 };
 
-/// A file that was not there before; what it holds is on the disk then. If it cannot be written,
-/// e.g. as the disk is full, nothing is left of it.
-/// \throws Failure(Conflict) if it is there.
+/// Writes a new file, durable on return. If that fails, e.g. because the disk is full, no file is
+/// left.
+/// \throws Failure(Conflict) if it exists.
 void write_new_file(const std::filesystem::path& file, std::string_view text, Readers readers);
 
-/// The file with another text: who reads it meanwhile has the old or the new one.
+/// Replaces the text of a file: a concurrent reader gets the old or the new text.
 void replace_file(const std::filesystem::path& file, std::string_view text, Readers readers);
 
 /// \throws Failure(NotFound) if there is none, Failure(TooLarge) above 1 MB.

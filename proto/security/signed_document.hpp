@@ -9,24 +9,24 @@
 
 namespace kinship::security {
 
-/// Who signs: the key and certificate of an authority.
+/// A signing authority: its key and certificate.
 struct Authority {
   Key key;
   Certificate certificate;
-  /// Certificates of this authority's key by others: who trusts one of these only can verify what
-  /// this one signs.
+  /// Certificates of this authority's key by others: a participant that trusts only one of these
+  /// can verify its signatures.
   std::vector<Certificate> crossed = {};
 };
 
-/// A document as DDS Security wants it: S/MIME, multipart/signed, the text in clear.
+/// Signs a document for DDS Security: S/MIME, multipart/signed, the text in clear.
 ///
-/// It is signed with a key that is made for it and forgotten then, whose certificate the authority
-/// issues: so who trusts another authority can be shown a way to it, too.
+/// It is signed with a new key, discarded afterwards, whose certificate the authority issues: so a
+/// certificate chain can lead to another trusted authority, too.
 std::string sign_document(std::string_view text, const Authority& authority,
                           const Validity& validity);
 
-/// The text of a signed document, if `trusted` vouches for it now: exactly what Cyclone DDS's
-/// plugin for access control does.
+/// The text of a signed document, if `trusted` vouches for it now: the same check as in Cyclone
+/// DDS's plugin for access control.
 Result<std::string> verify_document(std::string_view document, x509_st& trusted);
 
 }  // namespace kinship::security
