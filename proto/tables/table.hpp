@@ -8,11 +8,11 @@
 
 namespace kinship::tables {
 
-/// What may happen to a column where a table is wider than its layout.
+/// Treatment of a column if a table is wider than its layout.
 enum class Fit {
-  Words,  ///< goes on in a second line, between words: nothing is lost
-  Cut,    ///< loses its end, which ".." stands for: never what names a row in the next command
-  Wide    ///< is shown by a wide layout only
+  Words,  ///< wraps to a second line between words: no text is lost
+  Cut,    ///< loses its end, marked by "..": never for a name that the next command needs
+  Wide    ///< shown by a wide layout only
 };
 
 struct Column {
@@ -25,7 +25,7 @@ struct Column {
 };
 
 /// Text in aligned columns, two spaces apart; numbers to the right. It fits the layout of the
-/// stream (table_layout.hpp), unless what must stay whole is wider.
+/// stream (table_layout.hpp), unless columns that must stay whole are wider.
 class Table {
  public:
   explicit Table(std::vector<Column> columns);
@@ -33,7 +33,7 @@ class Table {
   /// \throws std::invalid_argument unless there is one cell per column.
   void add_row(std::vector<std::string> cells);
 
-  /// Headings and rows; nothing but `(none)` if there are no rows.
+  /// Headings and rows; only `(none)` if there are no rows.
   void print(std::ostream& out) const;
 
  private:

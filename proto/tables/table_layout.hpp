@@ -5,19 +5,20 @@
 
 namespace kinship::tables {
 
-/// How tables are laid out on a stream.
+/// Layout of tables on a stream.
 struct TableLayout {
-  std::size_t width = 80;  ///< columns of text at most, where the table can be made to fit
-  bool is_wide = false;    ///< every column, whole, however wide that is
+  std::size_t width = 80;  ///< columns of text at most, if the table can be made to fit
+  bool is_wide = false;    ///< every column in full, at any width
 };
 
-/// Has tables that are printed on a stream from now on laid out so.
+/// Sets the layout of tables that are printed on a stream from now on.
 void set_table_layout(std::ostream& out, const TableLayout& layout);
 
-/// What was set, or TableLayout() for a stream of which nobody said anything.
+/// The layout set for a stream, or TableLayout() if none was set.
 TableLayout table_layout(std::ostream& out);
 
-/// Columns of text of the terminal that standard output is; that of TableLayout() if it is none.
+/// Width of the terminal of standard output, columns of text; that of TableLayout() if it is not a
+/// terminal.
 std::size_t width_of_terminal();
 
 }  // namespace kinship::tables
