@@ -6,7 +6,7 @@
 
 #include "proto/types/caller.hpp"
 
-/// The verbs of the admin conversation: what each is called, answers, needs and changes.
+/// The verbs of the admin conversation: the name, answer, role and effect of each.
 namespace kinship {
 
 /// Numbered as on the wire: a new verb comes last.
@@ -30,7 +30,7 @@ enum class AdminVerb {
   ListJobs,              ///< rows: Job
   ShowJob,               ///< row: Job, when the job has ended or `deadline` has passed
   CancelJob,             ///< row: Job
-  JobRows,               ///< the rows of a job that is done, page by page
+  JobRows,               ///< the rows of a done job, page by page
   ListAttempts,          ///< rows: AttemptSummary, in the order of arrival; filters robot and task
   RenameRobot,           ///< `robot` gets the label `argument`; row: RobotSummary
   RemoveRobot,           ///< row: RobotRemoval
@@ -42,21 +42,21 @@ enum class AdminVerb {
 };
 inline constexpr AdminVerb kLastVerb = AdminVerb::ReadBackup;
 
-/// What `argument` of a request names.
+/// Kind of object that `argument` of a request names.
 enum class VerbArgument { Nothing, Robot, Task, Report, Distribution, Job, BackupFile, Name };
 
 struct VerbRule {
   enum Trait : unsigned {
-    Changes = 1,  ///< it is in the audit log, and without security for this machine alone
-    OfAll = 2,    ///< about all tasks and robots: not for a certificate that is for some of them
-    Lists = 4,    ///< a page may have fewer rows than were asked for
-    Filters = 8,  ///< its request may name a robot and a task
+    Changes = 1,      ///< logged in the audit log; without security only from this machine
+    OfAll = 2,        ///< about all tasks and robots: not for a certificate limited to some of them
+    Lists = 4,        ///< a page may have fewer rows than requested
+    Filters = 8,      ///< its request may name a robot and a task
     FromMemory = 16,  ///< answered without the store
     Long = 32         ///< takes many transactions; in the audit log as begun before the first
   };
 
   AdminVerb verb;
-  std::string_view name;  ///< in the audit log, which keeps it
+  std::string_view name;  ///< in the audit log, so it never changes
   std::string_view act;   ///< completes "... may not <act>"
   AccessRole least;       ///< this role, and those after it in AccessRole
   VerbArgument argument;

@@ -12,8 +12,8 @@
 
 namespace kinship {
 
-/// What all attempts in one sampling mode of a (task, robot) cost. An attempt that did not solve
-/// its problem is censored: its checks count, it adds no solution.
+/// Cost of all attempts of a (task, robot) in one sampling mode. An unsolved attempt is censored:
+/// its checks count, it adds no solution.
 struct ModeEvidence {
   std::uint64_t attempts = 0;
   std::uint64_t solved = 0;
@@ -32,7 +32,7 @@ inline constexpr std::size_t kJudgedAttemptsPerMode =
 
 /// One attempt of a (task, robot) from which the worth of guidance is judged: guided, or uniform
 /// although guidance was there (control). One that could not be planned at all (start in collision,
-/// no goal: Outcome::Failed) says nothing about samples and is none.
+/// no goal: Outcome::Failed) says nothing about samples and is not judged.
 struct JudgedAttempt {
   SamplingMode sampling_mode = SamplingMode::Guided;  ///< Guided or Control
   bool solved = false;
@@ -50,15 +50,15 @@ inline constexpr std::tuple kFieldsOf<JudgedAttempt>{
     Field{"solved", &JudgedAttempt::solved}, Field{"checks", &JudgedAttempt::checks},
     Field{"age", &JudgedAttempt::age}};
 
-/// What the attempts of a (task, robot) say about guidance, on whichever machines they were made.
+/// Advice on guidance from the attempts of a (task, robot) on all machines.
 struct Advice {
-  /// For clients that plan every query alike: of guided samples, 0 to 1; falls as guidance turns
-  /// out worse.
+  /// Share of guided samples for clients that plan every query alike, 0 to 1; falls as guidance
+  /// proves worse.
   double recommended_share = 0;
-  /// For clients that choose a sampling mode per query: of guided samples in a guided query, 0
-  /// to 1.
+  /// Share of guided samples in a guided query, for clients that choose a sampling mode per query,
+  /// 0 to 1.
   double guided_share = 0;
-  std::string evidence;                         ///< for recommended_share, in words
+  std::string evidence;                         ///< for recommended_share, as text
   std::optional<ModeEvidence> guided, control;  ///< missing: no such attempts
   std::vector<JudgedAttempt> recent;            ///< the newest in each mode, oldest first
 };

@@ -19,11 +19,11 @@ namespace kinship {
 
 enum class Outcome { Solved, Timeout, Failed };
 
-/// What brought a path.
+/// Source of a path.
 enum class FoundBy {
-  Nothing,       ///< there is none, or nobody says
-  StraightLine,  ///< before anything was drawn
-  Track,         ///< a stored way of the hand, moved onto the query
+  Nothing,       ///< no path, or source unknown
+  StraightLine,  ///< before any sample
+  Track,         ///< a stored pose path, moved onto the query
   Search         ///< samples
 };
 
@@ -31,8 +31,8 @@ enum class FoundBy {
 /// (control), or uniformly because there was no guidance.
 enum class SamplingMode { Guided, Control, Uniform };
 
-/// What a planner says about one query. One collision check = one configuration of which any
-/// collision question is asked.
+/// A planner's record of one query. One collision check = one configuration tested for any kind of
+/// collision.
 struct PlanningRecord {
   Outcome outcome = Outcome::Failed;
   std::string planner;
@@ -72,19 +72,19 @@ struct Attempt {
   Digest robot;
   std::string machine;
   std::string task;
-  std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, kept as missing
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, stored as missing
   PlanningRecord record;
   std::optional<Path> path;            ///< present exactly if solved
-  std::optional<RecordedScene> scene;  ///< if the client likes
+  std::optional<RecordedScene> scene;  ///< optional
 };
 
-/// The rule of the contract that an attempt breaks, if any. Whether the robot is known and the
-/// path within its limits is for the server to say.
+/// The rule of the contract that an attempt breaks, if any. The server checks that the robot is
+/// known and the path within its limits.
 std::optional<Error> find_fault(const Attempt& attempt);
 
-/// What attempts count against the bounds of a batch.
+/// Bytes of attempts that count against the limits of a batch.
 struct BatchBytes {
-  std::size_t waypoints = 0;  ///< 8 a waypoint and joint; at most kMaxBatchBytes
+  std::size_t waypoints = 0;  ///< 8 per waypoint and joint; at most kMaxBatchBytes
   std::size_t scenes = 0;     ///< as scene_bytes() counts; at most kMaxSceneBytes
 
   bool fits() const noexcept { return waypoints <= kMaxBatchBytes && scenes <= kMaxSceneBytes; }

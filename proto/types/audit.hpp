@@ -9,27 +9,27 @@
 
 namespace kinship {
 
-/// How an administrative act stands.
+/// State of an administrative act.
 enum class AuditOutcome {
-  Begun,    ///< takes more than one transaction, or is no change of the store; its end follows
+  Begun,    ///< takes several transactions, or does not change the store; its end follows
   Done,     ///< as `after` says
-  Refused,  ///< nothing was changed, `message` says why
+  Refused,  ///< not done; `message` says why
   Failed    ///< some of it may have been done
 };
 
-/// An administrative act as the audit log keeps it. An entry never changes: an act that began and
-/// ended has two.
+/// An entry of the audit log for an administrative act. An entry never changes: an act that began
+/// and ended has two.
 struct AuditEntry {
-  std::uint64_t number = 0;  ///< 1, 2 ... as they were written
+  std::uint64_t number = 0;  ///< 1, 2 ... in the order of writing
   std::int64_t time_ms = 0;
-  std::string name = {};    ///< who, in the certificate; empty: nobody's, there was no security
+  std::string name = {};    ///< in the certificate; empty without security
   std::string role = {};    ///< of that certificate; empty as the name
-  std::string client = {};  ///< the name, or the participant that asked
-  bool is_local = true;     ///< asked for on the server's machine
+  std::string client = {};  ///< the name, or the participant
+  bool is_local = true;     ///< requested on the server's machine
   std::string verb = {};    ///< e.g. "reset_task"
-  std::string target = {};  ///< what it was done to, as it was asked for
+  std::string target = {};  ///< object of the act, as in the request
   AuditOutcome outcome = AuditOutcome::Done;
-  std::string before = {}, after = {};  ///< counts and labels, in words
+  std::string before = {}, after = {};  ///< counts and labels, as text
   std::string message = {};             ///< why refused or failed
 };
 

@@ -5,7 +5,7 @@
 
 namespace kinship {
 
-/// What the certificate of a client is for.
+/// Role of a client, in its certificate.
 enum class AccessRole {
   Robot,     ///< registers itself, reports as itself, fetches, follows
   Reader,    ///< fetches, lists, shows
@@ -13,16 +13,16 @@ enum class AccessRole {
   Admin      ///< everything
 };
 
-/// Who sent a request, as far as the server knows it by itself: nothing here is taken from the
-/// request. What is not said is the least: a caller of which nothing is known may next to nothing.
+/// Sender of a request, as known to the server: no field is taken from the request. Defaults are
+/// the lowest rights: an unknown caller has almost none.
 struct Caller {
-  /// Whom quotas count: the name in the certificate; without security the participant.
+  /// The client for quotas: the name in the certificate; without security the participant.
   std::string client = {};
   std::string name = {};                 ///< in the certificate; empty without security
-  AccessRole role = AccessRole::Robot;   ///< without security Admin, where it asks from decides
-  std::vector<std::string> tasks = {};   ///< patterns (`*`, `?`) it is narrowed to; empty: all
-  std::vector<std::string> robots = {};  ///< labels it is narrowed to; empty: all
-  bool is_local = false;                 ///< on the server's machine; not asked with security
+  AccessRole role = AccessRole::Robot;   ///< without security Admin; then is_local decides
+  std::vector<std::string> tasks = {};   ///< patterns (`*`, `?`) that it is limited to; empty: all
+  std::vector<std::string> robots = {};  ///< labels that it is limited to; empty: all
+  bool is_local = false;                 ///< on the server's machine; not used with security
 };
 
 }  // namespace kinship

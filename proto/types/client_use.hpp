@@ -10,23 +10,23 @@
 
 namespace kinship {
 
-/// What one client takes of a server: a row of ListClients. Numbers since the server's start, or
-/// since it last forgot this client.
+/// Use of a server by one client: a row of ListClients. Numbers since the server's start, or since
+/// it last forgot this client.
 struct ClientUse {
   std::string client;               ///< its name, or, without security, its participant
-  std::vector<std::string> robots;  ///< labels that it registered, the newest; at most 8
-  double attempts_per_s = 0;        ///< in the mean, over the last minute or so
+  std::vector<std::string> robots;  ///< newest labels that it registered; at most 8
+  double attempts_per_s = 0;        ///< mean over about the last minute
   double bytes_per_s = 0;           ///< sent and received, likewise
   std::uint64_t on_way = 0;         ///< attempts taken in and not yet answered
   std::uint64_t waiting = 0;        ///< fetches that wait
   std::uint64_t leases = 0;
-  std::uint64_t fits = 0;               ///< looked up or fitted because it asked first
-  std::uint64_t attempts = 0;           ///< that were let in
-  std::uint64_t registered_robots = 0;  ///< that the server did not know
+  std::uint64_t fits = 0;      ///< looked up or fitted because it was first to request them
+  std::uint64_t attempts = 0;  ///< admitted
+  std::uint64_t registered_robots = 0;  ///< new to the server
   std::uint64_t created_tasks = 0;
   std::uint64_t stored_bytes = 0;  ///< of paths that it reported
-  std::uint64_t refused = 0;       ///< requests that were over a quota
-  std::string refused_for = {};    ///< the quota that the last one was over; empty: none was
+  std::uint64_t refused = 0;       ///< requests over a quota
+  std::string refused_for = {};    ///< quota of the last refusal; empty: none
   std::int64_t last_seen_ms = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace kinship {
 
-/// Whom the authorities of a security folder vouch for, and until when.
+/// The credentials issued by the authorities of a security folder, and their expiry.
 struct CredentialList {
   struct Authority {
     std::string name = {};
@@ -26,15 +26,16 @@ struct CredentialList {
     std::int64_t expires_ms = 0;
     std::int64_t days_left = 0;   ///< rounded; below 0: expired
     std::int64_t revoked_ms = 0;  ///< 0: not
-    std::string authority = {};   ///< fingerprint of the one that issued them
+    std::string authority = {};   ///< fingerprint of the issuer
     bool is_of_previous_authority = false;
     std::string message = {};               ///< why its file cannot be read
     std::vector<std::string> trusted = {};  ///< fingerprints of authorities that these files trust
-    /// Somebody who has that one's key is the server to a client, until it is renewed.
+    /// The holder of that authority's key can impersonate the server to this client, until it is
+    /// renewed.
     bool trusts_a_retired_authority = false;
   };
 
-  std::vector<Authority> authorities;  ///< first the one that issues
+  std::vector<Authority> authorities;  ///< the issuing one first
   std::vector<Row> credentials;        ///< first the server's, then clients by name
 };
 

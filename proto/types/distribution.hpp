@@ -19,7 +19,7 @@
 
 namespace kinship {
 
-/// How well a number of components does at configurations of paths that were held out.
+/// Score of a number of components on configurations of held-out paths.
 struct ComponentScore {
   int components = 0;
   /// Weighted mean over held-out configurations of log(0.99 p + 0.01 u), nats: p the density of the
@@ -34,9 +34,8 @@ inline constexpr std::tuple kFieldsOf<ComponentScore>{
     Field{"K", &ComponentScore::components, {.min = 1, .max = kMaxComponents}},
     Field{"score", &ComponentScore::score}};
 
-/// Ready: there is a mixture. Failed: nothing could be transferred or fitted; `reason` says why.
-/// Thin: there is a mixture, made of a small part of the experience (server/service says how
-/// small).
+/// Ready: there is a mixture. Failed: transfer or fit failed; `reason` says why. Thin: there is a
+/// mixture, made of a small part of the experience (see kThinShare in server/fitting).
 enum class DistributionState { Ready, Failed, Thin };
 
 /// Whether a distribution of this state has a mixture.
@@ -51,28 +50,28 @@ struct Distribution {
   Digest robot;
   std::optional<Eigen::Isometry3d> T_task_base;  ///< snapped
   std::string profile;
-  Selection selection;  ///< sources and since as asked; weighting as used
+  Selection selection;  ///< sources and since as requested; weighting as used
   std::string engines;  ///< versions of the transfer and density code, e.g. "transfer 1, density 1"
   DistributionState state = DistributionState::Ready;
   std::string reason;  ///< why Failed; a warning otherwise, mostly empty
   std::vector<Source> sources;
-  std::uint64_t configurations = 0;  ///< number the mixture was fitted to
+  std::uint64_t configurations = 0;  ///< number to which the mixture was fitted
   std::optional<Mixture> mixture;    ///< present exactly unless Failed
   Eigen::Matrix2Xd limits;           ///< 2 x dof: lower, upper; joint units
-  /// Where the number of components was chosen: the highest score of `component_scores`; where a
-  /// prior or a bandwidth was, its. Both are those of the last full fit.
+  /// If the number of components was chosen: the highest score of `component_scores`; if a prior or
+  /// a bandwidth was, the score of that. Both are from the last full fit.
   std::optional<double> held_out_score;
-  /// Of the moment it was sent, not of the fit.
+  /// At the time of the reply, not of the fit.
   Advice advice;
   std::int64_t fitted_ms = 0;  ///< Unix time, UTC
   double transfer_time_s = 0;
   double fit_time_s = 0;
   std::vector<ComponentScore> component_scores;  ///< falling number of components; mostly empty
-  /// Per joint, where the circle of a continuous one is cut: means and limits lie in
-  /// [cut, cut + 2 pi]. Empty if no joint is continuous.
+  /// Per joint, the branch cut of a continuous one: means and limits lie in [cut, cut + 2 pi].
+  /// Empty if no joint is continuous.
   std::vector<std::optional<double>> cuts;
   std::optional<FitOrigin> fit;  ///< of its mixture; missing if it failed
-  /// What its configurations were filtered with, what not and why, in words.
+  /// Filters of its configurations, and those not applied and why, as text.
   std::string filters = {};
 };
 

@@ -17,8 +17,8 @@
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 
-/// The words for enumerators wherever people or files see them: lower case, stable. In the order of
-/// the enumerators, which count from 0.
+/// The words for enumerators in output and files: lower case, stable. In the order of the
+/// enumerators, which count from 0.
 namespace kinship {
 
 template <typename Enum>
@@ -102,7 +102,7 @@ struct Words<AuditOutcome> {
 template <typename Enum>
 inline constexpr Enum kLastOf = static_cast<Enum>(Words<Enum>::kWords.size() - 1);
 
-/// \throws std::invalid_argument if it is not an enumerator.
+/// \throws std::invalid_argument if `value` is not an enumerator.
 template <typename Enum>
 requires std::is_enum_v<Enum> std::string_view to_text(Enum value) {
   const auto index = static_cast<std::size_t>(value);

@@ -2,7 +2,7 @@
 
 #include "proto/types/failure.hpp"
 
-/// What the exit codes of every program mean.
+/// Exit codes of every program.
 namespace kinship {
 
 inline constexpr int kDone = 0;

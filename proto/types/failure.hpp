@@ -6,15 +6,15 @@
 
 namespace kinship {
 
-/// What kind of thing went wrong; decides exit codes and wire statuses.
+/// Kind of an error; determines exit codes and wire statuses.
 enum class ErrorCode {
   InvalidInput,  ///< a value from outside breaks a rule
   NotFound,      ///< a named robot, task, path or distribution does not exist
   Conflict,      ///< a label is taken, a UUID was used for another body
   TooLarge,      ///< a size limit is exceeded
-  Unavailable,   ///< nobody answers, or the answerer is busy
+  Unavailable,   ///< no answer, or the server is busy
   Storage,       ///< the database or a file failed
-  Internal,      ///< a bug of ours or an unexpected answer of a library
+  Internal,      ///< a bug, or an unexpected result of a library
 };
 
 /// A reason as a value. The message names the thing, its value and the limit.

@@ -10,20 +10,20 @@
 
 #include "proto/types/failure.hpp"
 
-/// What is said once of each member of a value: its name, its limits, and since when it is kept.
-/// JSON, messages, blobs, digests and checks go by it.
+/// The description of each member of a value, given once: its name, its limits, and the format that
+/// introduced it. JSON, messages, blobs, digests and checks use it.
 namespace kinship {
 
 struct FieldRules {
   double min = std::numeric_limits<double>::lowest();  ///< of a number
   double max = std::numeric_limits<double>::max();
   std::size_t limit = 0;  ///< bytes of a text, elements of a list
-  /// What else is wrong with a text, if it is said elsewhere.
+  /// A further check of a text, defined elsewhere.
   std::optional<Error> (*check)(std::string_view text) = nullptr;
   bool may_be_missing = false;  ///< in a JSON document
-  int since = 1;                ///< the format of stored blobs that had it first
-  /// In a digest: left out where it has its default, else this word stands for it. Empty: its value
-  /// is always in it.
+  int since = 1;                ///< the first format of stored blobs that has it
+  /// In a digest: left out if it has its default, else this word replaces it. Empty: its value is
+  /// always included.
   std::string_view mark = {};
 };
 
@@ -40,14 +40,13 @@ Field(std::string_view, Member Value::*) -> Field<Value, Member>;
 template <typename Value, typename Member>
 Field(std::string_view, Member Value::*, FieldRules) -> Field<Value, Member>;
 
-/// Of a number with limits.
+/// Rules of a number with limits.
 constexpr FieldRules between(double min, double max) { return {.min = min, .max = max}; }
 
-/// Of a field that comes later: files may lack it, and blobs of older formats.
+/// Rules of a field that was added later: files and blobs of older formats may lack it.
 constexpr FieldRules since(int format) { return {.may_be_missing = true, .since = format}; }
 
-/// The fields of a value: a tuple in the order in which files and messages have them. New ones come
-/// last.
+/// The fields of a value: a tuple in the order of files and messages. New ones come last.
 template <typename Value>
 inline constexpr auto kFieldsOf = nullptr;
 
@@ -69,7 +68,7 @@ constexpr void for_each_field(Visit visit) {
   std::apply([&visit](const auto&... field) { (visit(field), ...); }, kFieldsOf<Value>);
 }
 
-/// The newest format that brought a field of the value.
+/// The newest format that added a field of the value.
 template <Described Value>
 constexpr int newest_format() {
   int newest = 1;

@@ -9,7 +9,7 @@
 
 namespace kinship {
 
-/// Adds a part of a value: counts, words and flags as 8 bytes, what may be missing after a flag.
+/// Adds a part of a value: counts, words and flags as 8 bytes, an optional after a flag.
 template <typename T>
 void add_value(const T& value, Sha256& hash) {
   if constexpr (kIsOptional<T>) {
@@ -25,8 +25,8 @@ void add_value(const T& value, Sha256& hash) {
   }
 }
 
-/// Adds the fields of a value in their order. One with a mark is left out where it has its default:
-/// digests were made before it was there.
+/// Adds the fields of a value in their order. A field with a mark is left out if it has its
+/// default: so digests from before the field still hold.
 template <Described Value>
 void add_fields(const Value& value, Sha256& hash) {
   const Value usual;

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// Limits on everything that comes from outside; proto/CONTRACT.md lists them for other languages.
+/// Limits of all input from outside; proto/CONTRACT.md lists them for other languages.
 namespace kinship {
 
 inline constexpr std::size_t kMaxDof = 32;
@@ -10,7 +10,7 @@ inline constexpr std::size_t kMaxWaypoints = 16384;
 inline constexpr std::size_t kMaxUrdfBytes = 1'000'000;
 inline constexpr std::size_t kMaxTaskBytes = 128;
 inline constexpr std::size_t kMaxLabelBytes = 64;
-inline constexpr std::size_t kMaxWordBytes = 64;  ///< of a word among some, an id of a job
+inline constexpr std::size_t kMaxWordBytes = 64;  ///< of an enumerator's word, or a job's id
 inline constexpr std::size_t kMaxProfileBytes = 256;
 inline constexpr std::size_t kMaxLinkNameBytes = 128;
 inline constexpr std::size_t kMaxMachineBytes = 128;
@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxCollisionPairs = 4096;
 inline constexpr std::size_t kMaxMeshSolids = 1024;  ///< of one robot
 inline constexpr std::size_t kMaxAttemptsPerBatch = 256;
 inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;  ///< of waypoints, 8 bytes each
-inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;  ///< of one scene; and of a batch's
+inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;  ///< of a scene, and of a batch
 inline constexpr std::size_t kMaxSceneObjects = 2048;
 inline constexpr std::size_t kMaxHeldObjects = 64;
 inline constexpr std::size_t kMaxAllowedPairs = 1024;          ///< of a recorded scene
@@ -37,7 +37,7 @@ inline constexpr std::size_t kMaxCursorBytes = 512;
 inline constexpr std::size_t kMaxMessageBytes = 2048;
 inline constexpr std::size_t kMaxSampleBytes = 1'200'000;  ///< of one DDS sample
 inline constexpr std::size_t kMaxFetchDeadline_ms = 3'600'000;
-inline constexpr std::size_t kMaxRetryAfter_ms = 60'000;  ///< that a reply asks a client to wait
+inline constexpr std::size_t kMaxRetryAfter_ms = 60'000;  ///< maximum wait in a reply
 inline constexpr std::size_t kMaxFollow_s = 86'400;
 inline constexpr std::size_t kMaxEventBytes = 512;  ///< of an event's text
 inline constexpr std::size_t kMaxBackupNameBytes = 128;

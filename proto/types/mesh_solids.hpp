@@ -18,12 +18,13 @@ struct LinkSolid {
   Eigen::Isometry3d T_link_shape = Eigen::Isometry3d::Identity();  ///< of the shape's centre
 };
 
-/// What who can read a robot's meshes tells of them to who cannot: solids that together hold them.
-/// Approximate: what touches a mesh touches its solids, and what touches a solid may miss the mesh.
+/// Solids that enclose a robot's meshes, from a client that can read the meshes, for programs that
+/// cannot. Approximate: an object that touches a mesh touches its solids, but one that touches a
+/// solid may miss the mesh.
 struct MeshSolids {
   std::vector<LinkSolid> solids;
-  /// Pairs of link names that these solids say too little about to be compared: they touch too
-  /// often where the meshes do not.
+  /// Pairs of link names that are not compared with these solids: they touch too often where the
+  /// meshes do not.
   std::vector<std::pair<std::string, std::string>> unfiltered;
 };
 
@@ -32,12 +33,12 @@ struct MeshSolids {
 /// kMaxMeshSolids and kMaxCollisionPairs. The message begins with "mesh_solids".
 std::optional<Error> check_mesh_solids(const MeshSolids& mesh_solids);
 
-/// How well the geometry of a robot is known, the best last.
+/// Quality of the known geometry of a robot, the best last.
 enum class GeometryGrade {
-  None,         ///< no shapes: nothing is filtered
-  Partial,      ///< of some links with meshes nothing is known
-  Approximate,  ///< of some links solids around their meshes are known
-  Exact,        ///< every link that has a shape is made of primitives
+  None,         ///< no shapes: no filtering
+  Partial,      ///< some links with meshes have no known shape
+  Approximate,  ///< some links have solids around their meshes
+  Exact,        ///< every link with a shape is made of primitives
 };
 
 }  // namespace kinship

@@ -27,9 +27,9 @@ class Mixture {
   const Eigen::MatrixXd& means() const noexcept { return means_; }
   /// K of them, or one if it is shared.
   const std::vector<Eigen::MatrixXd>& covariances() const noexcept { return covariances_; }
-  /// Whether two components or more have one covariance.
+  /// Whether two or more components share one covariance.
   bool shares_covariance() const noexcept { return size() > 1 && covariances_.size() == 1; }
-  /// Which of covariances() is that of component k.
+  /// Index in covariances() of component k.
   std::size_t covariance_index(Eigen::Index k) const noexcept {
     return covariances_.size() == 1 ? 0 : static_cast<std::size_t>(k);
   }

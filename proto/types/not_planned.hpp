@@ -4,22 +4,22 @@
 
 namespace kinship {
 
-/// Why no search was begun for a problem. What its result says of effort tells nothing of planning.
+/// Why no search was begun for a problem. The effort in its result is then not that of planning.
 enum class NotPlanned {
   Unreadable,    ///< its line, or the file of a mesh
-  DofMismatch,   ///< start or goal have other joints than the robot
-  UnfitPlanner,  ///< cannot do what the problem asks
+  DofMismatch,   ///< start or goal has another number of joints than the robot
+  UnfitPlanner,  ///< cannot solve this kind of problem
   StartOutOfReach,
   StartBeyondLimits,  ///< of the joints
-  StartNotFound,      ///< a pose of which inverse kinematics found no configuration
+  StartNotFound,      ///< inverse kinematics found no configuration of its pose
   StartCollides,
   StartOffConstraint,
   GoalOutOfReach,
   GoalBeyondLimits,
   GoalNotFound,
-  GoalCollides,  ///< every configuration of it
+  GoalCollides,  ///< in every configuration
   GoalOffConstraint,
-  Error  ///< of another kind, which the reason says
+  Error  ///< another error, given in the reason
 };
 
 template <>

@@ -17,8 +17,8 @@ PoseArray to_pose_array(const Eigen::Isometry3d& T_a_b);  ///< unit quaternion, 
 ///         The quaternion is normalised.
 Result<Eigen::Isometry3d> from_pose_array(const PoseArray& pose);
 
-/// The pose on a grid of 1 mm and 1 mrad, so that it can be part of a key: equal input up to
-/// that noise (away from the edges of a cell) gives equal bytes. Rotation as rotation vector.
+/// The pose on a grid of 1 mm and 1 mrad, for use in a key: input that is equal up to that noise
+/// (away from the edges of a cell) gives equal bytes. Rotation as rotation vector.
 Eigen::Isometry3d snapped(const Eigen::Isometry3d& T_a_b);
 
 }  // namespace kinship

@@ -20,8 +20,8 @@ namespace kinship {
 /// One planning problem for kinship-plan (a line of a problem file).
 struct Problem {
   std::string name;
-  std::optional<Eigen::Isometry3d> T_task_base;   ///< missing: used as identity, told as missing
-  Eigen::VectorXd start;                          ///< dof, joint units; empty if a pose is given
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, reported as missing
+  Eigen::VectorXd start;                         ///< dof, joint units; empty if a pose is given
   std::optional<Eigen::Isometry3d> T_task_start;  ///< of the transfer frame
   Eigen::MatrixXd goal_configurations;            ///< dof x n; empty if a pose is given
   std::optional<Eigen::Isometry3d> T_task_goal;   ///< of the transfer frame
@@ -33,7 +33,7 @@ struct Problem {
   std::uint64_t seed = 0;
 };
 
-/// What kinship-plan answers to a problem, in input order.
+/// Result of kinship-plan for a problem, in input order.
 struct ProblemResult {
   std::string name;
   bool solved = false;
@@ -41,33 +41,33 @@ struct ProblemResult {
   std::uint64_t goal_checks = 0;  ///< of configurations of a start or goal pose, before planning
   std::uint64_t shortcut_checks = 0;  ///< of shortening the path, after planning
   std::uint64_t projections = 0;
-  bool proven = false;  ///< solved, and no configuration between the waypoints touches anything
-  /// Of a proven path: the least distance that was measured on it, m; missing: nothing came so near
-  /// that it had to be measured.
+  bool proven = false;  ///< solved, and proven free of collision between the waypoints too
+  /// Of a proven path: the least distance measured on it, m; missing: no obstacle was near enough
+  /// to be measured.
   std::optional<double> least_clearance_m = {};
-  /// Edges that were free where they were asked about, and refuted in between: planned again.
+  /// Edges that were free at the tested configurations but collide in between: planned again.
   std::uint64_t refuted_edges = 0;
   double planning_time_s = 0;  ///< without goal configurations and shortcutting
   double time_limit_s = 0;
-  std::optional<Eigen::VectorXd> start = {};   ///< dof: where planning began; missing: nowhere
-  std::optional<NotPlanned> not_planned = {};  ///< why no search was begun; missing: one was
+  std::optional<Eigen::VectorXd> start = {};   ///< dof: where planning began; missing: it did not
+  std::optional<NotPlanned> not_planned = {};  ///< why no search was begun; missing: a search was
   std::optional<Eigen::MatrixXd> waypoints;    ///< dof x n
   std::optional<Digest> distribution_id;       ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
   SamplingMode sampling_mode =
-      SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform by wish
+      SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform on request
   double share = 0;                       ///< of guided samples; 0 unless Guided
-  Guide guide = Guide::None;              ///< that a guided query had
+  Guide guide = Guide::None;              ///< of a guided query
   double track_share = 0;                 ///< of samples around tracks; a part of share
-  std::uint64_t experience_revision = 0;  ///< of the stored ways that tracks come from; 0: none
+  std::uint64_t experience_revision = 0;  ///< of the stored pose paths behind the tracks; 0: none
   std::uint64_t tracks_followed = 0;
   /// Guided, but with fewer samples of the mixture than wanted, or none: start or goals are far
-  /// from all that it knows.
+  /// from the mixture.
   bool gate_fired = false;
   FoundBy found_by = FoundBy::Nothing;
   std::string reason;                ///< why not solved
   std::string planner = {};          ///< empty if none was started
-  std::string guidance_reason = {};  ///< why not guided; empty if it was
+  std::string guidance_reason = {};  ///< why not guided; empty if guided
 };
 
 }  // namespace kinship

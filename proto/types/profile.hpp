@@ -18,26 +18,25 @@ struct TransferParameters {
   int max_solutions = 5;            ///< L: configurations per pose
   double min_distance = 0.5;        ///< d: between the solutions of one pose, joint units
   double dropped_end_share = 0.15;  ///< of a path's length, left out at each end
-  /// Configurations that follow the path without a jump, each with a posture like the source's,
-  /// instead of independent ones: so many such tracks a path. 0: none.
+  /// Number of tracks per path: configurations that follow the path without a jump, each with a
+  /// posture like the source's, instead of independent ones. 0: none.
   int tracks = 3;
   double least_coverage = 0.9;  ///< of a path's poses that a track must cover to be kept, 0 to 1
   int track_candidates = 10;    ///< configurations among which the start of a track is chosen
   double shape_noise = 0.05;    ///< deviation of that choice, m
   /// Steps at each pose of a track that pull the target's arm towards the source's shape through
-  /// its self-motion; four times as many where the track starts. 0: none.
+  /// its self-motion; four times as many at the start of the track. 0: none.
   int shape_steps = 5;
-  bool avoid_self_collision =
-      true;  ///< leaves out configurations in which the target touches itself
-  bool avoid_recorded_scene = true;  ///< or the scene that came with the path
-  /// Waypoints of the same arm at the same place are configurations already; otherwise they go
-  /// through inverse kinematics like anybody else's.
+  bool avoid_self_collision = true;  ///< leaves out self-collisions of the target
+  bool avoid_recorded_scene = true;  ///< and collisions with the path's recorded scene
+  /// Whether waypoints of the same arm at the same place are taken over as configurations;
+  /// otherwise they pass through inverse kinematics like those of other robots.
   bool take_over = true;
 
   bool operator==(const TransferParameters&) const = default;
 };
 
-/// Those with limits are options of a profile's text. In the order in which they are digested.
+/// Fields with limits are options of a profile's text. In the order of the digest.
 template <>
 inline constexpr std::tuple kFieldsOf<TransferParameters>{
     Field{"pose_spacing", &TransferParameters::pose_spacing, between(0.01, 10)},
@@ -56,30 +55,29 @@ inline constexpr std::tuple kFieldsOf<TransferParameters>{
           &TransferParameters::take_over,
           {.min = 0, .max = 1, .mark = "inverse kinematics for every arm"}}};
 
-/// What is made of configurations.
+/// Density estimator of configurations.
 enum class Estimator : std::uint8_t {
   Mixture,  ///< K Gaussians, each with its own covariance
   Kernels,  ///< one Gaussian at each configuration, all with one covariance
 };
 
-/// As DensityParameters::prior: chosen by how well held-out paths are described.
+/// For DensityParameters::prior: chosen by the score of held-out paths.
 inline constexpr double kChosenPrior = -1;
 
 /// How configurations become a mixture.
 struct DensityParameters {
-  /// K, lowered if there are too few configurations. 0: chosen by how well held-out paths are
-  /// described.
+  /// K, lowered if there are too few configurations. 0: chosen by the score of held-out paths.
   int components = 100;
   double covariance_floor = 1e-4;            ///< added to each variance of a turning joint, rad^2
   double covariance_floor_m2 = 1e-4;         ///< of a prismatic joint, m^2
-  bool equal_path_weights = true;            ///< every path weighs the same, however long
-  Weighting weighting = Weighting::Sources;  ///< of source robots against each other
-  /// Whether a refit may start from the mixture before it; otherwise every fit is a full one, and
+  bool equal_path_weights = true;            ///< every path weighs the same, at any length
+  Weighting weighting = Weighting::Sources;  ///< of source robots
+  /// Whether a refit may start from the previous mixture; otherwise every fit is a full one, and
   /// depends on the paths alone.
   bool warm_refits = true;
   Estimator estimator = Estimator::Mixture;  ///< Kernels need no `components` and no `prior`
-  /// How strongly covariances are drawn towards what they have in common: as so many configurations
-  /// in each component would (server/density). 0: not.
+  /// How strongly covariances are drawn towards their mean: as this many configurations in each
+  /// component would (server/density). 0: not at all.
   double prior = kChosenPrior;
 
   bool operator==(const DensityParameters&) const = default;
@@ -101,14 +99,14 @@ struct Profile {
   std::string name = "default";
   TransferParameters transfer;
   DensityParameters density;
-  double recommended_share = 0.9;  ///< of guided samples, before attempts have taught better
-  double thin_share = 0.5;         ///< the same of a thin distribution, if that is less
+  double recommended_share = 0.9;  ///< of guided samples, before there are attempts
+  double thin_share = 0.5;         ///< the same for a thin distribution, if less
   std::uint64_t seed = 0;
 
   bool operator==(const Profile&) const = default;
 };
 
-/// `default` (the best we know) or `paper` (Lehner et al. 2022 to the letter); empty otherwise.
+/// `default` (the best known) or `paper` (exactly Lehner et al. 2022); empty otherwise.
 std::optional<Profile> find_profile(std::string_view name);
 
 }  // namespace kinship

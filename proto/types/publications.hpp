@@ -6,10 +6,10 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/uuid.hpp"
 
-/// What the server publishes without being asked.
+/// Values that the server publishes without a request.
 namespace kinship {
 
-/// There is a newer revision of a followed distribution: fetch it.
+/// Announces a newer revision of a followed distribution, to be fetched.
 struct Announcement {
   Digest distribution_id;
   std::string task;
@@ -20,13 +20,13 @@ struct Announcement {
 
 enum class EventKind { Registered, Report, Fetch, Fit, Refusal, Administration };
 
-/// Something that happened at the server, for people who watch.
+/// An event of the server, for people who watch.
 struct Event {
   EventKind kind = EventKind::Report;
   std::int64_t time_ms = 0;  ///< Unix time, UTC
   std::string task;          ///< may be empty
   std::string robot;         ///< label or short digest; may be empty
-  std::string text;          ///< what happened, one line, at most kMaxEventBytes
+  std::string text;          ///< description, one line, at most kMaxEventBytes
 };
 
 }  // namespace kinship

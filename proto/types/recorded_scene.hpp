@@ -15,7 +15,7 @@
 
 namespace kinship {
 
-/// Something that a robot held, said in the transfer frame, so that another robot can hold it too.
+/// An object held by a robot, given in the transfer frame, so that another robot can hold it too.
 struct HeldObject {
   std::string name;
   Shape shape;
@@ -23,14 +23,15 @@ struct HeldObject {
   bool approximate = false;  ///< fitted around a mesh, which lies inside
 };
 
-/// The scene in which an attempt was planned, said without its robot: no link names, because the
-/// scene is there for other robots. Primitives only; a mesh is there as solids around it.
+/// The scene in which an attempt was planned, independent of its robot: no link names, because the
+/// scene serves other robots. Primitives only; a mesh is replaced by solids around it.
 struct RecordedScene {
   std::vector<SceneObject> objects;  ///< in the task frame
   std::vector<HeldObject> held;
-  /// Names of objects or held things that may touch, e.g. what stands on a table when it is taken.
+  /// Pairs of names of objects or held objects that may touch, e.g. a held object and the table it
+  /// was taken from.
   std::vector<std::pair<std::string, std::string>> allowed_collisions;
-  /// Where the transfer frame had to stay along the whole path; in the task frame.
+  /// Region that the transfer frame had to keep along the whole path; in the task frame.
   std::optional<TaskSpaceRegion> constraint = {};
 };
 
@@ -46,19 +47,19 @@ ShapeNumbers to_numbers(const Shape& shape);
 /// \throws std::invalid_argument for a kind above that of the last shape.
 Shape to_shape(const ShapeNumbers& numbers);
 
-/// What a scene counts against kMaxSceneBytes: 96 bytes for each object and held thing, 16 for each
-/// allowed pair, the bytes of their names, and 216 for a constraint.
+/// Bytes of a scene that count against kMaxSceneBytes: 96 bytes for each object and held object, 16
+/// for each allowed pair, the bytes of their names, and 216 for a constraint.
 std::size_t scene_bytes(const RecordedScene& scene);
 
 /// The rule of the contract that a scene breaks, if any: names of 1 to kMaxLinkNameBytes of text,
-/// sizes above 0 and at most kMaxPlacement_m, proper poses, allowed pairs of names that are there,
-/// a constraint that can be kept, and the limits on counts and bytes. The message begins with
+/// sizes above 0 and at most kMaxPlacement_m, proper poses, allowed pairs of existing names, a
+/// constraint that can be kept, and the limits on counts and bytes. The message begins with
 /// "scene", that of a constraint with "scene: constraint".
 std::optional<Error> check_scene(const RecordedScene& scene);
 
-/// What a scene is kept once by: equal for scenes that differ in the order of their lists, in the
-/// orientation of spheres, or by less than about 1e-9 (m, rad, parts of a quaternion). Bounds of a
-/// constraint beyond 9e9 count as infinite.
+/// Digest by which equal scenes are stored once: equal for scenes that differ in the order of their
+/// lists, in the orientation of spheres, or by less than about 1e-9 (m, rad, parts of a
+/// quaternion). Bounds of a constraint beyond 9e9 count as infinite.
 Digest content_digest(const RecordedScene& scene);
 
 }  // namespace kinship

@@ -8,13 +8,13 @@
 
 namespace kinship {
 
-/// How the trees of one search grew, for who looks at it. Node 0 is the start; every other node
-/// without a parent is a goal.
+/// Growth of the trees of one search, for viewers. Node 0 is the start; every other node without a
+/// parent is a goal.
 struct RecordedSearch {
   std::string name;                   ///< of the problem
-  Eigen::MatrixXd nodes;              ///< dof x n, in the order in which they came, joint units
+  Eigen::MatrixXd nodes;              ///< dof x n, in the order of insertion, joint units
   std::vector<std::int64_t> parents;  ///< n: an earlier node, or -1
-  std::vector<std::uint64_t> checks;  ///< n: collision checks that had been asked for by then
+  std::vector<std::uint64_t> checks;  ///< n: collision checks up to then
   std::vector<std::int64_t> path;     ///< nodes from the start to a goal; empty if unsolved
 };
 

@@ -11,9 +11,9 @@
 
 namespace kinship {
 
-/// What guides a query: any of three things, or nothing. The retreat backs out along the palm first
-/// and needs no experience; ways are stored ones of the hand, moved onto the query; the mixture is
-/// the distribution's. As bits: 1, 2, 4.
+/// Guide of a query: any of three, or none. The retreat backs out along the palm first and needs no
+/// experience; ways are stored pose paths, moved onto the query; the mixture is the distribution's.
+/// As bits: 1, 2, 4.
 enum class Guide {
   None,
   Retreat,
@@ -29,12 +29,12 @@ constexpr bool has_retreat(Guide guide) { return (static_cast<unsigned>(guide) &
 constexpr bool has_ways(Guide guide) { return (static_cast<unsigned>(guide) & 2U) != 0; }
 constexpr bool has_mixture(Guide guide) { return (static_cast<unsigned>(guide) & 4U) != 0; }
 
-/// What it cost to plan recorded queries again with one guide.
+/// Cost of planning recorded queries again with one guide.
 struct GuideCost {
   Guide guide = Guide::None;
-  std::uint64_t plans = 0;   ///< one that was given up early has fewer than the others
-  std::uint64_t solved = 0;  ///< of them, within the limit of a rehearsal
-  double mean_checks = 0;    ///< of all plans: one that was not solved counts what it had spent
+  std::uint64_t plans = 0;   ///< a guide dropped early has fewer than the others
+  std::uint64_t solved = 0;  ///< plans solved within the limit of a rehearsal
+  double mean_checks = 0;    ///< of all plans, including the checks of unsolved ones
   double median_checks = 0;
 
   bool operator==(const GuideCost&) const = default;
@@ -49,16 +49,16 @@ inline constexpr std::tuple kFieldsOf<GuideCost>{
 
 inline constexpr std::size_t kMaxGuideCosts = 8;
 
-/// What a server found by planning a task's recorded queries again: for one robot at one placement,
-/// with the guidance that it would give, each query without the path that once answered it.
+/// Result of planning a task's recorded queries again at the server: for one robot at one
+/// placement, with the guidance it would get, each query without the path that once answered it.
 struct Rehearsal {
   Guide guide = Guide::All;     ///< the one to use
-  bool is_complete = false;     ///< false: there is more to come
-  std::uint64_t queries = 0;    ///< recorded ones that were planned again
-  std::uint64_t left_out = 0;   ///< whose start or goal this robot cannot take where it stands
-  double processor_time_s = 0;  ///< that it took the server
+  bool is_complete = false;     ///< false: it continues
+  std::uint64_t queries = 0;    ///< recorded ones planned again
+  std::uint64_t left_out = 0;   ///< start or goal infeasible for this robot at its placement
+  double processor_time_s = 0;  ///< of the server
   std::vector<GuideCost> costs = {};
-  std::string message = {};  ///< why there is no more to say, for people
+  std::string message = {};  ///< why there is no result, for people
 
   bool operator==(const Rehearsal&) const = default;
 };

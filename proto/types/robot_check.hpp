@@ -11,7 +11,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/field.hpp"
 
-/// What the command line finds out about a robot without a server.
+/// Answers of the command line about a robot, without a server.
 namespace kinship {
 
 struct CheckedJoint {
@@ -26,7 +26,7 @@ inline constexpr std::tuple kFieldsOf<CheckedJoint>{
     Field{"name", &CheckedJoint::name}, Field{"type", &CheckedJoint::type},
     Field{"lower", &CheckedJoint::lower}, Field{"upper", &CheckedJoint::upper}};
 
-/// What a collision checker sees of a link.
+/// Collision geometry of a link.
 struct CheckedLink {
   std::string link;
   std::uint64_t solids = 0;
@@ -45,9 +45,9 @@ struct RobotCheck {
   Digest robot;
   std::string base_link, tip_link;
   std::vector<CheckedJoint> joints;
-  std::string structure;  ///< of the axes, and what closed form it allows, in words
+  std::string structure;  ///< of the axes, and the closed form it allows, as text
   std::string solver;
-  std::uint64_t poses = 0;  ///< reachable ones that were solved
+  std::uint64_t poses = 0;  ///< reachable ones that were tried
   std::uint64_t poses_without_solution = 0;
   double solutions_per_pose = 0;
   double time_per_pose_us = 0;          ///< CPU time
@@ -60,10 +60,10 @@ struct InverseAnswer {
   Eigen::MatrixXd solutions;  ///< dof x n
   std::string reason;         ///< out_of_reach, limits, not_converged, colliding; empty if n > 0
   double time_us = 0;         ///< CPU time
-  std::optional<std::uint64_t> colliding;  ///< left out for it; none: nobody looked
+  std::optional<std::uint64_t> colliding;  ///< left out for collision; missing: not checked
 };
 
-/// `robots fk`: where a configuration puts the robot, in the base link or in the task frame.
+/// `robots fk`: poses of a robot at a configuration, in the base link or in the task frame.
 struct ForwardAnswer {
   Eigen::VectorXd q;  ///< dof, joint units
   bool is_in_task = false;

@@ -11,7 +11,7 @@
 
 namespace kinship {
 
-/// All that a client says about a robot when it registers it.
+/// Description of a robot that a client registers.
 struct RobotDescription {
   std::string label;  ///< for people; unique in a store
   std::string urdf;   ///< URDF text, at most kMaxUrdfBytes

@@ -9,22 +9,22 @@
 
 #include "proto/types/field.hpp"
 
-/// What `robots links` and `robots frames` say of a URDF. Member names are those of their JSON.
+/// Output of `robots links` and `robots frames` for a URDF. Member names are those of their JSON.
 namespace kinship {
 
 struct RobotLink {
   std::string link;
-  std::string parent;                  ///< of the root link empty, as the joint
+  std::string parent;                  ///< empty for the root link, as is the joint
   std::string joint;                   ///< to the parent
   std::string joint_type;              ///< revolute, continuous, prismatic, fixed, floating, planar
-  std::optional<double> lower, upper;  ///< joint units; of what has limits
-  std::string mimics;                  ///< the joint that it follows; empty: none
-  std::optional<std::uint64_t> chain_joint;  ///< which joint of the chain it is, from 1
-  std::optional<double> held;                ///< where it stands; of what moves off the chain
+  std::optional<double> lower, upper;  ///< joint units; if it has limits
+  std::string mimics;                  ///< the joint that it mimics; empty: none
+  std::optional<std::uint64_t> chain_joint;  ///< its number in the chain, from 1
+  std::optional<double> held;                ///< its value, if it moves and is not in the chain
   std::uint64_t moved_by = 0;          ///< the last joint of the chain that moves the link; 0: none
   std::vector<std::string> collision;  ///< box, cylinder, sphere or mesh, one a solid
   std::uint64_t approximated = 0;  ///< solids fitted around meshes, where the meshes can be read
-  std::string fault = {};          ///< why the joint can be none of a robot; empty: nothing
+  std::string fault = {};          ///< why the joint is not valid; empty: it is
 };
 
 template <>
@@ -61,12 +61,12 @@ inline constexpr std::tuple kFieldsOf<PossibleEnds>{Field{"bases", &PossibleEnds
 
 struct RobotLinks {
   std::string base_link, tip_link;
-  bool is_suggested = false;  ///< nobody said which they are
+  bool is_suggested = false;  ///< base and tip link were not given
   std::vector<PossibleEnds> possible_ends;
   std::vector<RobotLink> links;               ///< parents before their children
   bool has_geometry = false;                  ///< the meshes could be read
-  std::vector<UncheckedLinks> unchecked;      ///< without those that one joint moves together
-  std::vector<std::string> mobile_base = {};  ///< what carries the robot about, a sentence each
+  std::vector<UncheckedLinks> unchecked;      ///< without links that the same joint moves
+  std::vector<std::string> mobile_base = {};  ///< joints of a mobile base, as sentences
 };
 
 template <>
@@ -80,11 +80,11 @@ inline constexpr std::tuple kFieldsOf<RobotLinks>{
     Field{"unchecked", &RobotLinks::unchecked},
     Field{"mobile_base", &RobotLinks::mobile_base}};
 
-/// How often two links touched in random configurations, and what follows from it.
+/// Number of random configurations in which two links touched, and the verdict.
 struct SampledLinks {
   std::string link_a, link_b;
   std::string verdict;        ///< adjacent, always, default, never, sometimes; the last is checked
-  std::uint64_t touched = 0;  ///< in so many configurations
+  std::uint64_t touched = 0;  ///< number of configurations
 };
 
 template <>
@@ -123,7 +123,7 @@ inline constexpr std::tuple kFieldsOf<LinkFrame>{Field{"link", &LinkFrame::link}
 struct RobotFrames {
   std::string base_link, tip_link;
   std::vector<double> q;  ///< joint units
-  std::string frame;      ///< whose poses these are: base or task
+  std::string frame;      ///< frame of the poses: base or task
   std::vector<LinkFrame> links;
   Eigen::Isometry3d transfer = Eigen::Isometry3d::Identity();
 };

@@ -12,7 +12,7 @@
 
 namespace kinship {
 
-/// Applies rules to the members of a value, one after the other, and remembers the first that is
+/// Applies rules to the members of a value, one after the other, and records the first that is
 /// broken. Messages name the thing, its value and the limit.
 class Rules {
  public:
@@ -36,7 +36,7 @@ class Rules {
   std::optional<Error> broken_;
 };
 
-/// The limits of each field, and of the fields of each element of a list.
+/// Checks the limits of each field, and of the fields of each element of a list.
 /// \param of  after its name in messages, e.g. " of a source".
 template <Described Value>
 void check_fields(const Value& value, Rules& rules, const std::string& of = "") {

@@ -36,7 +36,7 @@ struct SceneObject {
   bool approximate = false;  ///< fitted around a mesh, which lies inside
 };
 
-/// A surface of triangles in a file, as a problem names it.
+/// A surface of triangles in a file that a problem names.
 struct Mesh {
   std::string file;  ///< a name relative to the problem file, package://NAME/FILE or file:///FILE
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
@@ -52,9 +52,9 @@ struct SceneMesh {
   Eigen::Isometry3d T_task_mesh = Eigen::Isometry3d::Identity();
 };
 
-/// What a sensor saw, in a file as a problem names it: the cubes of a grid that hold points.
+/// A sensor's point cloud, in a file that a problem names: the cubes of a grid that contain points.
 struct PointCloud {
-  std::string file;       ///< as a mesh's
+  std::string file;       ///< see Mesh::file
   double voxel_m = 0.02;  ///< edge of a cube
   /// The middles of the cubes in the cloud's own frame, each once: 3 x n, m, odd multiples of half
   /// an edge. Null until models::SceneMeshes has read the file. Shared by copies, never changed.
@@ -68,7 +68,7 @@ struct SceneCloud {
   Eigen::Isometry3d T_task_cloud = Eigen::Isometry3d::Identity();
 };
 
-/// Something held by the robot.
+/// An object held by the robot.
 struct AttachedObject {
   std::string name;
   std::string link;

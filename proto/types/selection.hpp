@@ -11,13 +11,13 @@
 
 namespace kinship {
 
-/// How the experience of several robots is weighed against each other in a fit.
+/// Weighting of the experience of several robots in a fit.
 enum class Weighting {
-  Sources,  ///< every source robot the same; the target's own at least half from 30 paths on
+  Sources,  ///< every source robot equally; the target's own at least half from 30 paths on
   Paths     ///< by number of paths, as in the paper
 };
 
-/// Which part of a task's experience a distribution is made of.
+/// The part of a task's experience that a distribution is made of.
 struct Selection {
   std::vector<Digest> sources;         ///< source robots, ascending and distinct; empty: all
   std::optional<Weighting> weighting;  ///< missing: the profile's

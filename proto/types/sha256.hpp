@@ -26,7 +26,7 @@ class Sha256 {
   Sha256& add(const Eigen::Ref<const Eigen::MatrixXd>& values);  ///< rows, cols, column-major
   Sha256& add(const Digest& digest) { return add(std::span<const std::uint8_t>(digest.bytes)); }
 
-  /// The digest of all that was added. Call once.
+  /// The digest of all added values. Call once.
   Digest finish();
 
  private:

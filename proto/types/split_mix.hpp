@@ -4,7 +4,7 @@
 
 namespace kinship {
 
-/// What the state of SplitMix64 grows by: 2^64 / golden ratio, odd.
+/// Increment of the state of SplitMix64: 2^64 / golden ratio, odd.
 inline constexpr std::uint64_t kSplitMixStep = 0x9e3779b97f4a7c15;
 
 /// A bijection of 64 bits in which every bit of the input reaches every bit of the output.

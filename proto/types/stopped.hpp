@@ -5,14 +5,13 @@
 
 namespace kinship {
 
-/// Ends a computation that nobody waits for any more. No failure: nothing went wrong, and nothing
-/// is to be kept of it.
+/// Ends a computation that is no longer needed. Not a failure; partial results are discarded.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }
 };
 
-/// To be called about every 10 ms of work. \throws Stopped if that was asked for.
+/// Call it about every 10 ms of work. \throws Stopped if a stop was requested.
 inline void throw_if_stopped(const std::stop_token& stop) {
   if (stop.stop_requested())
     throw Stopped();

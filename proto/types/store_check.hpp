@@ -10,7 +10,7 @@
 
 namespace kinship {
 
-/// What a full check of a store found. Paths that were set aside before as damaged are no problem.
+/// Result of a full check of a store. Paths quarantined before as damaged are not problems.
 struct StoreCheck {
   struct Table {
     std::string name;
@@ -23,10 +23,10 @@ struct StoreCheck {
   std::uint32_t schema_version = 0;
   std::uint64_t bytes = 0;
   std::vector<Table> tables;
-  std::uint64_t damaged_paths = 0;  ///< set aside before
+  std::uint64_t damaged_paths = 0;  ///< quarantined before
   std::uint64_t retired_paths = 0;
   std::uint64_t problems = 0;         ///< of all tables, and of the file
-  std::vector<std::string> messages;  ///< one a problem, the first of them; each names the row
+  std::vector<std::string> messages;  ///< of the first problems, one each; each names the row
 };
 
 template <>

@@ -17,7 +17,7 @@
 #include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
 
-/// The rows that admin verbs list: what the store knows, without waypoints and mixtures.
+/// The rows of admin verbs: contents of the store, without waypoints and mixtures.
 namespace kinship {
 
 struct RobotSummary {
@@ -29,8 +29,8 @@ struct RobotSummary {
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::int64_t registered_ms = 0;
-  std::string geometry = {};     ///< what its shapes are, in words
-  std::int64_t geometry_ms = 0;  ///< when better geometry was taken over last; 0: never
+  std::string geometry = {};     ///< description of its shapes
+  std::int64_t geometry_ms = 0;  ///< when better geometry was last taken over; 0: never
 };
 
 template <>
@@ -53,8 +53,8 @@ struct TaskRobotSummary {
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::uint64_t generation = 0;
-  std::uint64_t dropped = 0;  ///< paths that were beyond the cap
-  /// What guided and control attempts cost, all of them; missing: none, or an older server.
+  std::uint64_t dropped = 0;  ///< paths beyond the cap
+  /// Costs of all guided and control attempts; missing: none, or an older server.
   std::optional<ModeEvidence> guided = {}, control = {};
 };
 
@@ -74,7 +74,7 @@ struct TaskSummary {
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::vector<TaskRobotSummary> robots;
-  std::uint64_t dropped = 0;  ///< paths that were beyond the cap of a robot and task
+  std::uint64_t dropped = 0;  ///< paths beyond the cap of a robot and task
 };
 
 template <>
@@ -96,7 +96,7 @@ struct PathSummary {
   double length = 0;  ///< joint units
   std::int64_t received_ms = 0;
   std::int64_t retired_ms = 0;  ///< 0: in use
-  bool dropped = false;         ///< then, because it was beyond the cap; its waypoints are gone
+  bool dropped = false;         ///< retired because it was beyond the cap; its waypoints are gone
 };
 
 template <>
@@ -114,7 +114,7 @@ inline constexpr std::tuple kFieldsOf<PathSummary>{
     Field{"retired_ms", &PathSummary::retired_ms},
     Field{"dropped", &PathSummary::dropped, {.may_be_missing = true}}};
 
-/// A query that was reported, solved or not, without what it was and what answered it.
+/// A reported attempt, solved or not, without its query and path.
 struct AttemptSummary {
   Uuid report_uuid;
   Digest robot;
@@ -171,7 +171,7 @@ inline constexpr std::tuple kFieldsOf<DistributionSummary>{
     Field{"T_task_base", &DistributionSummary::T_task_base},
     Field{"selection", &DistributionSummary::selection, {.may_be_missing = true}}};
 
-/// What is kept of a distribution, and how it stands to the experience of now.
+/// A distribution compared with the current experience.
 struct Explanation {
   Distribution distribution;  ///< its mixture may be left out
   struct Now {
@@ -181,8 +181,8 @@ struct Explanation {
     std::uint64_t generation = 0;
   };
   std::vector<Now> experience;              ///< of its task and selection
-  bool behind = false;                      ///< a fetch would have it fitted again
-  std::string next_fit;                     ///< when and why it is fitted next, in words
+  bool behind = false;                      ///< a fetch would refit it
+  std::string next_fit;                     ///< when and why it is fitted next, as text
   std::optional<Rehearsal> rehearsal = {};  ///< of its robot and task; missing: not yet
 };
 
@@ -192,10 +192,10 @@ inline constexpr std::tuple kFieldsOf<Explanation::Now>{
     Field{"label", &Explanation::Now::label, {.limit = kMaxLabelBytes}},
     Field{"paths", &Explanation::Now::paths}, Field{"generation", &Explanation::Now::generation}};
 
-/// Paths that were taken out of every fit. They are kept for the record.
+/// Paths that no fit uses any more. They are kept for the record.
 struct Retirement {
   std::string task;
-  std::uint64_t paths = 0;  ///< retired now; 0: they were retired already
+  std::uint64_t paths = 0;  ///< retired by this request; 0: all were retired before
   std::vector<Digest> robots;
 };
 
@@ -204,7 +204,7 @@ inline constexpr std::tuple kFieldsOf<Retirement>{
     Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
     Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
 
-/// A distribution that was taken out of the store.
+/// A distribution that was removed from the store.
 struct Eviction {
   Digest id;
 };
@@ -212,14 +212,14 @@ struct Eviction {
 template <>
 inline constexpr std::tuple kFieldsOf<Eviction>{Field{"evicted", &Eviction::id}};
 
-/// A robot that was taken out, and what went with it.
+/// A removed robot, and data removed with it.
 struct RobotRemoval {
   Digest robot;
-  std::string label;                ///< that it had; another robot may have it now
+  std::string label;                ///< its former label; another robot may have it now
   std::uint64_t paths = 0;          ///< retired now
   std::uint64_t attempts = 0;       ///< kept for the record, with their paths and UUIDs
-  std::uint64_t distributions = 0;  ///< for it, which are gone
-  bool is_deleted = false;          ///< it had no attempts: nothing is left of it
+  std::uint64_t distributions = 0;  ///< for it, deleted
+  bool is_deleted = false;          ///< it had no attempts and was deleted completely
 };
 
 template <>
@@ -233,15 +233,15 @@ inline constexpr std::tuple kFieldsOf<RobotRemoval>{
 
 enum class JobState { Queued, Running, Done, Failed, Cancelled };
 
-/// A long verb on its way, or ended not long ago.
+/// A long verb that waits, runs or ended recently.
 struct Job {
   std::string id;  ///< eight hexadecimal digits
   std::string verb;
   std::string argument;
   JobState state = JobState::Queued;
   double progress = 0;     ///< 0 to 1
-  std::string message;     ///< why failed, or what it made
-  std::uint64_t rows = 0;  ///< it made, to be read by JobRows
+  std::string message;     ///< why it failed, or its result
+  std::uint64_t rows = 0;  ///< made by the job, to read with JobRows
   std::int64_t started_ms = 0;
   std::int64_t ended_ms = 0;  ///< 0: not yet
 };
@@ -258,11 +258,11 @@ inline constexpr std::tuple kFieldsOf<Job>{
     Field{"started_ms", &Job::started_ms},
     Field{"ended_ms", &Job::ended_ms}};
 
-/// How often something went wrong for clients since start.
+/// Number of errors of one kind for clients since start.
 struct TroubleCount {
   std::string what;
   std::uint64_t count = 0;
-  std::string last;  ///< the last one, in words
+  std::string last;  ///< text of the last one
   std::int64_t last_ms = 0;
 };
 
@@ -273,7 +273,7 @@ inline constexpr std::tuple kFieldsOf<TroubleCount>{
     Field{"last", &TroubleCount::last, {.limit = kMaxMessageBytes}},
     Field{"last_ms", &TroubleCount::last_ms}};
 
-/// How much of something bounded there is.
+/// Use of a bounded resource.
 struct BoundUse {
   std::string what;
   std::uint64_t used = 0;
@@ -290,9 +290,9 @@ inline constexpr std::tuple kFieldsOf<BoundUse>{
 struct ReplicaUse {
   std::string host;
   std::uint64_t readings = 0;  ///< that it answered
-  std::uint64_t behind = 0;    ///< that it did not yet have what was wanted for
+  std::uint64_t behind = 0;    ///< that needed newer data than it had
   std::uint64_t failed = 0;    ///< that it did not answer, or ended
-  std::string message;         ///< why it is not read now; empty: it is
+  std::string message;         ///< why it is not used now; empty: it is
 };
 
 template <>
@@ -302,19 +302,19 @@ inline constexpr std::tuple kFieldsOf<ReplicaUse>{
     Field{"failed", &ReplicaUse::failed},
     Field{"message", &ReplicaUse::message, {.limit = kMaxPageBytes}}};
 
-/// How a site stands with the memory above it (kinshipd --upstream).
+/// State of the exchange of a site with the memory above it (kinshipd --upstream).
 struct UpstreamStatus {
   std::string name;
   bool connected = false;
-  std::int64_t since_ms = 0;           ///< Unix time: connected, or away
-  std::string message;                 ///< why away
-  std::uint64_t tries = 0;             ///< to connect, in vain, since it went away
-  std::uint64_t waiting = 0;           ///< reports that the memory was not yet asked about
-  std::int64_t oldest_waiting_ms = 0;  ///< when the first of them came here; 0: none waits
-  std::uint64_t sent = 0;              ///< since start: reports that were new to the memory
-  std::uint64_t received = 0;          ///< since start: that were new here
-  std::uint64_t refused = 0;           ///< set aside: they are tried again with each connection
-  std::string first_refused;           ///< one of them, and why
+  std::int64_t since_ms = 0;           ///< Unix time: connected, or disconnected
+  std::string message;                 ///< why disconnected
+  std::uint64_t tries = 0;             ///< failed attempts to connect since then
+  std::uint64_t waiting = 0;           ///< reports not yet checked with the memory
+  std::int64_t oldest_waiting_ms = 0;  ///< when the first of them arrived here; 0: none waits
+  std::uint64_t sent = 0;              ///< since start: reports new to the memory
+  std::uint64_t received = 0;          ///< since start: reports new here
+  std::uint64_t refused = 0;           ///< refused reports: retried with each connection
+  std::string first_refused;           ///< one of them, with the reason
   std::uint64_t left_out = 0;          ///< since start: their paths are dropped or damaged
   std::uint64_t retired_above = 0;     ///< since start: paths, because they were retired here
   std::uint64_t retired_here = 0;      ///< since start: paths, because they were retired above
@@ -353,16 +353,16 @@ struct ServerStatus {
   std::uint64_t jobs = 0;      ///< not ended
   std::uint64_t store_bytes = 0;
   bool writable = true;
-  std::string storage_message;          ///< why not writable, or a warning
+  std::string storage_message;          ///< why it is not writable, or a warning
   std::uint64_t rehearsals = 0;         ///< done since start
-  std::uint64_t queued_rehearsals = 0;  ///< waiting or under way
-  double rehearsal_time_s = 0;          ///< processor time of those that are done
+  std::uint64_t queued_rehearsals = 0;  ///< waiting or running
+  double rehearsal_time_s = 0;          ///< processor time of the done ones
   std::uint64_t rollbacks = 0;          ///< of the store, noticed since start
-  std::int64_t scrubbed_ms = 0;  ///< when the store was last read through for damage; 0: never
-  double scrub_part = 0;         ///< 0 to 1: how much of it was read since then
+  std::int64_t scrubbed_ms = 0;         ///< when the store was last scanned for damage; 0: never
+  double scrub_part = 0;                ///< 0 to 1: part of it scanned since then
   std::vector<TroubleCount> troubles = {};
   std::vector<BoundUse> bounds = {};
-  std::uint64_t dropped_paths = 0;  ///< were beyond the cap of their robot and task, since ever
+  std::uint64_t dropped_paths = 0;              ///< beyond the cap of their robot and task, in all
   std::int64_t credentials_expire_ms = 0;       ///< the server's own; 0: it runs without security
   std::optional<UpstreamStatus> upstream = {};  ///< of a site
   std::vector<ReplicaUse> replicas = {};        ///< hosts of a database that fits may read

@@ -28,7 +28,7 @@ inline constexpr std::array<std::string_view, 6> kTaskAxisNames = {"x",    "y", 
                                                                    "roll", "pitch", "yaw"};
 
 /// The axes that `names` lists.
-/// \return InvalidInput that names the word if one is no axis, or if there are none.
+/// \return InvalidInput if `names` is empty, or with the word that is not an axis.
 Result<TaskAxes> parse_task_axes(const std::vector<std::string_view>& names);
 
 }  // namespace kinship

@@ -8,17 +8,17 @@
 
 namespace kinship {
 
-/// What the experience of one robot is worth to another on a task, as the server's rehearsal
-/// predicts it before the target has planned.
+/// Worth of one robot's experience to another on a task, predicted by the server's rehearsal before
+/// the target has planned.
 struct Transferability {
   Digest target, source;
   std::string target_label, source_label;
   std::optional<Rehearsal> rehearsal;  ///< none: see `message`
-  std::string message;                 ///< why there is none, or what it lacks
+  std::string message;                 ///< why there is no rehearsal, or what it lacks
 };
 
-/// Checks without guidance to checks with the best guide of a rehearsal, means; none if it planned
-/// nothing.
+/// Ratio of the mean checks without guidance to those with the best guide of a rehearsal; missing
+/// without such plans.
 std::optional<double> worth(const Rehearsal& rehearsal);
 
 }  // namespace kinship

@@ -9,8 +9,8 @@
 
 namespace kinship {
 
-/// A UUID in the byte order of its text (RFC 9562, section 4). Clients make one per report, so
-/// that a retry is recognised; a store has one per life, its epoch.
+/// A UUID in the byte order of its text (RFC 9562, section 4). Clients make one per report, so that
+/// a retry is recognised; a store has one per epoch.
 struct Uuid {
   std::array<std::uint8_t, 16> bytes{};
 
