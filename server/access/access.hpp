@@ -37,7 +37,7 @@ std::optional<Error> refusal_of_task(const Caller& caller, std::string_view task
 std::optional<Error> refusal_of_robot(const Caller& caller, std::string_view label);
 
 /// For a job that another client began.
-/// \param verb  CancelJob, or one that reads.
+/// \param verb  CancelJob, or a verb that reads.
 std::optional<Error> refusal_of_job(const Caller& caller, AdminVerb verb, const std::string& job);
 
 /// Registering, reporting and fetching, by role, task and robot (label).
