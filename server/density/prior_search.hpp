@@ -14,7 +14,7 @@ namespace kinship::density {
 struct PriorFold {
   BlockPoints training;
   Eigen::Index components = 0;  ///< that the training points may have
-  double share = 1;  ///< of these points in those they stand for; the mass of a prior shrinks by it
+  double share = 1;             ///< weight of these / of all points; scales the mass of a prior
   BlockPoints held_out;
 };
 
