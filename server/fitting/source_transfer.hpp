@@ -75,7 +75,7 @@ class SourceTransfer {
   const PooledConfigurations& pool() const noexcept { return pool_; }
   /// The paths used, including those without configurations.
   const KnownPaths& used() const noexcept { return used_; }
-  std::uint64_t transferred() const noexcept { return transferred_; }  ///< of those used, new ones
+  std::uint64_t transferred() const noexcept { return transferred_; }  ///< of used(), the new ones
 
  private:
   void add_paths(const runtime::Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
