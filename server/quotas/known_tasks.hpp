@@ -8,8 +8,8 @@
 
 namespace kinship::quotas {
 
-/// Cache of tasks that the store has, so that it need not be asked for each report. Bounded: it is
-/// cleared when it is full. May be shared between threads.
+/// Cache of tasks that the store has, so that not every report reads it. Bounded: it is cleared
+/// when it is full. May be shared between threads.
 class KnownTasks {
  public:
   explicit KnownTasks(std::size_t max_tasks = 65'536) : max_tasks_(max_tasks) {}
