@@ -32,7 +32,7 @@ class WorkerPool {
     std::string client = {};        ///< its client; empty: the server itself, without a limit
   };
 
-  /// Treatment of jobs not yet begun in stop().
+  /// Treatment by stop() of jobs not yet begun.
   enum class Leftovers { Run, Abandon };
 
   /// \throws Failure(Internal) if the operating system has no room for that many threads.
