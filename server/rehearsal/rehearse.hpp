@@ -51,7 +51,7 @@ class Rehearsing {
   std::size_t rounds() const noexcept { return round_; }  ///< completed
 
   /// The result so far: the guide with the fewest checks in the mean; of guides that cost up to 3 %
-  /// more, the one with the least preparation. All guides until each query was planned once.
+  /// more, the one with the least preparation. Guide::All until each query was planned once.
   Rehearsal result() const;
 
  private:
