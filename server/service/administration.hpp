@@ -96,8 +96,8 @@ class Administration {
   AdminPage attempt(const Call& call, const Caller& caller);
   AdminPage dispatch(const Call& call);
 
-  // Each throws Failure(NotFound) for what is not there, and Failure(InvalidInput) for a name that
-  // is none or could be several's.
+  // Each throws Failure(NotFound) for a missing object, and Failure(InvalidInput) for an invalid or
+  // ambiguous name.
   AdminPage show_status(const Call& call);
   AdminPage list_robots(const Call& call);
   AdminPage show_robot(const Call& call);

@@ -40,7 +40,7 @@ class AuditRateLimit {
 
   const runtime::Clock& clock_;
   std::mutex mutex_;  // guards what follows
-  // By client; "" is of nobody in particular, and of those for whom there is no place.
+  // By client; "" is for requests without a client, and for clients without a place.
   std::map<std::string, Entry> entries_;
 };
 

@@ -26,8 +26,8 @@ class AuditTrail {
   /// Call before an action: an action that cannot be logged is not taken.
   /// \throws Failure(Storage)
   void begin(AuditEntry entry, const std::string& before);
-  /// Call before data is handed out, which changes nothing: logged as Done. \throws
-  /// Failure(Storage)
+  /// Call before data is handed out, which changes nothing: logged as Done.
+  /// \throws Failure(Storage)
   void hand_out(AuditEntry entry, const std::string& what);
   /// Call after an action. If the entry cannot be written, the log has the action as begun.
   void end(AuditEntry entry, const std::string& before, const std::string& after) noexcept;

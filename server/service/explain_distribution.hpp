@@ -7,7 +7,7 @@
 
 namespace kinship::service {
 
-/// Of a distribution whose paths were retired.
+/// Message for a distribution whose paths were retired.
 inline constexpr const char* kNotServed =
     "paths that it may be made of were retired, it is not served any more";
 

@@ -7,7 +7,7 @@
 
 namespace kinship::service {
 
-// About what a reply takes on the network.
+// Approximate size of a reply on the network.
 std::size_t reply_bytes(const FetchReply& reply);
 std::size_t reply_bytes(const AdminPage& page);
 

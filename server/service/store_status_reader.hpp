@@ -18,7 +18,7 @@ namespace kinship::service {
 /// shared between threads.
 class StoreStatusReader {
  public:
-  /// \param store     outlives the reader; it is asked once at the beginning.
+  /// \param store     outlives the reader; it is read once at the beginning.
   /// \param patience  longest time of a read.
   StoreStatusReader(const store::Store& store, runtime::Clock clock,
                     std::chrono::milliseconds patience);
