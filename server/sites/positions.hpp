@@ -18,7 +18,7 @@ namespace kinship::sites {
 /// repeated work, no data. Used by one thread.
 class Positions {
  public:
-  /// A task whose experience is brought down.
+  /// A task whose experience comes down.
   struct Task {
     std::string cursor;        ///< of the memory's arrivals
     std::int64_t used_ms = 0;  ///< time of its last use here
@@ -31,8 +31,8 @@ class Positions {
   /// \throws Failure(Storage)
   explicit Positions(store::Store& site);
 
-  /// Begins again from the start if the epochs differ from those of the positions. Durable. \return
-  /// whether it did.
+  /// Begins again from the start if the epochs differ from those of the positions. Durable.
+  /// \return whether it did.
   bool begin(const Uuid& site_epoch, const Uuid& memory_epoch);
 
   std::string up, up_retired, down_retired;  ///< cursors
