@@ -49,7 +49,7 @@ struct ServerOptions {
   std::uint64_t max_paths_per_pair = 20'000;
   std::uint64_t stored_distributions_mb = 1024;  ///< distributions that the store keeps; 0: all
   std::size_t distribution_memory_mb = 128;      ///< distributions in memory
-  std::size_t path_memory_mb = 64;               ///< ways of paths in memory
+  std::size_t path_memory_mb = 64;               ///< pose paths in memory
   std::uint64_t max_wal_mb = 512;                ///< with more kept by readings, no report is taken
   /// Rate at which the store's file is scanned for damage, MB per second; 0: no scan.
   double scrub_mb_per_s = 4;
