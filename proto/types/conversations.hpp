@@ -119,7 +119,7 @@ enum class AdminStatus { Ok, NotFound, Refused, Failed };
 
 struct AdminReply {
   AdminStatus status = AdminStatus::Refused;
-  std::vector<std::string> rows;  ///< one document each (proto/json/summaries_json.hpp)
+  std::vector<std::string> rows;  ///< one document each (proto/json/admin_rows_json.hpp)
   std::string next_cursor;        ///< empty: no more pages
   std::string message;
   bool last_row_continues = false;  ///< the next page begins with the rest of the last row
