@@ -12,8 +12,8 @@ namespace kinship::cli {
 
 struct MoveItCommandOptions {
   models::RobotArguments robot;
-  std::vector<std::filesystem::path> requests;  ///< one a problem
-  std::vector<std::filesystem::path> scenes;    ///< none, one for all, or one a request
+  std::vector<std::filesystem::path> requests;  ///< one per problem
+  std::vector<std::filesystem::path> scenes;    ///< none, one for all, or one per request
   std::filesystem::path folder;  ///< instead: requestNAME.yaml, each with its sceneNAME.yaml
   std::string placement;         ///< T_task_base; empty: the task frame is the planning frame
   std::filesystem::path output;  ///< empty: standard output, not for scenes with meshes

@@ -60,7 +60,7 @@ class SamplingModeChooser {
 
   SamplingModeOptions options_;
   evidence::AttemptWindow window_;
-  std::uint64_t guided_, control_;  // attempts known, of whatever age
+  std::uint64_t guided_, control_;  // attempts known, of any age
 };
 
 /// A seed that is equal for equal queries (name, start, goal, seed) and differs between others; it

@@ -85,8 +85,8 @@ class ReportSender {
   std::optional<std::chrono::steady_clock::time_point> aged_;
   std::optional<std::chrono::steady_clock::time_point> probed_;  // the last reply, also a receipt's
   std::uint64_t servers_probed_ = 0;
-  bool is_resending_ = false;  // what was sent is pending again
-  RetryAfter retry_after_{0};  // the server asked for, in this round
+  bool is_resending_ = false;  // sent reports are pending again
+  RetryAfter retry_after_{0};  // requested by the server in this round
   std::set<Digest> unknown_;   // robots whose reports wait for the next round
 
   mutable std::mutex mutex_;  // guards what follows

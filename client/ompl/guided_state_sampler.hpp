@@ -13,8 +13,8 @@ namespace kinship::planning {
 /// Gives any planner of OMPL the samples of a ConfigurationSampler in place of uniform ones;
 /// samples near a state are those of the space. One planner thread uses one instance.
 ///
-/// RRT-like planners ask the space's StateSampler, roadmap planners a ValidStateSampler that asks
-/// it in turn, so the space is the one place to hook in.
+/// RRT-like planners draw from the space's StateSampler, roadmap planners from a ValidStateSampler
+/// that draws from it in turn, so the space is the one place to replace samples.
 class GuidedStateSampler : public ompl::base::StateSampler {
  public:
   /// \param space    from make_state_space, with as many joints as the sampler has.

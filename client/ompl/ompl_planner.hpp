@@ -29,8 +29,8 @@ std::vector<std::string> ompl_planner_names();
 /// Same definitions as plan_birrt: every checked configuration counts one check, none beyond the
 /// budget; waypoints are at most limits.step apart and each was checked, and motions are proven if
 /// `is_free` proves edges. Start and goals are checked first, and again by OMPL. Samples are seeded
-/// from the generator, but OMPL's own draws (towards the goal, say) follow its process-wide seed:
-/// equal plans need an equal seed there. PRM and PRMstar grow by samples only, without OMPL's
+/// from the generator, but OMPL's own draws (for example towards the goal) follow its process-wide
+/// seed: equal plans need an equal seed there. PRM and PRMstar grow by samples only, without OMPL's
 /// random walks and second thread; RRTConnect and LazyPRM know all goals from the beginning.
 /// Silences OMPL's messages for the process.
 ///

@@ -26,7 +26,7 @@ class CollisionWorld {
   /// \throws Failure(InvalidInput) as above, and as RobotSolids.
   CollisionWorld(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
                  const Surroundings& surroundings);
-  CollisionWorld(const CollisionWorld&) = delete;  // it counts, and is asked by one at a time
+  CollisionWorld(const CollisionWorld&) = delete;  // it counts, and has one user at a time
   CollisionWorld& operator=(const CollisionWorld&) = delete;
   CollisionWorld(CollisionWorld&&) noexcept = default;
   CollisionWorld& operator=(CollisionWorld&&) noexcept = default;
@@ -89,7 +89,7 @@ class CollisionWorld {
   std::vector<BodyPair> standing_pairs_;
   std::vector<BodyPair> standing_contacts_;  // each makes every configuration collide
   LaneWorld lanes_;
-  std::vector<BodyPair> doubtful_;  // kept, as what follows is, so that asking needs no heap
+  std::vector<BodyPair> doubtful_;  // kept, like the next ones, so that a check allocates nothing
   std::vector<Eigen::Isometry3d> T_base_joints_;
   std::uint64_t checks_ = 0;
 };

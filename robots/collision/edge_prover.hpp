@@ -178,7 +178,7 @@ class EdgeProver {
   std::vector<std::size_t> moving_;   // the bodies that joints move
   std::vector<int> index_of_moving_;  // one a body: of moving_, or -1
 
-  // Of the edges that are asked about.
+  // Of the edges of the present call.
   Eigen::MatrixXd from_, change_;  // dof x n
   LaneRoom clearances_;
   std::vector<EdgeProof> proofs_;
@@ -186,7 +186,7 @@ class EdgeProver {
   std::size_t used_places_ = 0;
   std::vector<Piece> pieces_;
   std::vector<std::size_t> open_;                // pairs
-  std::vector<Part> parts_, rest_;               // that the lanes are asked about, now and next
+  std::vector<Part> parts_, rest_;               // checked by the lanes, now and next
   std::vector<Eigen::MatrixXd> edge_motions_m_;  // of each whole edge, by MotionBounds::bound_all
   Eigen::MatrixXd motion_m_, grown_m_;  // moving joints + 1 x bodies: of a piece, of a part
   Eigen::MatrixXd middles_;             // dof x kLanes

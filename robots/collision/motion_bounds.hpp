@@ -54,7 +54,7 @@ class MotionBounds {
   struct Hull {
     int joint = -1;
     Eigen::Matrix3Xd corners;          // 3 x 1, 2 or 8, in the joint's moving frame
-    double radius_m = 0;               // all of the body lies so near to what the corners span
+    double radius_m = 0;               // the body lies within it of the corners' hull
     double across_m = 0, reach_m = 0;  // from the joint's axis, from its origin
   };
 
@@ -63,7 +63,7 @@ class MotionBounds {
     Eigen::Vector3d axis;  // in its frame
     bool slides = false;
     int before = -1;        // the moving joint before it
-    int source = 0;         // of `change`: itself, or what it follows,
+    int source = 0;         // of `change`: itself, or the joint it follows,
     double multiplier = 1;  // so many times
     double offset = 0;      // and so much more, rad or m
     // Of its origin where it does not slide, from the axis and the origin of the joint before.

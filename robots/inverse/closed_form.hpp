@@ -27,7 +27,7 @@ class Branches {
   /// The values of one configuration, dof of them, joint units.
   const double* operator[](int i) const { return values_[static_cast<std::size_t>(i)].data(); }
 
-  /// Whether a branch was left out because of joint limits.
+  /// Whether joint limits cut off branches: without limits there might be more.
   bool outside_limits() const noexcept { return outside_limits_; }
   void leave_out(bool any) noexcept { outside_limits_ = outside_limits_ || any; }
 

@@ -40,8 +40,8 @@ class Descent {
 
   /// Steer: joints outside their limits are pulled towards mid-range within the chain's redundancy
   /// (none: no effect). Hold: no joint leaves its limits, given a start within them; one that would
-  /// be pushed across stays there, and the others compensate. Joints with a full turn of room are
-  /// free: a turn brings them back.
+  /// be pushed across stays there, and the others compensate. Joints with a full turn of room need
+  /// neither: a turn brings them back.
   enum class Limits { Steer, Ignore, Hold };
 
   /// Moves `q` towards the pose, in at most `max_iterations` steps. It may end outside the limits

@@ -96,12 +96,11 @@ struct LaneElimination {
 struct LaneHarmonics {
   static constexpr int kDegree = 8;
   static constexpr int kCoefficients =
-      2 * kDegree + 1;                    ///< of 1, cos, .. cos 8, then sin, .. sin 8
-  static constexpr int kPadded = 24;      ///< kCoefficients, in whole vectors
-  static constexpr int kSamples = 24;     ///< that coefficients are computed from
-  static constexpr int kIntervals = 256;  ///< of the searched turn
-  static constexpr int kPoints =
-      136;  ///< ends of the first half of the intervals, in whole vectors
+      2 * kDegree + 1;                      ///< of 1, cos, .. cos 8, then sin, .. sin 8
+  static constexpr int kPadded = 24;        ///< kCoefficients, in whole vectors
+  static constexpr int kSamples = 24;       ///< that coefficients are computed from
+  static constexpr int kIntervals = 256;    ///< of the searched turn
+  static constexpr int kPoints = 136;       ///< ends of the first half of these; in whole vectors
   double cosine[kSamples], sine[kSamples];  ///< of the angles of samples
   double to_coefficients[kSamples][kPadded];
   double at_points[kCoefficients][kPoints];

@@ -65,7 +65,7 @@ class Search {
   bool is_full() const noexcept { return handed_over_ == kLanes; }
   /// Whether a lane of check_ is within `tolerance` of the pose, m and rad.
   bool is_within(int lane, double tolerance) const noexcept;
-  /// Keeps the configuration of a lane of check_ unless an equal one was found meanwhile.
+  /// Keeps the configuration of a lane of check_ unless one near it was found meanwhile.
   void keep(int lane);
   /// Verifies the candidates handed over, and keeps the solutions.
   void verify();
@@ -92,7 +92,7 @@ class Search {
   bool near_[kLanes];  // of a solution, once
   std::uint64_t next_start_ = 0;
   int proposed_ = 0;     // lanes of batch_ that wait for the polish
-  int lost_ = 0;         // of those, such as no polish made a solution
+  int lost_ = 0;         // proposed ones that no polish made a solution
   int handed_over_ = 0;  // lanes of check_ that wait
   int idle_ = 0;         // ended descents since the last new solution
   int stationary_ = 0;   // descents that ended where the error has a minimum above 0

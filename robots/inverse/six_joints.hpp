@@ -30,7 +30,7 @@ inline constexpr int kMaxBranches = 8;  ///< of six joints by these rules
 struct SixJointBranches {
   std::array<std::array<double, 6>, kMaxBranches> angles;
   int count = 0;
-  bool outside = false;  ///< whether a branch was left out for a joint outside its window
+  bool outside = false;  ///< whether a joint outside its window has cut off branches
 
   void add(const std::array<double, 6>& q) {
     if (count < kMaxBranches)

@@ -25,7 +25,8 @@ struct Extension {
   bool reached = false;   ///< reached the target
 };
 
-/// The target of an extension: a sample may lie anywhere, a node of the other tree is valid.
+/// The target of an extension: a sample may lie anywhere, a node of the other tree is a valid
+/// configuration.
 enum class Aim { Sample, Node };
 
 /// \throws std::invalid_argument as plan_birrt; `planner` is its name in the message.
@@ -334,7 +335,7 @@ class BidirectionalSearch {
   std::uint64_t track_checks_ = 0;
   // Of the samples ahead, a column each: kept, so that an iteration allocates nothing.
   Eigen::MatrixXd firsts_{sampler_.bounds().cols(), SamplesAhead::kAhead};
-  std::array<Eigen::Index, SamplesAhead::kAhead> starts_{};      // those that have a first one
+  std::array<Eigen::Index, SamplesAhead::kAhead> starts_{};      // samples that have a first one
   std::array<std::uint64_t, SamplesAhead::kAhead + 1> spent_{};  // before each sample, after all
   Eigen::VectorXd tip_;
 };

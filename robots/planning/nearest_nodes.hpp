@@ -43,7 +43,7 @@ class NearestNodes {
   Eigen::Index max_scanned_;
   Eigen::ArrayXXf scanned_;  // capacity x dof, one column per joint; infinity where nothing stands
   Eigen::Index scanned_count_ = 0;
-  std::unique_ptr<Boxed> boxed_;  // what a search writes there is nobody's business
+  std::unique_ptr<Boxed> boxed_;  // holds scratch memory of searches, too
 };
 
 }  // namespace kinship::planning

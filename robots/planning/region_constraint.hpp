@@ -92,7 +92,7 @@ class RegionConstraint {
   Eigen::Matrix<double, 2, 6> region_bounds_;
   Vector6 margin_;  // how far inside its bounds a coordinate is aimed at
   Eigen::Matrix2Xd bounds_;
-  std::shared_ptr<const RegionTilt> tilt_;  // what copies share: it never changes
+  std::shared_ptr<const RegionTilt> tilt_;  // shared by copies; immutable
   std::uint64_t projections_ = 0;
 };
 

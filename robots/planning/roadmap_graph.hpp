@@ -73,7 +73,7 @@ class RoadmapGraph {
 
   Way way_;
   std::size_t goal_count_;
-  std::vector<Vertex> vertices_;  // start, goals, then those of components
+  std::vector<Vertex> vertices_;  // start, goals, then the components' vertices
   std::vector<Edge> edges_;
 };
 
