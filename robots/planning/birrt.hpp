@@ -41,14 +41,14 @@ struct PlanSummary {
 
 /// Bi-directional RRT with greedy extension of both trees, in the style of CBiRRT2 without
 /// constraints. Every goal configuration is a root of the goal tree. First the straight lines from
-/// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then it
-/// follows the sampler's tracks, if any, from their goals until they are blocked, whenever tracks
-/// have cost no more than their fraction of the checks. Otherwise each iteration extends the tree
-/// with fewer nodes towards a sample (overshot) until it is blocked and, if it grew, the other tree
-/// towards its new end. After 300 samples at most nine of ten are guided, so that a mixture without
-/// the solution delays a path and never prevents it. Every waypoint was checked, start and goal
-/// included. If the start is a free goal, the path is [start, goal], without an iteration. Equal
-/// seed, equal path, as long as the time limit does not end it.
+/// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then the
+/// planner follows the sampler's tracks, if any, from their goals until they are blocked, whenever
+/// tracks have cost no more than their fraction of the checks. Otherwise each iteration extends the
+/// tree with fewer nodes towards a sample (overshot) until it is blocked and, if it grew, the other
+/// tree towards its new end. After 300 samples at most nine of ten are guided, so that a mixture
+/// without the solution delays a path and never prevents it. Every waypoint was checked, start and
+/// goal included. If the start is a free goal, the path is [start, goal], without an iteration.
+/// Equal seed, equal path, as long as the time limit does not end it.
 /// \param start  dof.
 /// \param goals  dof x n; colliding ones are left out.
 /// \throws std::invalid_argument if sizes differ, a value is not finite, the step not positive or

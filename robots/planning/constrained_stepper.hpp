@@ -19,7 +19,7 @@ class ConstrainedStepper {
   /// the target than `q`, at most a step away, the line between within the other tolerance. Where
   /// the region bends too much for a full step, a shorter one. Not checked for collisions.
   /// \param q  holds the constraint.
-  /// \return false if no progress is possible.
+  /// \return   false if no progress is possible.
   bool advance(const Eigen::VectorXd& q, const Eigen::VectorXd& target, Eigen::VectorXd& next);
 
   /// All configurations from `from` to `to`, both of which hold the constraint, in such steps.
