@@ -13,22 +13,21 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// What several programs add to their command lines.
+/// Options that several programs share.
 namespace kinship::arguments {
 
-/// Adds --profile and --estimator; the latter is appended to what the former says, as the option of
-/// a profile that it is.
-/// \param profile  the default, and what is asked for once the command line is parsed; must outlive
+/// Adds --profile and --estimator; the latter is appended to the profile, as one of its options.
+/// \param profile  in: the default; out: the profile, once the command line is parsed; must outlive
 ///                 that.
 /// \return both options.
 std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profile);
 
-/// Adds what a command line can say about a robot beside where it is: --base, --tip, --label,
-/// --transfer, --axes, --hold, --srdf, --package. Where it is (`source`) is the program's to ask.
+/// Adds the options of a robot except its files: --base, --tip, --label, --transfer, --axes,
+/// --hold, --srdf, --package. The program itself adds `source`.
 /// \param arguments  filled when the command line is parsed; must outlive that.
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
 
-/// Where a server is, and as whom to talk to it.
+/// The address of a server, and the client's credentials.
 struct ServerAddress {
   std::string& host;
   std::uint32_t& domain;
@@ -36,8 +35,9 @@ struct ServerAddress {
 };
 
 /// Adds --server, --domain and --security, which may also come from the environment:
-/// KINSHIP_SERVER, KINSHIP_DOMAIN and KINSHIP_SECURITY. \param address  the defaults, and what is
-/// asked for once the command line is parsed; what it refers to must outlive that.
+/// KINSHIP_SERVER, KINSHIP_DOMAIN and KINSHIP_SECURITY.
+/// \param address  in: the defaults; out: the values, once the command line is parsed; its
+///                 references must outlive that.
 void add_server_address(CLI::App& app, const ServerAddress& address);
 
 /// Adds --sources, --weighting and --since. A malformed value is refused while the command line is

@@ -10,18 +10,18 @@
 
 namespace kinship::c_library {
 
-/// What the caller is told of an error, with its text kept for kinship_error_text().
+/// Returns the code of an error and keeps its text for kinship_error_text().
 kinship_code remember(kinship_code code, const std::string& text) noexcept;
 kinship_code remember(const Error& error) noexcept;
 
-/// Runs the body of a function of the C library: what it throws becomes a code and a text.
+/// Runs the body of a function of the C library: exceptions become a code and a text.
 kinship_code guarded(const std::function<kinship_code()>& body) noexcept;
 
 /// \throws Failure(InvalidInput) that names the argument if it is NULL.
 void require(const void* argument, const char* name);
 
-/// A caller's structure as this version knows it: what the caller's version did not have is 0.
-/// \throws Failure(InvalidInput) if it is NULL or says no size that can be.
+/// A caller's structure in this version's layout: members that the caller's version lacks are 0.
+/// \throws Failure(InvalidInput) if it is NULL or has an impossible size.
 template <typename Structure>
 Structure read_structure(const Structure* given, const char* name) {
   require(given, name);
@@ -36,7 +36,7 @@ Structure read_structure(const Structure* given, const char* name) {
   return known;
 }
 
-/// Into a caller's structure as far as it goes; its size stays.
+/// Writes a caller's structure up to its size, which does not change.
 /// \throws Failure(InvalidInput) as read_structure().
 template <typename Structure>
 void write_structure(Structure values, Structure* into, const char* name) {

@@ -17,7 +17,7 @@
 #include "robots/collision/edge_prover.hpp"
 #include "robots/models/loaded_robot.hpp"
 
-/// What the handles of kinship.h are; their names are C's.
+/// Definitions of the handles of kinship.h; their names follow C.
 // NOLINTBEGIN(readability-identifier-naming)
 struct kinship_client {
   explicit kinship_client(const kinship::link::ClientOptions& options) : line(options) {}
@@ -82,7 +82,7 @@ struct SceneMembers {
 };
 
 /// \param name  of the structure, for messages.
-/// \throws Failure(InvalidInput) if something is NULL, of another size, or no shape or pose.
+/// \throws Failure(InvalidInput) if a member is NULL, of another size, or no shape or pose.
 RecordedScene read_scene(const SceneMembers& given, const std::string& name);
 
 /// The robot in files, with its meshes' triangles. Links that move may be without solids.

@@ -17,10 +17,10 @@
 
 namespace kinship::cli {
 
-/// Says what went wrong, after `command`. \return its exit code.
+/// Writes an error after `command`. \return its exit code.
 int refuse(std::string_view command, const Error& error, std::ostream& err);
 
-/// How a listing is wanted.
+/// Options of a listing.
 struct ListOptions {
   std::string robot, task;  ///< filters; empty: all
   std::size_t limit = 0;    ///< rows in all; 0: every row
@@ -30,7 +30,7 @@ struct ListOptions {
 /// Calls `use` with each row of a list verb, page after page, until there are no more or
 /// `options.limit` is reached.
 /// \param use  returns false to stop.
-/// \return an exit code; what went wrong is on `err`, after `command`.
+/// \return an exit code; an error is on `err`, after `command`.
 int for_each_row(link::Client& server, AdminVerb verb, const ListOptions& options,
                  std::string_view command, std::ostream& err,
                  const std::function<bool(const std::string& row)>& use);
@@ -39,7 +39,7 @@ int for_each_row(link::Client& server, AdminVerb verb, const ListOptions& option
 int print_rows_as_json(link::Client& server, AdminVerb verb, const ListOptions& options,
                        std::string_view command, std::ostream& out, std::ostream& err);
 
-/// How a list verb is shown.
+/// The table of a list verb.
 template <json::AdminRow Row>
 struct Listing {
   AdminVerb verb;

@@ -16,7 +16,7 @@ struct AuditOptions {
   bool json = false;
 };
 
-/// `audit`: who had what done, or was refused it, the newest first.
+/// `audit`: the requests of each client, also refused ones, the newest first.
 int list_audit(link::Client& server, const AuditOptions& options, std::ostream& out,
                std::ostream& err);
 

@@ -7,9 +7,9 @@
 
 namespace kinship::cli {
 
-/// Which entries of the audit log are shown: the newest since a time, so many at most. Entries come
-/// in the order in which they were made, the newest first; their times need not be in that order,
-/// as after a restored store or a clock that was set back, so that an old one ends nothing.
+/// Selects the audit entries to show: the newest since a time, at most a number of them. Entries
+/// arrive in the order of their making, the newest first; their times may break that order, as
+/// after a restored store or a clock set back, so that an old entry does not end the selection.
 class AuditSelection {
  public:
   /// \param since_ms  Unix time, UTC; 0: all.
@@ -23,7 +23,7 @@ class AuditSelection {
     ++taken_;
     return true;
   }
-  /// No further one is.
+  /// Whether no further entry is shown.
   bool is_full() const noexcept { return limit_ > 0 && taken_ >= limit_; }
 
  private:

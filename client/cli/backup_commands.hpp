@@ -24,13 +24,13 @@ int back_up(link::Client& server, const BackupOptions& options, std::ostream& ou
 
 struct DownloadOptions {
   std::string name;
-  std::filesystem::path to;  ///< here; empty: the name, in the folder here
+  std::filesystem::path to;  ///< local; empty: `name` in the current folder
   std::chrono::milliseconds patience{std::chrono::seconds(60)};
   bool progress = false;
   bool json = false;
 };
 
-/// `backup download`: the bytes of a backup as a file here.
+/// `backup download`: copies a backup into a local file.
 int download_backup(link::Client& server, const DownloadOptions& options, std::ostream& out,
                     std::ostream& err);
 

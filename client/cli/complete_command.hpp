@@ -7,8 +7,8 @@
 
 namespace kinship::cli {
 
-/// `candidates`, which completion scripts ask: what the server knows that a word could be, one a
-/// line, the newest first; nothing, and no complaint, without an answer.
+/// `candidates`, for completion scripts: the server's names that can complete a word, one per line,
+/// the newest first; without an answer no output and no message.
 /// \param kind  ROBOT, TASK, DISTRIBUTION, PATH or JOB (proto/manual/usage.hpp).
 int print_candidates(link::Client& server, const std::string& kind, std::ostream& out);
 

@@ -20,11 +20,11 @@ struct FetchOptions {
 int fetch_distribution(link::Client& server, const FetchOptions& options, std::ostream& out,
                        std::ostream& err);
 
-/// A distribution for people: where it is from, what is in it.
+/// A distribution for people: its sources and its mixture.
 void print_distribution(const Distribution& distribution, std::ostream& out);
 
-/// `distributions explain`: what a distribution is made of, why it failed, how it stands to the
-/// experience of now, what guides its robot best. One that could not be made is explained too.
+/// `distributions explain`: a distribution's sources, why it failed, its state against the present
+/// experience, the best guide of its robot. Explains also a failed distribution.
 int explain_distribution(link::Client& server, const DistributionQuery& query, bool json,
                          std::ostream& out, std::ostream& err);
 

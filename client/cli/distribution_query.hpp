@@ -13,7 +13,7 @@
 
 namespace kinship::cli {
 
-/// A distribution as a command line names it: by what it is for and made of, or by its id.
+/// A distribution as a command line names it: by task, robot and sources, or by its id.
 struct DistributionQuery {
   std::string task;
   std::string robot;      ///< a label, or the beginning of a digest
@@ -24,16 +24,16 @@ struct DistributionQuery {
   std::string id;  ///< beginning of a distribution's id, instead of the rest; may be empty
 };
 
-/// Fetches the distribution that a query means, which has it made if need be.
+/// Fetches the distribution of a query; the server makes it if needed.
 /// \param command       named in messages.
-/// \param allow_failed  whether one that could not be made is an answer.
+/// \param allow_failed  whether a failed distribution is an answer.
 /// \return empty with an exit code in `code` if there is none: kNotFound without experience,
 ///         kFailed if it is still pending after the wait.
 std::optional<Distribution> fetch_query(link::Client& server, const DistributionQuery& query,
                                         std::string_view command, bool allow_failed,
                                         std::ostream& err, int& code);
 
-/// The id, or what it begins with, of the distribution that a query means; fetched unless named.
+/// The id, or its beginning, of a query's distribution; fetched unless the query has it.
 /// \return empty with an exit code in `code` if there is none.
 std::string id_of_query(link::Client& server, const DistributionQuery& query,
                         std::string_view command, bool allow_failed, std::ostream& err, int& code);

@@ -14,8 +14,8 @@ struct ExperienceOptions {
   bool json = false;
 };
 
-/// `tasks experience`: the ways that planners are given of a task, of which robot and report each
-/// is, from where to where.
+/// `tasks experience`: the ways of a task that planners receive, each with its robot, report, start
+/// and end.
 /// \return kNotFound if the task has none.
 int show_experience(link::Client& server, const ExperienceOptions& options, std::ostream& out,
                     std::ostream& err);

@@ -8,7 +8,7 @@
 #include "client/cli/job_commands.hpp"
 #include "client/link/client.hpp"
 
-/// Commands that bring what a server keeps into a file.
+/// Commands that export a server's data to a file.
 namespace kinship::cli {
 
 struct ExportOptions {
@@ -17,7 +17,7 @@ struct ExportOptions {
   bool progress = false;         ///< on `err`, unless the rows go to a terminal themselves
 };
 
-/// `paths export`: attempts as JSON Lines, before them the robots they need.
+/// `paths export`: attempts as JSON Lines, preceded by their robots.
 int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
                  std::ostream& err);
 
@@ -27,7 +27,7 @@ struct ConfigurationsOptions {
   WaitOptions waiting;
 };
 
-/// `configurations export`: exactly the rows that the distribution's fit saw, as CSV.
+/// `configurations export`: exactly the rows of the distribution's fit, as CSV.
 int export_configurations(link::Client& server, const ConfigurationsOptions& options,
                           std::ostream& out, std::ostream& err);
 

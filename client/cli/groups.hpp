@@ -13,6 +13,6 @@ void add_tasks(CLI::App& app, Session& session);
 void add_paths(CLI::App& app, Session& session);
 void add_distributions(CLI::App& app, Session& session);
 void add_configurations(CLI::App& app, Session& session);
-void add_completion(CLI::App& app, Session& session);  ///< completion, and what its scripts ask
+void add_completion(CLI::App& app, Session& session);  ///< completion and candidates
 
 }  // namespace kinship::cli

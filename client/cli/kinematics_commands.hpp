@@ -18,7 +18,7 @@ struct ForwardCommandOptions {
   bool json = false;
 };
 
-/// Where tip link and transfer frame are, for one configuration or for each line of a file.
+/// Poses of tip link and transfer frame, for one configuration or for each line of a file.
 int place_configurations(const ForwardCommandOptions& options, std::ostream& out,
                          std::ostream& err);
 
@@ -26,11 +26,11 @@ struct InverseCommandOptions {
   models::RobotArguments robot;
   std::string pose;             ///< of the frame in the base link, "x y z qx qy qz qw"
   std::filesystem::path poses;  ///< JSON Lines of [x, y, z, qx, qy, qz, qw]; empty: `pose` counts
-  std::string frame = "tip";    ///< whose pose that is: "tip" or "transfer"
+  std::string frame = "tip";    ///< the frame of the pose: "tip" or "transfer"
   std::string placement;        ///< T_task_base; with it poses are in the task frame
-  bool collision_free = false;  ///< solutions that touch something are left out and counted
-  double clearance_m = 1e-3;  ///< what comes nearer touches, as collision::EdgeProofOptions has it
-  std::filesystem::path scene;  ///< a problem file: what surrounds the robot in its first problem
+  bool collision_free = false;  ///< colliding solutions are left out and counted
+  double clearance_m = 1e-3;    ///< nearer bodies touch; see collision::EdgeProofOptions
+  std::filesystem::path scene;  ///< a problem file; its first problem gives the surroundings
   int max_solutions = 8;        ///< 0: all
   double min_distance = 0.2;
   std::uint64_t seed = 0;

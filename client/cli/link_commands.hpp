@@ -5,7 +5,7 @@
 
 #include "robots/models/robot_arguments.hpp"
 
-/// What helps to choose base, tip and transfer frame of a URDF: no server.
+/// Commands that help to choose base, tip and transfer frame of a URDF; they need no server.
 namespace kinship::cli {
 
 struct LinksOptions {
@@ -13,7 +13,8 @@ struct LinksOptions {
   bool json = false;
 };
 
-/// `robots links`: every link with its joint, solids, and whom it is never checked against.
+/// `robots links`: every link with its joint, solids and the links that it is never checked
+/// against.
 int list_links(const LinksOptions& options, std::ostream& out, std::ostream& err);
 
 struct FramesOptions {
@@ -24,7 +25,7 @@ struct FramesOptions {
   bool json = false;
 };
 
-/// `robots frames`: where every link and the transfer frame are at a configuration.
+/// `robots frames`: the poses of every link and the transfer frame at a configuration.
 int list_frames(const FramesOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace kinship::cli

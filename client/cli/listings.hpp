@@ -6,7 +6,7 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/link/client.hpp"
 
-/// Commands that list or show what a server's store holds. Each prints for people, or one JSON
+/// Commands that list or show the contents of a server's store. Each prints for people, or one JSON
 /// document with `json`, and returns an exit code.
 namespace kinship::cli {
 

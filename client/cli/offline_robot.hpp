@@ -23,32 +23,32 @@ struct DescribedRobot {
   kinematics::Chain chain;
 };
 
-/// What reading a robot's files says of them, a line each.
+/// Prints the warnings of reading a robot's files, a line each.
 void print_warnings(const char* command, const std::vector<std::string>& warnings,
                     std::ostream& err);
 
 /// The robot that the arguments describe, its warnings on `err`. Empty with an exit code in `code`
-/// if there is none: wrong usage if the arguments are wrong, failed if the robot is none that
-/// Kinship can use.
+/// if there is none: wrong usage if the arguments are wrong, failed if Kinship cannot use the
+/// robot.
 std::optional<DescribedRobot> read_robot(const char* command,
                                          const models::RobotArguments& arguments, std::ostream& err,
                                          int& code);
 
 /// A robot's collision geometry: planning needs it, kinematics and the server do not.
-/// \return empty if it cannot be known here, and says why on `err`; of a description that is no
-///         chain nothing is said.
+/// \return empty if it is not known here, with the reason on `err`, except for a description that
+///         is no chain.
 std::optional<geometry::RobotShapes> read_geometry(const char* command,
                                                    const models::RobotArguments& arguments,
                                                    const RobotDescription& description,
                                                    std::ostream& err);
 
-/// T_task_base as --placement says it; empty if it says nothing.
+/// T_task_base of a --placement; empty if the text is.
 Result<std::optional<Eigen::Isometry3d>> placement_of(const std::string& text);
 
 /// The values of --q, joint units, separated by spaces.
 Result<Eigen::VectorXd> parse_configuration(const std::string& text);
 
-/// Wants as many values as the robot has joints, and says which of them are outside the limits.
+/// An error for another number of values than joints, or for values outside the limits.
 std::optional<Error> check_configuration(const kinematics::Chain& chain, const Eigen::VectorXd& q);
 
 /// Inverse kinematics, and the processor time that it took.

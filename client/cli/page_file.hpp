@@ -7,7 +7,7 @@
 
 namespace kinship::cli {
 
-/// Where a page goes: a file that has its name once it is whole, or a stream for "-".
+/// The output of a page: a file that gets its name once it is complete, or a stream for "-".
 class PageFile {
  public:
   /// \throws Failure(Storage) as OutputFile.
@@ -15,7 +15,7 @@ class PageFile {
 
   std::ostream& stream() noexcept { return output_.stream(); }
 
-  /// The page is whole; says on `err` where it is. \throws Failure(Storage) as OutputFile.
+  /// Completes the page and writes its place to `err`. \throws Failure(Storage) as OutputFile.
   void keep(std::ostream& err);
 
  private:

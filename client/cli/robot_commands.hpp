@@ -22,7 +22,7 @@ struct CheckOptions {
 /// solutions and CPU time per reachable pose.
 int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err);
 
-/// `robots register`: hands a robot's description to the server.
+/// `robots register`: sends a robot's description to the server.
 int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
                    std::ostream& out, std::ostream& err);
 

@@ -5,17 +5,16 @@
 
 #include "client/link/client.hpp"
 
-/// Registered robots that get another label, or are taken out.
+/// Commands that rename and remove registered robots.
 namespace kinship::cli {
 
-/// `robots rename`: another label for a robot; the one it had is free from then on.
+/// `robots rename`: another label for a robot; its old label becomes free.
 /// \param robot  its label or the beginning of its digest.
 int rename_robot(link::Client& server, const std::string& robot, const std::string& label,
                  bool json, std::ostream& out, std::ostream& err);
 
-/// `robots remove`: a robot without attempts is deleted; the paths of another are retired.
-/// \param confirmed  false: of a robot with attempts it is said what would happen, and
-///                   kWrongUsage returned.
+/// `robots remove`: deletes a robot without attempts; otherwise retires its paths.
+/// \param confirmed  false: for a robot with attempts, prints the effect and returns kWrongUsage.
 int remove_robot(link::Client& server, const std::string& robot, bool confirmed, bool json,
                  std::ostream& out, std::ostream& err);
 

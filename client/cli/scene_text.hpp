@@ -12,7 +12,7 @@ namespace kinship::cli {
 /// have a bound; "inf" where there is none on one side.
 std::string region_text(const TaskSpaceRegion& region);
 
-/// What was there, and what the path had to keep; one line each, values from the 13th column on.
+/// The objects of a scene and its constraint; one line each, values from the 13th column on.
 void print_scene(const RecordedScene& scene, std::ostream& out);
 
 }  // namespace kinship::cli

@@ -13,7 +13,7 @@
 #include "client/cli/job_commands.hpp"
 #include "client/link/client.hpp"
 
-/// What the groups of commands share while the command line is being parsed and after.
+/// State that the groups of commands share, during and after parsing of the command line.
 namespace kinship::cli {
 
 struct Session {
@@ -25,36 +25,36 @@ struct Session {
   double timeout_s = 5;
   bool json = false;
   bool is_wide = false;               ///< tables with every column
-  bool is_verbose = false;            ///< progress of long work also where `err` is no terminal
+  bool is_verbose = false;            ///< progress of long work also if `err` is no terminal
   std::function<int()> command = {};  ///< set by the subcommand that was named
 
-  /// Runs a command that talks to a server.
+  /// Runs a command that needs a server.
   int with_server(const std::function<int(link::Client&)>& use) const;
 
-  /// Whether long work shows on `err` how far it is: on a terminal, or because it was asked for.
+  /// Whether long work shows its progress on `err`: on a terminal, or on request.
   bool shows_progress() const;
 };
 
 std::chrono::milliseconds milliseconds(double seconds);
 
-/// The commands about one noun; its help names the exit codes as that of the program does.
+/// The commands about one noun; its help names the exit codes, like the program's.
 CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what);
 
 inline constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 not found, 4 no server answered.\n";
 
-/// \param examples  one a line.
+/// \param examples  one per line.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& what,
                       const std::string& examples);
 
-/// --json, and -o, which also asks for it or for wide tables.
+/// --json, and -o, which also selects JSON or wide tables.
 void add_json(CLI::App& command, Session& session,
               const std::string& what = "One JSON document on standard output");
 
 /// --output of a command that writes a page. \return it.
 CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output);
 
-/// Has the command run `run` if it is the one that was named.
+/// Sets `run` to be run if the command line names the command.
 template <typename Run>
 void on_run(CLI::App& command, Session& session, Run run) {
   command.callback([&session, run] { session.command = run; });
@@ -73,7 +73,7 @@ using Show = int (*)(link::Client&, const std::string&, bool, std::ostream&, std
 /// \param can_filter  whether it has --task and --robot.
 void add_list(CLI::App& group, Session& session, List list, bool can_filter = false);
 
-/// How a command about one thing is called and explained.
+/// Texts of a command about one item.
 struct OneText {
   std::string name;      ///< e.g. "show"
   std::string argument;  ///< its name in the usage line
@@ -82,11 +82,11 @@ struct OneText {
   std::string example;
 };
 
-/// A command about one thing, with --json. \return it, for further options.
+/// A command about one item, with --json. \return it, for further options.
 CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show show);
 
 /// --wait of a command that waits for a job, a day by default.
-/// \return how to wait, once the command line is parsed.
+/// \return gives the options of the wait, once the command line is parsed.
 std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session);
 
 }  // namespace kinship::cli

@@ -6,14 +6,14 @@
 
 namespace kinship::cli {
 
-/// Whether a stream is standard output or standard error, and that a terminal.
+/// Whether a stream is standard output or standard error and a terminal.
 bool is_terminal(const std::ostream& stream);
 
 /// Whether colours may be written to a stream: a terminal, and the environment has no NO_COLOR
 /// (https://no-color.org).
 bool may_colour(const std::ostream& stream);
 
-/// A line at the end of a terminal that is written again and again; elsewhere a line each time.
+/// A status line: on a terminal it is overwritten, elsewhere each text is a new line.
 class StatusLine {
  public:
   /// \param stream    outlives the line.
@@ -25,7 +25,7 @@ class StatusLine {
   StatusLine& operator=(const StatusLine&) = delete;
 
   void show(std::string_view text);
-  void clear();  ///< before anything else is written to the terminal
+  void clear();  ///< before any other output to the terminal
 
  private:
   std::ostream& stream_;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The two arms of the examples: a Panda, which has done the task, and a UR10e, which has not.
+/// The two arms of the examples: a Panda with experience of the task, and a UR10e without.
 
 #include <fstream>
 #include <iterator>
@@ -39,7 +39,7 @@ inline kinship::RobotDescription ur10e(const std::string& models) {
 }
 
 /// A sweep of the Panda's hand from right to left, a little different for every seed; it stands for
-/// what a planner found.
+/// a planner's path.
 inline kinship::Path sweep(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> noise(-0.1, 0.1);

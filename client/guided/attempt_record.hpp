@@ -9,14 +9,14 @@
 
 namespace kinship::guided {
 
-/// Who reports, and for what.
+/// Origin of a report: robot, machine and task.
 struct Reporter {
   Digest robot;
   std::string machine;
   std::string task;
 };
 
-/// What the server is told about a planned problem, under a new report UUID.
+/// The attempt that reports a planned problem to the server, under a new report UUID.
 Attempt make_attempt(const Reporter& reporter, const Problem& problem,
                      const PlannedProblem& planned, const PlanSettings& settings);
 

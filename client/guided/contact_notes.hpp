@@ -12,28 +12,28 @@
 
 namespace kinship::guided {
 
-/// What is too near at a configuration, or touches.
+/// The pairs that touch or are too near at a configuration.
 using FindNear = std::function<std::vector<collision::NearPair>(const Eigen::VectorXd& q)>;
 
 /// "'l4' touches 'wall'", or "'l4' is 0.45 mm from 'wall', nearer than the clearance of 1 mm".
 std::string near_text(const collision::NearPair& near);
 
-/// Remembers which configurations were not free, to say afterwards what they touch.
+/// Remembers colliding configurations, to name their contacts afterwards.
 class ContactNotes {
  public:
-  /// \param find_near  of the world whose questions `watched` passes on
+  /// \param find_near  of the same world as the checks that `watched` passes on
   explicit ContactNotes(FindNear find_near) : find_near_(std::move(find_near)) {}
 
-  /// \param is_free  asked in turn. What is returned borrows both.
+  /// \param is_free  called by the returned check, which borrows it and this object.
   planning::IsFree watched(const planning::IsFree& is_free);
 
-  /// Notes one that is not free.
+  /// Notes a configuration that is not free.
   void note(const Eigen::Ref<const Eigen::VectorXd>& q);
 
-  /// What is touched in how many of those noted, and by what, the most frequent first: "'l4' or
-  /// 'l3' touches 'wall' in 5 of 8 configurations, 'l4' touches 'l2' in 3 of 8"; without counts of
-  /// a single one. What does not touch is "less than 1 mm from" the other. Of two links the one
-  /// farther from the base is what is touched.
+  /// The contacts of the noted configurations with their counts, the most frequent first: "'l4' or
+  /// 'l3' touches 'wall' in 5 of 8 configurations, 'l2' touches 'l4' in 3 of 8"; without counts for
+  /// a single configuration. A pair that is too near is "less than 1 mm from" each other. Of two
+  /// links, the one farther from the base is the touched one.
   std::string text();
 
  private:

@@ -11,17 +11,18 @@
 
 namespace kinship::guided {
 
-/// Says of each planned scene what cannot be meant; the same of many problems once.
+/// Warns of implausible geometry in planned scenes; once per warning, however many problems share
+/// it.
 class GeometryWarnings {
  public:
   /// References; they outlive the object.
   GeometryWarnings(const kinematics::Chain& chain, const geometry::RobotShapes& shapes)
       : chain_(chain), shapes_(shapes) {}
 
-  /// Obstacles that the robot cannot touch wherever it goes, and what lies wholly within a closed
-  /// mesh at the start: a sentence each that names the problem, but none that was given before.
+  /// Obstacles that the robot can never touch, and bodies wholly within a closed mesh at the start:
+  /// one sentence each, which names the problem; earlier warnings are not repeated.
   /// \param problem  with its meshes read.
-  /// \param planned  what came of it.
+  /// \param planned  the planned problem.
   std::vector<std::string> find(const Problem& problem, const PlannedProblem& planned);
 
  private:

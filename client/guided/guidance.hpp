@@ -18,10 +18,10 @@
 
 namespace kinship::guided {
 
-/// Asks the server; link::Client::fetch in the program.
+/// Fetches from the server; link::Client::fetch in the program.
 using Fetch = std::function<Result<FetchReply>(const FetchRequest&)>;
 
-/// What a run wants guidance for.
+/// The guidance that a run requests.
 struct GuidanceOptions {
   std::string task;
   Digest robot;
@@ -30,46 +30,47 @@ struct GuidanceOptions {
   std::string profile = "default";
   Selection selection;
   SamplingModeOptions sampling;
-  std::optional<Guide> guide;  ///< missing: what the server found by rehearsal, else all there is
-  bool rehearsed = false;      ///< wait for a rehearsal, as for a distribution
+  std::optional<Guide> guide;             ///< missing: the one found by rehearsal, else all
+  bool rehearsed = false;                 ///< wait for a rehearsal, as for a distribution
   std::chrono::milliseconds wait{30000};  ///< for a distribution that is still being made
 };
 
-/// Why there is no guidance, as a program's exit code tells it.
+/// Why there is no guidance, for a program's exit code.
 enum class NoGuidance { None, NoServer, NotFound, Failed };
 
-/// What came of asking for one placement.
+/// The answer for one placement.
 struct GuidanceAnswer {
   std::optional<Guidance> guidance;
   std::optional<SamplingModeChooser> sampling;  ///< present exactly if there is guidance
   NoGuidance why_not = NoGuidance::None;
-  std::string message;  ///< for people: what was got, or why nothing
+  std::string message;  ///< for people: the guidance, or why there is none
 };
 
 /// The task's experience as one robot follows it; null: none.
 using SharedExperience = std::shared_ptr<const planning::ExperienceGuide>;
 
-/// Asks once. Never throws for what a server may answer.
-/// \param known  what the robot got of the task before: kept unless there is something newer.
+/// Fetches once. Never throws for a server's reply.
+/// \param known  earlier experience of robot and task: kept unless the reply has newer.
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base,
                               SharedExperience known = nullptr);
 
-/// The guidance of a run, asked for once per distinct placement (snapped to 1 mm and 1 mrad) before
-/// planning; a missing placement is one of its own. When nobody answers once, nobody is asked
-/// again.
+/// The guidance of a run, fetched once per distinct placement (snapped to 1 mm and 1 mrad) before
+/// planning; a missing placement counts as one of its own. After one fetch without an answer it
+/// sends no more.
 class GuidanceCache {
  public:
   GuidanceCache(Fetch fetch, GuidanceOptions wanted)
       : fetch_(std::move(fetch)), wanted_(std::move(wanted)) {}
 
-  /// Asks unless the placement is known. \return the answer, and whether it is new.
+  /// Fetches unless the placement is known. \return the answer, and whether it is new.
   std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base);
 
-  /// How the next problem shall be planned, by what ask() brought and add() was told. Never waits.
+  /// Guidance and sampling mode of the next problem, from the answers of ask() and the attempts of
+  /// add(). Never waits.
   QueryGuidance choose(const Problem& problem) const;
 
-  /// A problem was attempted: all that come after choose their sampling mode by that, too.
+  /// Adds an attempt to the evidence by which later problems choose their sampling mode.
   void add(const PlannedProblem& planned);
 
  private:

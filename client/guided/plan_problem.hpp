@@ -22,9 +22,9 @@
 
 namespace kinship::guided {
 
-/// What planning knows about the robot.
+/// The robot as planning uses it.
 struct PlannedRobot {
-  /// \throws Failure(InvalidInput) as collision::RobotSolids says.
+  /// \throws Failure(InvalidInput) as collision::RobotSolids.
   PlannedRobot(kinematics::Chain its_chain, const geometry::RobotShapes& shapes)
       : chain(std::move(its_chain)), solids(chain, shapes), solver(chain) {}
 
@@ -35,24 +35,25 @@ struct PlannedRobot {
 
 struct PlannedProblem {
   ProblemResult result;
-  std::string planner;  ///< its name; what else is to be said of it stands in the result only
+  std::string planner;  ///< its name alone; further remarks are in the result
   Outcome outcome = Outcome::Failed;
-  std::vector<std::string> moved;  ///< starts and goals that were moved onto a limit, in words
+  std::vector<std::string> moved;  ///< sentences on starts and goals moved onto a limit
   bool attempted = false;    ///< false if the problem does not fit the robot: nothing was planned
-  bool interrupted = false;  ///< given up because `stop` said so; the rest is then not meaningful
-  /// What lies within a closed mesh at the start, where no check notices it.
+  bool interrupted = false;  ///< `stop` ended it; the other members are then meaningless
+  /// Bodies within a closed mesh at the start, which no check notices.
   std::vector<collision::CollisionWorld::Enclosed> enclosed = {};
 };
 
 /// Plans one problem: goal configurations by inverse kinematics (all that are free, up to
-/// settings.max_goals), the planner of the settings, light shortcutting. A problem that does not
-/// fit the robot or the planner, or cannot be solved, is answered with its reason. Equal problem,
+/// settings.max_goals), the planner of the settings, light shortcutting. For a problem that does
+/// not fit the robot or the planner, or cannot be solved, the result has the reason. Equal problem,
 /// guidance and settings give an equal path and equal checks, as long as the time limit does not
 /// end it.
-/// \param query  one that is not guided is planned exactly as if there were no guidance. Of a
-///               guided one the result says what its samples come from (make_query_sampler).
-/// \param stop   asked before every check; true gives up.
-/// \param recorder  writes down how the trees grow, but for planners of OMPL; null: nothing does.
+/// \param query  one that is not guided is planned exactly as if there were no guidance. The result
+///               of a guided one names the source of its samples (make_query_sampler).
+/// \param stop   called before every check; true ends planning.
+/// \param recorder  records how the trees grow, except those of OMPL's planners; null: no
+///                  recording.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const QueryGuidance& query, const PlanSettings& settings,
                             const std::function<bool()>& stop,

@@ -7,14 +7,14 @@
 
 namespace kinship::guided {
 
-/// Resolutions that may be asked for, joint units.
+/// Range of `PlanSettings::resolution`, joint units.
 inline constexpr double kLeastResolution = 1e-4, kLargestResolution = 1;
 
 /// How every problem of a run is planned, guided or not.
 struct PlanSettings {
   double resolution = 0.05;  ///< between checked configurations, joint units
-  /// What comes nearer counts as touching, and all edges of a path are proven, m, as
-  /// collision::EdgeProofOptions says; 0: edges are only asked about at the resolution.
+  /// Bodies nearer than this count as touching, and all edges of a path are proven (see
+  /// collision::EdgeProofOptions), m; 0: edges are only checked at the resolution.
   double clearance_m = 1e-3;
   double overshoot = 1.5;               ///< see planning::BirrtOptions
   std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
@@ -22,9 +22,9 @@ struct PlanSettings {
   /// A start or goal beyond a limit by less is moved onto it, joint units; 0: refused.
   double limit_slack = 1e-4;
   int max_goals = 20;  ///< goal configurations found for a goal pose
-  /// Beyond it a mixture gives fewer of its samples, none far beyond (planning::query_distance).
+  /// Beyond it a mixture gives fewer samples, far beyond it none (planning::query_distance).
   double gate_distance = planning::kGateDistance;
-  planning::TrackOptions tracks = {};  ///< of guided queries, where there is experience
+  planning::TrackOptions tracks = {};  ///< of guided queries with experience
   PlannerChoice planner = {};
 };
 

@@ -15,21 +15,21 @@ enum class PlannerKind {
   Ompl
 };
 
-/// Which planner answers the problems of a run.
+/// The planner of a run's problems.
 struct PlannerChoice {
   PlannerKind kind = PlannerKind::ByProblem;
   std::string ompl_planner = {};  ///< of planning::ompl_planner_names(); with Ompl only
 };
 
 /// "birrt", "cbirrt2", "roadmap" or "ompl:NAME".
-/// \return InvalidInput that shows the text and what can be said.
+/// \return InvalidInput that shows the text and the valid names.
 Result<PlannerChoice> parse_planner(std::string_view text);
 
 /// The planner of one problem; never ByProblem. CBiRRT2 without a constraint is BiRRT.
-/// \return InvalidInput that names planners which can do what this one cannot.
+/// \return InvalidInput that names the planners able to plan the problem, if this one is not.
 Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained);
 
-/// As results and reports name it: "BiRRT", "CBiRRT2", "Repetition Roadmap", "OMPL RRTConnect".
+/// Its name in results and reports: "BiRRT", "CBiRRT2", "Repetition Roadmap", "OMPL RRTConnect".
 std::string name_of(const PlannerChoice& planner);
 
 }  // namespace kinship::guided

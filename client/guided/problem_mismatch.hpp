@@ -9,23 +9,23 @@
 
 namespace kinship::guided {
 
-/// Why a problem is not one of a robot.
+/// Why a problem does not fit a robot.
 struct Mismatch {
   NotPlanned kind = NotPlanned::DofMismatch;
   std::string text;  ///< for people
 };
 
-/// Starts and goals that are beyond a limit by less than the slack, as a limit of a few digits
-/// makes them, moved onto it. Continuous joints have none.
+/// A problem whose starts and goals beyond a limit by less than the slack, as a rounded limit
+/// causes, are moved onto the limit. Continuous joints have none.
 class WithinLimits {
  public:
   /// \param slack    joint units; 0: nothing is moved.
-  /// \param problem  outlives the object; one of another number of joints is left as it is.
+  /// \param problem  outlives the object; one with another number of joints is not changed.
   WithinLimits(const kinematics::Chain& chain, const Problem& problem, double slack);
 
   const Problem& problem() const noexcept { return moved_ ? *moved_ : problem_; }
 
-  /// "start: joint 'wrist' at 3.141593 is moved onto its limit 3.14159", each in words.
+  /// A sentence per move: "start: joint 'wrist' at 3.141593 is moved onto its limit 3.14159".
   const std::vector<std::string>& said() const noexcept { return said_; }
 
  private:
@@ -34,7 +34,7 @@ class WithinLimits {
   std::vector<std::string> said_;
 };
 
-/// Other joints, a start or goal beyond a limit.
+/// The first mismatch: another number of joints, or a start or goal beyond a limit.
 std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Problem& problem);
 
 }  // namespace kinship::guided

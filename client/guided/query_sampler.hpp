@@ -16,18 +16,18 @@
 
 namespace kinship::guided {
 
-/// What a task's experience gives a robot, for all queries from one placement: a distribution, or
-/// stored ways of the hand, or both.
+/// A task's experience as guidance for a robot's queries at one placement: a distribution, stored
+/// ways of the hand, or both.
 struct Guidance {
   std::optional<Digest> distribution_id;  ///< present exactly if there is a mixture
   std::uint64_t revision = 0;             ///< of the distribution
   std::optional<Mixture> mixture;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< null: none
   double guided_fraction = 0;  ///< of the samples of a guided query
-  Guide guide = Guide::All;    ///< what of them a guided query uses
+  Guide guide = Guide::All;    ///< the parts that a guided query uses
 };
 
-/// What guidance a query has, and whether it uses it.
+/// The guidance of a query, and whether the query uses it.
 struct QueryGuidance {
   const Guidance* guidance = nullptr;  ///< null: there is none
   SamplingMode sampling_mode =
@@ -35,9 +35,9 @@ struct QueryGuidance {
   std::string why_not = {};   ///< for people: why there is none
 };
 
-/// Where the samples of a guided query come from: planning::guided_sampler.
-/// \param guidance  null: uniform.
-/// \param result    told: guide, share, track_share, experience_revision, gate_fired,
+/// The sampler of a query; for a guided one that of planning::guided_sampler.
+/// \param guidance  null: uniform, as for a `result` whose sampling mode is not Guided.
+/// \param result    receives guide, share, track_share, experience_revision, gate_fired,
 ///                  guidance_reason.
 planning::ConfigurationSampler make_query_sampler(const kinematics::Chain& chain,
                                                   const planning::TrackQuery& query,

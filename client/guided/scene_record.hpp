@@ -15,15 +15,14 @@
 
 namespace kinship::guided {
 
-/// Says the scenes of problems as the server is told of them. Solids around a mesh are fitted once,
-/// however many problems have it. Used by one thread.
+/// Makes the records of problem scenes that reports carry. Solids around a mesh are fitted once,
+/// however many problems share it. Used by one thread.
 class SceneRecords {
  public:
-  /// A problem's scene and constraint without its robot. What is attached to the tip, or to a link
-  /// that is fixed to it, is said in the transfer frame; what another link carries, and allowed
-  /// pairs that name a link, are left out: another robot has no such link. A mesh is there as
-  /// solids around it, which have its name and are marked as approximate; so is a point cloud, as
-  /// boxes.
+  /// A problem's scene and constraint without its robot. Objects attached to the tip link, or to a
+  /// link fixed to it, are given in the transfer frame; objects of other links, and allowed pairs
+  /// that name a link, are left out: another robot has no such link. A mesh becomes solids around
+  /// it, which have its name and are marked as approximate; a point cloud becomes boxes likewise.
   /// \param problem  its meshes and clouds have been read.
   /// \return Error that names the rule which the scene breaks: too large, an empty name.
   Result<RecordedScene> record(const kinematics::Chain& chain, const Problem& problem);

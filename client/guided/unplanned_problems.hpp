@@ -10,10 +10,10 @@
 
 namespace kinship::guided {
 
-/// Problems that no search was begun for, by reason: averages leave them out.
+/// Problems for which no search began, by reason: averages leave them out.
 class UnplannedProblems {
  public:
-  /// \param result  that has a `not_planned`; others are left.
+  /// \param result  ignored without a `not_planned`.
   void add(const ProblemResult& result);
 
   std::size_t size() const noexcept { return size_; }
@@ -22,7 +22,7 @@ class UnplannedProblems {
   /// "start collides: 20, goal out of reach: 4", the most frequent first.
   std::string reasons() const;
 
-  /// The first few by name, a line each, indented, and how many there are besides.
+  /// The first few by name, a line each, indented, and the number of the others.
   void write_first(std::ostream& out) const;
 
  private:
@@ -31,7 +31,8 @@ class UnplannedProblems {
   std::vector<std::string> first_;  // "shelf-3: start collides: 'l4' touches 'wall'"
 };
 
-/// "shelf-1-0003: every goal collides"; why a line could not be read begins with its name already.
+/// "shelf-1-0003: every goal collides"; the error of an unreadable line already begins with its
+/// name.
 std::string named_outcome(const ProblemResult& result, const std::string& outcome);
 
 }  // namespace kinship::guided

@@ -21,35 +21,34 @@ namespace kinship::link {
 struct ClientOptions {
   std::uint32_t domain = 0;
   std::string server = "127.0.0.1";  ///< host of kinshipd
-  /// Folder of credentials (kinshipd secure add); empty: what KINSHIP_SECURITY says, or none.
+  /// Folder of credentials (kinshipd secure add); empty: that of KINSHIP_SECURITY, or none.
   std::filesystem::path security = {};
   std::filesystem::path outbox;  ///< folder; empty: default_outbox_folder()
   bool has_outbox = true;        ///< false: delivers nothing, report() is not allowed
-  /// Of register, deliver (a batch, beside pauses that the server asks for) and admin.
+  /// Of register, deliver (per batch, without the pauses that the server asks for) and admin.
   std::chrono::milliseconds timeout{5000};
 };
 
-/// A fleet member's line to kinshipd: registers a robot, reports attempts, fetches distributions.
+/// A fleet member's connection to kinshipd: registers a robot, reports attempts, fetches
+/// distributions.
 ///
 /// A report is on disk before report() returns and is sent in the background until the server's
 /// receipt says that it is durable there; it survives a crash of either side. Processes may share
 /// an outbox: one of them sends. May be shared between threads.
 class Client {
  public:
-  /// \throws Failure(InvalidInput) for options that cannot be, also credentials, Failure(Storage)
-  ///         if the outbox cannot be made, Failure(Unavailable) if DDS cannot start. Needs no
-  ///         server.
+  /// \throws Failure(InvalidInput) for invalid options or credentials, Failure(Storage) if the
+  ///         outbox cannot be made, Failure(Unavailable) if DDS cannot start. Needs no server.
   explicit Client(const ClientOptions& options);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// What to tell people: that the credentials are valid for less than 30 days. Nothing before
-  /// that.
+  /// A warning for people, if the credentials expire in less than 30 days.
   std::optional<std::string> expiry_warning() const;
 
-  /// Keeps the description in the outbox, so that reports of the robot reach also a server that
-  /// does not know it yet or any more.
+  /// Registers the robot and keeps its description in the outbox, so that its reports also reach a
+  /// server that does not know the robot yet or any more.
   /// \return the reply, or Unavailable if no server answered within the timeout.
   /// \throws Failure(Storage) if the outbox cannot be written.
   Result<RegisterReply> register_robot(const RobotDescription& description);
@@ -63,47 +62,49 @@ class Client {
     std::size_t pending = 0;   ///< not yet acknowledged
     std::size_t accepted = 0;  ///< since this client started: stored, duplicate or recorded
     std::size_t refused = 0;   ///< since this client started; kept in the rejected folder
-    std::string problem;       ///< why sending does not get on; empty: nothing known
+    std::string problem;       ///< why sending fails; empty: no known problem
   };
-  OutboxState outbox() const;  ///< of no outbox: zeros
+  OutboxState outbox() const;  ///< zeros without an outbox
 
   /// Waits until nothing is pending or the deadline has passed.
   OutboxState flush(std::chrono::milliseconds deadline);
 
-  /// Waits until the reply is final or the request's deadline has passed (then: the last Pending
-  /// or Busy reply, or Unavailable if no server answered). With a deadline of 0 the server answers
-  /// with what is there, and this waits for its answer up to the timeout of register and admin.
-  /// The reply has the newest experience of the task that came meanwhile, if it was asked for.
+  /// Waits until the reply is final or the request's deadline has passed (then: the last Pending or
+  /// Busy reply, or Unavailable if no server answered). With a deadline of 0 the server answers at
+  /// once with the distribution it has, and the client waits for the reply up to the timeout of
+  /// register and admin. If requested, the reply holds the newest experience of the task that
+  /// arrived meanwhile.
   Result<FetchReply> fetch(FetchRequest request);
 
-  /// Holds the newest distribution for the request from now on. What is returned may outlive the
-  /// client. \throws Failure(InvalidInput or TooLarge) if the request breaks a rule.
+  /// Starts a follower that holds the newest distribution for the request. It may outlive the
+  /// client.
+  /// \throws Failure(InvalidInput or TooLarge) if the request breaks a rule.
   std::unique_ptr<Follower> follow(const FetchRequest& request,
                                    const FollowOptions& options = {}) const;
 
-  /// Subscribes to what happens at the server. What is returned may outlive the client.
+  /// Subscribes to the server's events. The watcher may outlive the client.
   std::unique_ptr<Watcher> watch(Watcher::Handlers handlers) const;
 
-  /// Hands attempts over at once, past the outbox, batch after batch: who still has them can hand
-  /// them over again.
-  /// \return one receipt per attempt, in order: Refused also for what the server would not even be
-  ///         sent, TryAgain for what it could not store within the timeout (a server that is
-  ///         busy with others may make that 10 minutes more a batch). Unavailable if no server
-  ///         answered; some may have arrived then.
+  /// Sends attempts at once, past the outbox, batch after batch: a caller that kept them can send
+  /// them again.
+  /// \return one receipt per attempt, in order: Refused also for an invalid attempt, which is not
+  ///         sent, TryAgain for one that the server could not store within the timeout (a busy
+  ///         server may extend it by 10 minutes per batch). Unavailable if no server answered; some
+  ///         attempts may have arrived then.
   Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts);
 
-  /// Waits up to the timeout, and for ShowJob up to the request's deadline more.
+  /// Waits for the reply up to the timeout, for ShowJob longer by the request's deadline.
   Result<AdminReply> admin(const AdminRequest& request);
 
-  /// Ends every wait for a reply, from another thread; it and later ones bring Unavailable.
-  /// Reports are sent as before, and deliver() sends what it has left once.
+  /// Ends every wait for a reply, from another thread; it and later ones return Unavailable.
+  /// Reports are sent as before, and deliver() sends its remaining attempts once.
   void cancel();
 
-  /// Whether this process was forked from the one that made the client: nothing of it works here,
-  /// and its end does nothing.
+  /// Whether this process was forked from the one that made the client: here the client does not
+  /// work, and its destructor does nothing.
   bool is_forked() const;
 
-  /// \throws Failure(InvalidInput) with what to do if is_forked().
+  /// \throws Failure(InvalidInput) with advice if is_forked().
   void require_own_process() const;
 
  private:

@@ -11,10 +11,10 @@
 
 namespace kinship::link {
 
-/// Hands attempts to a server in batches within its limits, and again what it could not store yet.
-/// \param timeout  of a batch, with its repetitions; beside it pauses that the server asks for do
-///                 not count, up to 10 minutes.
-/// \param sleep    ending it ends the delivery: what has no receipt yet is TryAgain.
+/// Sends attempts to a server in batches within its limits; repeats those that it could not store.
+/// \param timeout  of a batch with its repetitions, without the pauses that the server asks for, up
+///                 to 10 minutes.
+/// \param sleep    ending it ends the delivery: an attempt without receipt is TryAgain.
 /// \param send     sends a batch and waits for its reply until the deadline.
 /// \return one receipt per attempt, in order; an error if a batch had no reply at all.
 Result<std::vector<Receipt>> deliver(

@@ -7,9 +7,9 @@ namespace kinship::link {
 /// KINSHIP_SECURITY: folder of credentials; empty: none.
 std::filesystem::path security_from_environment();
 
-/// What the environment says of the server: KINSHIP_DOMAIN, 0 to 230, KINSHIP_SERVER, its host, and
-/// KINSHIP_SECURITY. What it does not say is as ClientOptions has it. \throws Failure(InvalidInput)
-/// for a domain that is none.
+/// Options from the environment: KINSHIP_DOMAIN, 0 to 230, KINSHIP_SERVER, the server's host, and
+/// KINSHIP_SECURITY. A missing variable leaves the default of ClientOptions. \throws
+/// Failure(InvalidInput) for an invalid domain.
 ClientOptions options_from_environment();
 
 }  // namespace kinship::link

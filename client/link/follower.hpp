@@ -16,25 +16,25 @@ namespace kinship::link {
 /// How the last exchange of a follower with the server ended.
 enum class FollowStatus {
   Ready,         ///< newest() is the server's newest
-  NoServer,      ///< nobody has answered, or answers any more; newest() stays what it was
-  Pending,       ///< it is being made; newest() stays what it was
-  NoExperience,  ///< there is nothing, or nothing any more, to make it of; newest() is null
-  UnknownRobot,  ///< the robot is not registered; newest() stays what it was
-  Refused,       ///< the server refuses the request, or errs; newest() stays what it was
+  NoServer,      ///< no server has answered, or answers any more; newest() keeps its value
+  Pending,       ///< the distribution is being made; newest() keeps its value
+  NoExperience,  ///< no experience to make it of, or none any more; newest() is null
+  UnknownRobot,  ///< the robot is not registered; newest() keeps its value
+  Refused,       ///< the server refuses the request, or fails; newest() keeps its value
   Failed,        ///< nothing could be transferred or fitted; newest() is null
 };
 
-/// How a follower keeps up.
+/// Options of a follower.
 struct FollowOptions {
-  /// Longest pause after an answer that brought nothing; it starts at a twentieth of this.
+  /// Longest pause after a reply without news; the first pause is a twentieth of this.
   std::chrono::milliseconds longest_pause{20'000};
 };
 
-/// Always holds the newest distribution for one request, without ever blocking who asks for it.
+/// Holds the newest distribution for one request; reading it never blocks.
 ///
-/// A thread of its own fetches it with a lease on its interest, renews that at a third of its time,
-/// and fetches anew what the server announces, after a restart of the server, and with growing
-/// pauses where there is nothing yet. May be shared between threads.
+/// Its thread fetches the distribution with a lease, renews the lease at a third of its time, and
+/// fetches again when the server announces a change or has restarted, and with growing pauses while
+/// there is none. May be shared between threads.
 class Follower {
  public:
   struct State {
@@ -47,7 +47,7 @@ class Follower {
   /// \throws Failure(InvalidInput or TooLarge) if the request breaks a rule.
   Follower(std::shared_ptr<const dds::Participant> participant, FetchRequest request,
            const FollowOptions& options = {});
-  ~Follower();  ///< at once, whatever is under way; what newest() returned stays valid
+  ~Follower();  ///< immediate, also during a fetch; values of newest() stay valid
   Follower(const Follower&) = delete;
   Follower& operator=(const Follower&) = delete;
 
@@ -55,17 +55,17 @@ class Follower {
   /// Copies a pointer under a lock that is never held longer than that.
   std::shared_ptr<const Distribution> newest() const;
 
-  /// The experience of the task that came last, if the request asks for it: with newest(), whatever
-  /// became of that; null as long as there is none, or none any more. It is fetched anew only if it
-  /// changed. Copies a pointer like newest().
+  /// The latest experience of the task, if the request asks for it, also where newest() is null;
+  /// null as long as there is none, or none any more. It is fetched again only if it changed.
+  /// Copies a pointer like newest().
   std::shared_ptr<const TaskExperience> experience() const;
 
   State state() const;
 
-  /// Waits until newest() is another revision, or of another store epoch, than `held`, or the time
-  /// has come.
+  /// Waits until newest() is another revision, or of another store epoch, than `held`, or the
+  /// deadline has passed.
   /// \param held  null: any distribution will do.
-  /// \return newest() then; equal to `held`, or null, after the time has come.
+  /// \return newest() then; equal to `held`, or null, after the deadline.
   std::shared_ptr<const Distribution> wait_for_newer(
       const std::shared_ptr<const Distribution>& held,
       std::chrono::steady_clock::time_point deadline) const;

@@ -19,11 +19,11 @@
 
 namespace kinship::link {
 
-/// Reports of a client on disk, one file each, named by report UUID:
-/// `pending/` until the server's receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good.
-/// Beside them `robots/`: what to register their robots with.
+/// Reports of a client on disk, one file each, named by report UUID: `pending/` until the server's
+/// receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good. Beside them `robots/`: the
+/// descriptions that register their robots.
 ///
-/// Processes may share one: anybody adds, the holder of the sender lock (ReportSender) moves.
+/// Processes may share one: each may add, only the holder of the sender lock (ReportSender) moves.
 /// Methods throw Failure(Storage) naming the file. May be shared between threads.
 class Outbox {
  public:
@@ -46,22 +46,22 @@ class Outbox {
 
   void keep_robot(const Digest& robot, const RobotDescription& description);  ///< durably
 
-  /// \return what keep_robot() was given last; NotFound if it never was, InvalidInput or TooLarge
-  ///         if its file is damaged.
+  /// \return the description that keep_robot() kept last; NotFound if there is none, InvalidInput
+  ///         or TooLarge if its file is damaged.
   Result<RobotDescription> robot(const Digest& robot) const;
 
-  /// To be told what every reply says of the store, before the receipts in it. If its epoch differs
-  /// from the one remembered, the server's store was restored, replaced or rolled back, and what
-  /// was sent is pending again.
-  /// \param mark  empty: the server gives none, the one remembered stays.
-  /// \return whether something is pending again.
+  /// Takes the state of the server's store from a reply; to be called before its receipts are
+  /// applied. If the epoch differs from the one remembered, the store was restored, replaced or
+  /// rolled back, and the sent reports are pending again.
+  /// \param mark  empty: the reply has none, the one remembered stays.
+  /// \return whether reports are pending again.
   bool note_store(const Uuid& epoch, const HistoryMark& mark);
 
   bool has_receipts() const;       ///< whether an epoch was ever noted
   HistoryMark known_mark() const;  ///< the newest; empty if there is none
 
-  /// What was sent grows older by so much, and is deleted if it is old (sent_reports.hpp);
-  /// temporary files that were written more than a day ago are.
+  /// Adds `sending` to the age of the sent reports and deletes old ones (sent_reports.hpp), as well
+  /// as temporary files written more than a day ago.
   void age(std::chrono::milliseconds sending);
 
  private:
@@ -72,7 +72,7 @@ class Outbox {
 };
 
 /// The outbox for one server: $XDG_STATE_HOME/kinship/outbox/domain-<domain>@<server>, by default
-/// below ~/.local/state. What cannot be in a file name is `_`.
+/// below ~/.local/state. Characters that a file name cannot have become `_`.
 /// \throws Failure(InvalidInput) if neither XDG_STATE_HOME nor HOME is an absolute path.
 std::filesystem::path default_outbox_folder(std::uint32_t domain, std::string_view server);
 

@@ -22,11 +22,11 @@ class LockFile;
 
 namespace kinship::link {
 
-/// Sends what is pending in an outbox, on a thread of its own, until each report has its receipt.
-/// May be shared between threads.
+/// Sends the pending reports of an outbox, on its own thread, until each has its receipt. May be
+/// shared between threads.
 class ReportSender {
  public:
-  /// Hands a batch to the server and waits for its receipts, for a bounded time.
+  /// Sends a batch to the server and waits for its receipts, for a bounded time.
   using Send = std::function<Result<ReportReply>(const ReportRequest&)>;
 
   /// Registers a robot, for a bounded time.
@@ -39,7 +39,7 @@ class ReportSender {
   struct Counts {
     std::size_t accepted = 0;  ///< receipts stored, duplicate or recorded
     std::size_t refused = 0;   ///< refused by the server or unreadable on disk
-    std::string problem;       ///< why it does not get on; empty: nothing known
+    std::string problem;       ///< why sending fails; empty: no known problem
   };
 
   /// \param outbox          must outlive the sender.
@@ -47,19 +47,19 @@ class ReportSender {
   ///                        and the outbox has a description of; empty: they wait.
   /// \param now             the time by which `sent/` grows older.
   /// \param count_servers   a new server is probed if nothing is pending, and every server now and
-  ///                        then: its answer tells whether its store has lost what was sent. Empty:
-  ///                        nobody is probed.
+  ///                        then: its reply shows whether its store has lost sent reports. Empty:
+  ///                        no probes.
   ReportSender(Outbox& outbox, Send send, Register register_robot = {},
                Now now = std::chrono::steady_clock::now, CountServers count_servers = {});
-  ~ReportSender();  ///< waits for the call under way, which should be made to end before
+  ~ReportSender();  ///< waits for the call under way; cancel that call first
   ReportSender(const ReportSender&) = delete;
   ReportSender& operator=(const ReportSender&) = delete;
 
-  void wake();   ///< there is something new in the outbox
-  void retry();  ///< also what has to wait: something has changed at the server
+  void wake();   ///< the outbox has a new report
+  void retry();  ///< sends at once, also during a pause: the server has changed
   Counts counts() const;
 
-  /// Waits until nothing is pending, also if another process sends, or the time has come.
+  /// Waits until nothing is pending, also if another process sends, or the deadline has passed.
   void wait_until_empty(std::chrono::steady_clock::time_point deadline);
 
  private:
@@ -85,8 +85,8 @@ class ReportSender {
   std::optional<std::chrono::steady_clock::time_point> aged_;
   std::optional<std::chrono::steady_clock::time_point> probed_;  // the last reply, also a receipt's
   std::uint64_t servers_probed_ = 0;
-  bool is_resending_ = false;  // what was sent is pending again
-  RetryAfter retry_after_{0};  // the server asked for, in this round
+  bool is_resending_ = false;  // sent reports are pending again
+  RetryAfter retry_after_{0};  // requested by the server in this round
   std::set<Digest> unknown_;   // robots whose reports wait for the next round
 
   mutable std::mutex mutex_;  // guards what follows

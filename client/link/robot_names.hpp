@@ -15,10 +15,11 @@ namespace kinship::link {
 /// \return      NotFound, InvalidInput (more than one robot) or Unavailable if there is none.
 Result<RobotSummary> find_robot(Client& client, const std::string& name);
 
-/// What the server knows robots by: one request per name, each up to the client's timeout.
+/// The digests of robots that the server knows by names: one request per name, each up to the
+/// client's timeout.
 /// \param names  labels or beginnings of digests (four digits or more).
-/// \return       their digests, ascending and distinct, as Selection wants them; or NotFound,
-///               InvalidInput (more than one robot) or Unavailable for the first that has none.
+/// \return       ascending and distinct, as Selection wants them; or NotFound, InvalidInput (more
+///               than one robot) or Unavailable for the first name without a robot.
 Result<std::vector<Digest>> resolve_robots(Client& client, const std::vector<std::string>& names);
 
 }  // namespace kinship::link

@@ -8,13 +8,13 @@
 
 namespace kinship::link {
 
-/// Reports of an outbox that have their receipts, kept for a server whose store loses them again.
+/// Reports of an outbox that have their receipts, kept in case the server's store loses them.
 ///
-/// They come into `sent/`. When that has been filled for seven days, or holds 250 000, what is in
-/// `sent_before/` is deleted and `sent/` takes its place: each report is kept for seven days at
-/// least, unless there are so many. Only time counts in which somebody sends, measured by a clock
-/// that nobody sets: robots start in 1970 and hear the time later. Methods throw Failure(Storage)
-/// naming the file; all but the constructor are for the holder of the sender lock.
+/// They are moved into `sent/`. When that has been filled for seven days, or holds 250 000,
+/// `sent_before/` is deleted and `sent/` takes its place: each report is kept for at least seven
+/// days, unless there are so many. Only time in which a process sends counts, by the steady clock:
+/// robots start in 1970 and learn the time later. Methods throw Failure(Storage) naming the file;
+/// all but the constructor are for the holder of the sender lock.
 class SentReports {
  public:
   /// \param outbox  the folder of the outbox.
@@ -22,12 +22,12 @@ class SentReports {
 
   void make_folders() const;  ///< if they are missing, durably
 
-  std::filesystem::path file(const Uuid& report_uuid) const;  ///< where one belongs
+  std::filesystem::path file(const Uuid& report_uuid) const;  ///< the place of a report
 
-  /// Calls `visit` with each, which may move it.
+  /// Calls `visit` with each report's file, which `visit` may move.
   void for_each(const std::function<void(const std::filesystem::path&)>& visit) const;
 
-  /// \param sending  how long somebody has been sending since the last call.
+  /// \param sending  time of sending since the last call.
   void age(std::chrono::milliseconds sending) const;
 
  private:

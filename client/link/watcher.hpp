@@ -11,8 +11,8 @@ class Participant;
 
 namespace kinship::link {
 
-/// Hears of what happens at the server: reports, fetches, fits, refusals. Somebody who looks slowly
-/// misses events; nothing else depends on them.
+/// Receives the server's events: reports, fetches, fits, refusals. A slow handler misses events;
+/// nothing else depends on them.
 class Watcher {
  public:
   /// Called on a thread of the watcher's own, one at a time. They must not throw and must not

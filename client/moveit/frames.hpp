@@ -11,22 +11,22 @@
 
 namespace kinship::moveit {
 
-/// Where the frames of a planning scene lie in the task frame: the robot's links at its start, the
-/// planning frame, and those that the scene carries along.
+/// Poses of a planning scene's frames in the task frame: the robot's links at its start, the
+/// planning frame, and the scene's own frames.
 class Frames {
  public:
   /// The planning frame is that of the URDF's root link, unless a virtual joint of the start moves
   /// that; so are `world`, the virtual joint's frame and a frame without name.
   /// \param T_task_base  empty: the task frame is the planning frame.
-  /// \param start        dof, joint units: where links are that joints move.
+  /// \param start        dof, joint units: sets the poses of moving links.
   /// \param scene        moveit_msgs/PlanningScene
   /// \param request      moveit_msgs/MotionPlanRequest
   /// \throws Failure(InvalidInput) if several joints move the root link
   Frames(const kinematics::Chain& chain, const std::optional<Eigen::Isometry3d>& T_task_base,
          const Eigen::VectorXd& start, const YamlValue& scene, const YamlValue& request);
 
-  /// \param name  a scalar, or missing. \throws Failure(InvalidInput) for a frame that is not
-  /// known.
+  /// \param name  a scalar, or missing.
+  /// \throws Failure(InvalidInput) for an unknown frame.
   Eigen::Isometry3d T_task_frame(const YamlValue& name) const;
 
   /// The frame of a message's header.
@@ -44,7 +44,7 @@ class Frames {
   Eigen::Isometry3d T_link_transfer(const YamlValue& name) const;
 
  private:
-  /// A frame by its name; empty if it is not known.
+  /// A frame by its name; empty if unknown.
   std::optional<Eigen::Isometry3d> find(const std::string& name, int depth) const;
 
   struct CarriedFrame {

@@ -15,7 +15,7 @@ namespace kinship::moveit {
 /// A point or vector; zero if it is missing.
 Eigen::Vector3d read_vector(const YamlValue& value);
 
-/// Normalised; identity if it is missing or zero, as messages are that nobody filled in.
+/// Normalised; identity if it is missing or zero, as in messages left empty.
 Eigen::Quaterniond read_rotation(const YamlValue& value);
 
 /// geometry_msgs/Pose, or Transform with its other names; identity if it is missing.

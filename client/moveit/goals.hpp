@@ -7,9 +7,10 @@
 namespace kinship::moveit {
 
 /// The configuration in which a robot starts: the request's start state, and the scene's robot
-/// state for joints that it does not name. \return dof, joint units \throws Failure(InvalidInput)
-/// that names the first joint of which nothing is said
-/// \param left_out  told of joints that are not the chain's.
+/// state for joints that it does not name.
+/// \return dof, joint units
+/// \throws Failure(InvalidInput) that names the first joint without a value
+/// \param left_out  receives texts on joints that are not the chain's.
 Eigen::VectorXd read_start(const YamlValue& scene, const YamlValue& request,
                            const kinematics::Chain& chain, std::vector<std::string>& left_out);
 

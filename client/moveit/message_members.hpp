@@ -4,11 +4,11 @@
 
 namespace kinship::moveit {
 
-/// Wants a document to have the shape of one of MoveIt's messages: maps and lists where it has
-/// them, and no member that it does not have, so that a misspelt one does not vanish. Members that
-/// are not looked at may hold anything, and each may be missing.
+/// Checks that a document has the structure of one of MoveIt's messages: maps and lists in the same
+/// places, and no other members, so that a misspelt one is reported. Unused members may hold
+/// anything, and each may be missing.
 /// \param message  PlanningScene or MotionPlanRequest.
-/// \throws Failure(InvalidInput) that names the place, and the member that may be meant.
+/// \throws Failure(InvalidInput) that names the place, and the likely member.
 void check_members(const YamlValue& document, const char* message);
 
 }  // namespace kinship::moveit

@@ -6,9 +6,10 @@
 
 namespace kinship::moveit {
 
-/// What stands around a robot and what it holds, into `conversion`: world and robot_state of
+/// Reads the obstacles and attached objects of a robot into `conversion`: world and robot_state of
 /// moveit_msgs/PlanningScene, start_state of moveit_msgs/MotionPlanRequest, and the pairs of
-/// allowed_collision_matrix. \throws Failure(InvalidInput) that names the place
+/// allowed_collision_matrix.
+/// \throws Failure(InvalidInput) that names the place
 void read_objects(const YamlValue& scene, const YamlValue& request, const kinematics::Chain& chain,
                   const Frames& frames, Conversion& conversion);
 

@@ -9,16 +9,15 @@
 
 namespace kinship::moveit {
 
-/// A place in a YAML document that knows its way there, so that an error can name it. What is asked
-/// of a missing place is missing too.
+/// A place in a YAML document with its path, so that an error can name it. Members of a missing
+/// place are missing too.
 class YamlValue {
  public:
-  /// Reads a file's documents; those that say nothing, as after the last line of an echoed topic,
-  /// are left.
+  /// Reads a file's documents; leaves out empty ones, as after the last line of an echoed topic.
   /// \throws Failure(NotFound or InvalidInput) that names the file, and the line of a syntax error.
   static std::vector<YamlValue> read_all(const std::filesystem::path& file);
 
-  /// A document that was made of a file in another form.
+  /// A document converted from a file in another form.
   static YamlValue of_document(const YAML::Node& document, const std::filesystem::path& file) {
     return {document, file.string(), ""};
   }
@@ -26,15 +25,15 @@ class YamlValue {
   /// A member of a map; missing if there is none.
   YamlValue operator[](const std::string& member) const;
 
-  /// The first of these that is there; missing if none is.
+  /// The first present one of these; missing if none is.
   YamlValue first_of(std::initializer_list<const char*> members) const;
 
   bool is_missing() const noexcept { return !node_ || node_.IsNull(); }
   bool is_map() const noexcept { return !is_missing() && node_.IsMap(); }
   bool is_list() const noexcept { return !is_missing() && node_.IsSequence(); }
 
-  /// The members of a map in their order, by name; one that is there twice comes twice. A place
-  /// names the line of the name. None if it is no map.
+  /// The members of a map in their order, by name; a duplicate appears twice. A place has the line
+  /// of the name. None if it is no map.
   /// \throws Failure(InvalidInput) if a name is no scalar.
   std::vector<std::pair<std::string, YamlValue>> members() const;
 
@@ -56,7 +55,7 @@ class YamlValue {
   [[noreturn]] void refuse(const std::string& why) const;
 
  private:
-  /// \param line  of what is around it, for a missing place; from 1, 0: not known.
+  /// \param line  of the enclosing place, for a missing one; from 1, 0: not known.
   YamlValue(const YAML::Node& node, std::string file, std::string way, int line = 0)
       : node_(node),
         file_(std::move(file)),

@@ -10,11 +10,11 @@
 
 namespace kinship::planning {
 
-/// Gives any planner of OMPL the samples of a ConfigurationSampler wherever it asks for uniform
-/// ones; samples near a state are those of the space. One planner thread uses one instance.
+/// Gives any planner of OMPL the samples of a ConfigurationSampler in place of uniform ones;
+/// samples near a state are those of the space. One planner thread uses one instance.
 ///
-/// RRT-like planners ask the space's StateSampler, roadmap planners a ValidStateSampler that asks
-/// it in turn, so the space is the one place to hook in.
+/// RRT-like planners draw from the space's StateSampler, roadmap planners from a ValidStateSampler
+/// that draws from it in turn, so the space is the one place to replace samples.
 class GuidedStateSampler : public ompl::base::StateSampler {
  public:
   /// \param space    from make_state_space, with as many joints as the sampler has.
@@ -35,12 +35,12 @@ class GuidedStateSampler : public ompl::base::StateSampler {
 };
 
 /// Makes every planner of the space draw from the sampler; the n-th allocated sampler is seeded
-/// with seed + n. Planners keep the samplers that they have: install before they are set up.
-/// \param space  from make_state_space, or a ProjectedStateSpace over one: there the sampler is
-///        set on the ambient space, and what it draws is projected onto the constraint. (Set on
-///        the projected space itself, OMPL 1.5 would silently ignore it.)
-/// \throws std::invalid_argument if space and sampler differ in size, or if the space is another
-///         one: an AtlasStateSpace or TangentBundleStateSpace draws from its charts.
+/// with seed + n. Planners keep their samplers: install before their setup.
+/// \param space  from make_state_space, or a ProjectedStateSpace over one: there the sampler is set
+///               on the ambient space, and its samples are projected onto the constraint. (Set on
+///               the projected space itself, OMPL 1.5 would silently ignore it.)
+/// \throws std::invalid_argument if space and sampler differ in size, or for another space: an
+///         AtlasStateSpace or TangentBundleStateSpace draws from its charts.
 void install_guided_sampler(ompl::base::StateSpace& space,
                             std::shared_ptr<const ConfigurationSampler> sampler,
                             std::uint64_t seed);

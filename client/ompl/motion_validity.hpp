@@ -7,17 +7,17 @@
 #include <functional>
 #include <vector>
 
-/// Motions of OMPL whose states are asked for together; for this library's sources only.
+/// Motions of OMPL whose states are checked together; for this library's sources only.
 namespace kinship::planning {
 
-/// Says which states are valid, several at once.
+/// A validity checker for several states at once.
 class SeveralStatesValidity : public ompl::base::StateValidityChecker {
  public:
   using One = std::function<bool(const ompl::base::State& state)>;
   /// \param way  dof x n. \return whether the lines between its columns are valid.
   using Between = std::function<bool(const Eigen::Ref<const Eigen::MatrixXd>& way)>;
-  /// \param qs  dof x n. \return how many, from the first on, are valid before one is not; later
-  /// ones are not asked for.
+  /// \param qs  dof x n. \return the number of valid columns before the first invalid one; later
+  ///            ones are not checked.
   using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
 
   SeveralStatesValidity(const ompl::base::SpaceInformationPtr& information, One one, Ahead ahead,
@@ -25,10 +25,10 @@ class SeveralStatesValidity : public ompl::base::StateValidityChecker {
 
   bool isValid(const ompl::base::State* state) const override { return one_(*state); }
 
-  /// Whether all are valid; asks for a few at a time. \param qs  dof x n.
+  /// Whether all are valid; checks a few at a time. \param qs  dof x n.
   bool are_valid(const Eigen::Ref<const Eigen::MatrixXd>& qs) const;
 
-  /// Whether the lines between a way's columns are valid, where that is proven. \param way  dof x n
+  /// Whether the lines between a way's columns are valid, if lines are proven. \param way  dof x n
   bool is_valid_between(const Eigen::Ref<const Eigen::MatrixXd>& way) const {
     return between_(way);
   }
@@ -40,9 +40,9 @@ class SeveralStatesValidity : public ompl::base::StateValidityChecker {
 };
 
 /// OMPL's validator of straight motions in a space from make_state_space, in its order: the second
-/// state, then the middle, then the middles of the halves, and so on. Asks for the states together
-/// if the checker of `information` is a SeveralStatesValidity, and then for a proof of the motion
-/// where lines are proven.
+/// state, then the middle, then the middles of the halves, and so on. Checks the states together if
+/// the checker of `information` is a SeveralStatesValidity, and then the proof of the motion if
+/// lines are proven.
 class StraightMotionValidator : public ompl::base::DiscreteMotionValidator {
  public:
   explicit StraightMotionValidator(const ompl::base::SpaceInformationPtr& information);
@@ -51,7 +51,7 @@ class StraightMotionValidator : public ompl::base::DiscreteMotionValidator {
   bool checkMotion(const ompl::base::State* from, const ompl::base::State* to) const override;
 
  private:
-  /// What OMPL asks for, in its order: dof x n.
+  /// The states that OMPL checks, in its order: dof x n.
   Eigen::MatrixXd asked(const ompl::base::State& from, const ompl::base::State& to) const;
 };
 

@@ -11,46 +11,47 @@
 
 namespace kinship::planning {
 
-/// The planners of OMPL that remember paths of the robot that plans.
+/// The planners of OMPL that reuse the robot's own paths.
 enum class ExperienceKind {
-  Lightning,  ///< whole paths: the one that fits best is repaired
-  Thunder     ///< a sparse roadmap made of them (SPARS), searched lazily
+  Lightning,  ///< whole paths: repairs the best match
+  Thunder     ///< a sparse roadmap of the paths (SPARS), searched lazily
 };
 
-/// The half of an experience planner of OMPL that recalls; the other half, planning from scratch in
-/// a second thread, is plan_with_ompl's RRTConnect. Both halves count by themselves, so who runs
-/// them in turn can say what two threads would have asked together.
+/// The recalling half of an experience planner of OMPL; the other half, planning from scratch in a
+/// second thread, is plan_with_ompl's RRTConnect. Each half counts its own checks, so a caller that
+/// runs them in turn can add up the checks of two threads.
 ///
-/// OMPL's databases, retrieval and repair as they come, with three differences, all in their
-/// favour: the query ends at its first path (Lightning would shorten it before it is known), every
-/// goal may be recalled to (OMPL looks at the first only), and nothing else runs beside it. Not
-/// shared between threads. Silences OMPL's messages for the process.
+/// OMPL's databases, retrieval and repair with three differences, all in their favour: the query
+/// ends at its first path (Lightning would shorten it first), recall considers every goal (OMPL
+/// only the first), and no other thread runs beside it. Not shared between threads. Silences OMPL's
+/// messages for the process.
 class OmplExperience {
  public:
-  /// \param bounds  2 x dof: lower, upper, joint units; of every path and query.
+  /// \param bounds  2 x dof: lower, upper, joint units; for every path and query.
   /// \param step    between checked configurations, joint units.
   /// \param range   longest extension of the RRTConnect that repairs; 0: OMPL's choice.
-  /// \throws std::invalid_argument if a bound, the step or the range cannot be used.
+  /// \throws std::invalid_argument for an invalid bound, step or range.
   OmplExperience(ExperienceKind kind, const Eigen::Matrix2Xd& bounds, double step, double range);
   ~OmplExperience();
   OmplExperience(const OmplExperience&) = delete;
   OmplExperience& operator=(const OmplExperience&) = delete;
 
-  /// Learns a path where it was planned.
+  /// Learns a path in its scene.
   /// \param waypoints  dof x n, n >= 2.
-  /// \param is_free    of the scene of the path: Thunder asks while it builds its roadmap.
-  /// \return           whether OMPL says that all of it was kept.
+  /// \param is_free    of the path's scene: Thunder checks while it builds its roadmap.
+  /// \return           whether OMPL kept the whole path.
   bool learn(const Eigen::MatrixXd& waypoints, const IsFree& is_free);
 
   /// Paths of Lightning, vertices of Thunder's roadmap.
   std::size_t size() const;
-  /// Configurations asked about while learning.
+  /// Configurations checked while learning.
   std::uint64_t learning_checks() const;
 
-  /// Answers one query from experience alone. Counts as plan_birrt does, start and goals included,
-  /// which OMPL asks about once more; a path is looked at once more, uncounted. Reasons as
+  /// Answers one query from experience alone. Counts checks as plan_birrt, including start and
+  /// goals, which OMPL checks once more; the path is checked again, uncounted. Reasons as
   /// plan_birrt, NothingRecalled if retrieval and repair gave up, RecallCollides if OMPL's path is
-  /// none. \throws Failure(Internal) with OMPL's message where it throws.
+  /// invalid.
+  /// \throws Failure(Internal) with the message of OMPL's exception.
   PlanSummary recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                      const IsFree& is_free, const BirrtOptions& limits, std::mt19937_64& generator);
 

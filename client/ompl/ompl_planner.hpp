@@ -18,34 +18,33 @@ struct OmplOptions {
   BirrtOptions limits;  ///< step, checks and time; OMPL knows no overshoot
 };
 
-/// The planners that ask a space for uniform samples, so that guidance reaches them: RRT,
-/// RRTConnect and LazyRRT among others. Those that only sample near what they have (EST, KPIECE,
-/// SBL and their kin) are left out. In alphabetical order.
+/// The planners that draw uniform samples from the space, so that guidance reaches them, in
+/// alphabetical order: RRT, RRTConnect and LazyRRT among others, without planners that only sample
+/// near their states (EST, KPIECE, SBL and the like).
 std::vector<std::string> ompl_planner_names();
 
 /// Plans one query with a planner of OMPL, its uniform samples replaced by those of the sampler.
-/// The query ends at the first path, also with planners that would go on to shorten it.
+/// The query ends at the first path, also for planners that would go on to shorten it.
 ///
-/// Same definitions as plan_birrt: every configuration asked about counts one check and none is
-/// asked beyond the budget; waypoints are at most limits.step apart and each was checked, and
-/// motions are proven where `is_free` does that. Start
-/// and goals are asked about first, and again by OMPL. Samples are seeded from the generator, but
-/// OMPL's own draws (towards the goal, say) follow its process-wide seed: equal plans only where
-/// that is the same. PRM and PRMstar grow by samples only, without the random walks and the
-/// second thread of OMPL's; RRTConnect and LazyPRM know all goals from the beginning.
+/// Same definitions as plan_birrt: every checked configuration counts one check, none beyond the
+/// budget; waypoints are at most limits.step apart and each was checked, and motions are proven if
+/// `is_free` proves edges. Start and goals are checked first, and again by OMPL. Samples are seeded
+/// from the generator, but OMPL's own draws (for example towards the goal) follow its process-wide
+/// seed: equal plans need an equal seed there. PRM and PRMstar grow by samples only, without OMPL's
+/// random walks and second thread; RRTConnect and LazyPRM know all goals from the beginning.
 /// Silences OMPL's messages for the process.
 ///
 /// Reasons as plan_birrt; if OMPL gave up before checks and time were used up, GaveUp with its
 /// status as the planner's message.
 /// \throws std::invalid_argument as plan_birrt, if bounds leave a joint no room, the range is
-///         negative, or for an unknown planner, with the names that there are.
-/// \throws Failure(Internal) with OMPL's message where it throws.
+///         negative, or for an unknown planner, with the known names.
+/// \throws Failure(Internal) with the message of OMPL's exception.
 PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                            const IsFree& is_free, const ConfigurationSampler& sampler,
                            const OmplOptions& options, std::mt19937_64& generator);
 
-/// The same along a task space region, on a RegionStateSpace; what plan_cbirrt2 says of paths,
-/// goals and reasons holds. The dof is at least 2.
+/// The same along a task space region, on a RegionStateSpace; paths, goals and reasons as in
+/// plan_cbirrt2. The dof is at least 2.
 PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                            const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
                            const OmplOptions& options, std::mt19937_64& generator);

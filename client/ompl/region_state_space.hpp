@@ -12,25 +12,24 @@
 namespace kinship::planning {
 
 /// Configurations along a task space region as a projected space of OMPL whose steps are those of
-/// plan_cbirrt2, so that its motions keep what plan_cbirrt2 promises: at most `step` apart, within
-/// the tolerances of RegionConstraint at and between waypoints. (OMPL's own steps may be twice as
-/// long, and what lies between them is not looked at.)
-/// Not shared between threads.
+/// plan_cbirrt2, so that its motions have the guarantees of plan_cbirrt2: at most `step` apart,
+/// within the tolerances of RegionConstraint at and between waypoints. (OMPL's own steps may be
+/// twice as long, and are not checked in between.) Not shared between threads.
 class RegionStateSpace : public ompl::base::ProjectedStateSpace {
  public:
   /// \param ambient  from make_state_space.
   /// \param region   borrowed: must outlive this; counts the projections.
   RegionStateSpace(const ompl::base::StateSpacePtr& ambient, RegionConstraint& region, double step);
 
-  /// The configurations from one to another along the region, both included; the same ones in
-  /// either direction. Not checked for collisions.
+  /// The configurations from one to another along the region, both included; equal in both
+  /// directions. Not checked for collisions.
   /// \return dof x n, n >= 1; empty if the way gets stuck.
   std::optional<Eigen::MatrixXd> way(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
 
   bool discreteGeodesic(const ompl::base::State* from, const ompl::base::State* to,
                         bool interpolate, std::vector<ompl::base::State*>* geodesic) const override;
 
-  /// As far along the region as it goes, where `to` cannot be reached.
+  /// As far along the region as possible, if `to` cannot be reached.
   void interpolate(const ompl::base::State* from, const ompl::base::State* to, double share,
                    ompl::base::State* state) const override;
 
@@ -42,7 +41,7 @@ class RegionStateSpace : public ompl::base::ProjectedStateSpace {
 };
 
 /// Whether the way between two states of a RegionStateSpace is free, the second state included.
-/// (OMPL's own validator of constrained motions never asks about the second state.)
+/// (OMPL's own validator of constrained motions never checks the second state.)
 class RegionMotionValidator : public ompl::base::MotionValidator {
  public:
   explicit RegionMotionValidator(const ompl::base::SpaceInformationPtr& information);

@@ -15,7 +15,7 @@ namespace kinship::planning {
 /// distance in joint units. Joints do not wrap; planning_bounds chooses the turn.
 /// \param bounds  2 x dof: lower, upper.
 /// \throws std::invalid_argument if a bound is not finite or a lower one is not below its upper.
-/// OMPL hands spaces around as shared pointers: planner, problem and states share this one.
+/// \return the space, shared by OMPL's planner, problem and states.
 std::shared_ptr<ompl::base::RealVectorStateSpace> make_state_space(const Eigen::Matrix2Xd& bounds);
 
 /// \param state  of a space from make_state_space with q.size() joints.

@@ -9,7 +9,7 @@
 
 namespace kinship::page {
 
-/// A capsule of a drawn robot: what is within `radius_m` of a segment, in the task frame.
+/// A capsule of a drawn robot: the points within `radius_m` of a segment, in the task frame.
 struct Bone {
   Eigen::Vector3d from, to;
   double radius_m = 0;
@@ -21,7 +21,7 @@ struct Bone {
 std::vector<Bone> bones_of(const models::LoadedRobot& robot, const Eigen::Isometry3d& T_task_base,
                            const Eigen::Ref<const Eigen::VectorXd>& q);
 
-/// What the robot holds, where it is in one configuration; without what is a mesh.
+/// The attached objects of the robot at one configuration, without meshes.
 /// \param q  dof, joint units.
 /// \throws std::invalid_argument if an object is attached to a link that the chain does not have.
 std::vector<SceneObject> held_objects(const models::LoadedRobot& robot,

@@ -7,10 +7,10 @@
 
 namespace kinship::page {
 
-/// One HTML page that needs nothing else.
+/// One self-contained HTML page.
 struct Document {
   std::string title;                      ///< of the browser's tab; plain text
-  std::string body;                       ///< HTML, what stands in <main>
+  std::string body;                       ///< HTML, the content of <main>
   std::string data;                       ///< one JSON document: kinshipPage.data
   std::vector<std::string_view> styles;   ///< CSS after page.css
   std::vector<std::string_view> scripts;  ///< run in order once the body is there

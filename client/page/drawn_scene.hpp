@@ -6,8 +6,9 @@
 
 namespace kinship::page {
 
-/// What view.js draws of a scene: its solids, and boxes around its meshes and point clouds.
-/// \param scene  read (models::SceneMeshes); what has no triangles or voxels is left out.
+/// The objects of a scene that view.js draws: its solids, and boxes around its meshes and point
+/// clouds.
+/// \param scene  read (models::SceneMeshes); objects without triangles or voxels are left out.
 std::vector<SceneObject> drawn_objects(const Scene& scene);
 
 }  // namespace kinship::page

@@ -8,14 +8,14 @@
 #include "client/page/bones.hpp"
 #include "proto/types/scene.hpp"
 
-/// Pieces of the JSON document that a page's programs read. Lengths are whole millimetres, which
-/// is finer than a pixel and a third of the text.
+/// Parts of the JSON document that a page's scripts read. Lengths are whole millimetres, which is
+/// finer than a pixel and a third of the text.
 namespace kinship::page {
 
 /// A JSON string.
 std::string json_string(std::string_view text);
 
-/// Eight digits; null for what JSON cannot say.
+/// Eight digits; null for values that JSON lacks.
 std::string number(double value);
 
 /// Every value as a whole number of `1 / scale`, column after column: [x, y, z, x, ...].
@@ -24,7 +24,7 @@ std::string whole(const Eigen::Ref<const Eigen::MatrixXd>& values, double scale)
 /// Lengths in m as whole millimetres, column after column.
 std::string millimetres(const Eigen::Ref<const Eigen::MatrixXd>& lengths_m);
 
-/// A list of what `each_to_json` makes of the values.
+/// A list of the results of `each_to_json` for the values.
 template <typename Values, typename ToJson>
 std::string list(const Values& values, const ToJson& each_to_json) {
   std::string json = "[";

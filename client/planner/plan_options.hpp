@@ -17,8 +17,8 @@
 namespace kinship::planner {
 
 enum class GuidanceMode {
-  Uniform,  ///< no distribution is asked for
-  Auto,     ///< guided or control, query by query, by what both ways cost so far
+  Uniform,  ///< no distribution is fetched
+  Auto,     ///< guided or control, query by query, by the cost of both so far
   Always,   ///< every query that has a distribution is guided, without control
   Require   ///< as Auto, and a run without a distribution fails
 };
@@ -30,7 +30,7 @@ struct PlanOptions {
   std::string task;
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";
-  std::optional<Guide> guide;  ///< missing: what the server found by rehearsal, else all there is
+  std::optional<Guide> guide;  ///< missing: the one found by rehearsal, else all
   bool rehearsed = false;      ///< wait for a rehearsal, as for a distribution
   guided::SamplingModeOptions sampling;
   Selection selection;               ///< without its sources
@@ -41,8 +41,8 @@ struct PlanOptions {
   guided::PlanSettings settings;
   std::uint64_t seed_offset = 0;   ///< added to each problem's seed
   std::filesystem::path output;    ///< empty: standard output
-  std::filesystem::path searches;  ///< how each search grew; empty: is not recorded
-  bool json = false;               ///< results as JSON Lines also where people read them
+  std::filesystem::path searches;  ///< the growth of each search; empty: not recorded
+  bool json = false;               ///< results as JSON Lines also on a terminal
   std::uint32_t domain = 0;
   std::string server = "127.0.0.1";  ///< host of kinshipd
   std::filesystem::path security;    ///< folder of credentials; empty: none
@@ -51,9 +51,9 @@ struct PlanOptions {
   std::filesystem::path outbox;  ///< empty: the client's default
 };
 
-/// An option that has no effect beside the others is told on `err`, or refused.
-/// \return the options, or the exit code after help (0) or a wrong command line (2, with what is
-///         wrong on `err`).
+/// Reports an option without effect beside the others on `err`, or refuses it.
+/// \return the options, or the exit code after help (0) or a wrong command line (2, with the error
+///         on `err`).
 std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* argv,
                                                   std::ostream& out, std::ostream& err);
 

@@ -8,12 +8,12 @@
 
 namespace kinship::planner {
 
-/// What a run reads and writes.
+/// Input and outputs of a run.
 struct RunStreams {
   std::istream& problems;
   std::ostream& results;
   std::ostream& messages;            ///< for people
-  std::ostream* searches = nullptr;  ///< how each search grew; null: nowhere
+  std::ostream* searches = nullptr;  ///< the growth of each search; null: not written
   bool messages_on_terminal = false;
   bool results_for_people = false;  ///< lines of text instead of JSON
 };
@@ -26,7 +26,8 @@ struct RunSummary {
 
 /// Reads the problems, fetches guidance once per placement, plans each problem and writes its
 /// result in input order, reports the attempts.
-/// \param stop  asked often; true ends the run cleanly: what is planned is written and reported.
+/// \param stop  called often; true ends the run cleanly: finished problems are written and
+///              reported.
 /// \return      fails if the server refuses the robot (nothing is planned if it does so at once),
 /// if
 ///              no problem fits the robot or could be read, or a report could not be kept.

@@ -12,14 +12,14 @@ namespace kinship::planner {
 /// A line of a problem file that is not blank.
 struct ProblemLine {
   std::size_t number = 0;   ///< counts from 1
-  Result<Problem> problem;  ///< or what is wrong with the line
+  Result<Problem> problem;  ///< or the line's error
 };
 
-/// Reads every line; a broken one is an error of its own and does not end the reading.
+/// Reads every line; an invalid line becomes an error of its own and does not end the reading.
 /// \throws Failure(Storage) if the stream itself cannot be read.
 std::vector<ProblemLine> read_problem_lines(std::istream& stream);
 
-/// The answer to a line that holds no problem.
+/// The result for a line that holds no problem.
 ProblemResult broken_line_result(std::size_t number, const Error& error);
 
 }  // namespace kinship::planner

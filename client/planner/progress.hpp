@@ -10,14 +10,14 @@
 
 namespace kinship::planner {
 
-/// Tells people how far a run is: one line that is written over on a terminal, otherwise a line
-/// for every tenth of the problems.
+/// Shows a run's progress: on a terminal one line that is overwritten, otherwise a line for every
+/// tenth of the problems.
 class Progress {
  public:
   Progress(std::ostream& stream, bool terminal, std::size_t total)
       : stream_(stream), terminal_(terminal), total_(total) {}
 
-  /// \param attempted  false: the problem is none of this robot, or could not be read.
+  /// \param attempted  false: the problem does not fit the robot, or could not be read.
   void add(const ProblemResult& result, bool attempted);
 
   /// Ends the line and writes the sums, of the problems that could be planned, and below them the
@@ -39,8 +39,8 @@ class Progress {
   double planning_time_s_ = 0;  // of searches
 };
 
-/// A result as one line for people, without line end: what came of it, what it cost, guided by what
-/// or why not.
+/// A result as one line for people, without line end: outcome, cost, and its guidance or why there
+/// was none.
 std::string result_text(const ProblemResult& result);
 
 }  // namespace kinship::planner

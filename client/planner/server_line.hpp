@@ -17,47 +17,46 @@
 
 namespace kinship::planner {
 
-/// A run's line to kinshipd. Without need of a server, or without a server, everything still
-/// works: there is no guidance, and reports stay in the outbox.
+/// A run's connection to kinshipd. If the options need no server, or none answers, the run goes on
+/// without guidance, and reports stay in the outbox.
 class ServerLine {
  public:
   using FitRobot = std::function<Result<collision::FittedRobot>()>;
 
-  /// Registers the robot if the options need the server. A line that cannot be had, or a refused
-  /// registration, is said and means no guidance.
-  /// \param fit       fits solids around the robot's meshes; called if the server knows the robot
-  /// no
-  ///                  better without them. Borrowed.
+  /// Registers the robot if the options need the server. A failed connection or a refused
+  /// registration is written to `messages` and means no guidance.
+  /// \param fit       fits solids around the robot's meshes; called if the server has no better
+  ///                  geometry of the robot. Borrowed.
   /// \param messages  for people; borrowed.
-  /// \param stop      asked while a server is waited for; true ends the waiting. Borrowed.
+  /// \param stop      called during waits for a server; true ends the wait. Borrowed.
   ServerLine(const PlanOptions& options, RobotDescription description, FitRobot fit,
              std::ostream& messages, const std::function<bool()>& stop);
 
-  /// Asks for guidance for every placement of the problems, and says what came of it.
+  /// Fetches guidance for every placement of the problems and writes the answers to `messages`.
   /// \return why guidance that the options require is missing.
   guided::NoGuidance fetch_guidance(guided::GuidanceOptions wanted,
                                     const std::vector<ProblemLine>& lines);
 
-  /// Whether a server refused the robot, for example because its label belongs to another one. That
-  /// may come out only in finish(): the server may come up later than this.
+  /// Whether a server refused the robot, for example because its label belongs to another one.
+  /// Possibly known only after finish(), as the server may start later.
   bool is_robot_refused() const noexcept { return is_robot_refused_; }
 
-  /// How the next problem shall be planned; without guidance uniformly. Never waits.
+  /// Guidance and sampling mode of the next problem; uniform without guidance. Never waits.
   guided::QueryGuidance choose(const Problem& problem) const;
 
-  /// A problem was attempted: the choice for those after it learns from it.
+  /// Adds an attempt to the evidence for later choices.
   void add(const guided::PlannedProblem& planned);
 
-  /// Puts the attempt into the outbox; says so if it cannot be made or kept.
+  /// Puts the attempt into the outbox; writes to `messages` if it cannot be made or kept.
   void report(const std::function<Attempt()>& make_attempt);
 
-  /// Waits, at most for the timeout, for receipts of what was reported, and says how many came.
-  /// Never throws: the run is answered.
+  /// Waits for the receipts of the reports, at most for the timeout, and writes their number. Never
+  /// throws: the results are already written.
   /// \return whether every attempt that was to be reported is kept or acknowledged.
   bool finish();
 
  private:
-  /// What `call` brings, or that it was cancelled, soon after `stop` says so.
+  /// The result of `call`, which is cancelled soon after `stop` returns true.
   template <typename Reply>
   Result<Reply> wait_for(const std::function<Result<Reply>()>& call);
 

@@ -7,8 +7,8 @@
 
 namespace kinship::planner {
 
-/// What a run says whose robot came without a transfer frame: that the poses of its problems are
-/// taken for the tip link's, and what to pass. A line, or empty if no problem gives a pose.
+/// The warning of a run without a transfer frame: poses of its problems are taken for those of the
+/// tip link; it names the option to pass. A line, or empty if no problem gives a pose.
 std::string transfer_warning(const std::vector<ProblemLine>& lines, const std::string& tip_link);
 
 }  // namespace kinship::planner

@@ -14,7 +14,7 @@ namespace kinship::plots {
 /// One Gaussian of a mixture, or kernel, by weight.
 struct Component {
   double weight = 0;     ///< 0 to 1
-  double cumulated = 0;  ///< of it and all that are heavier
+  double cumulated = 0;  ///< of it and all heavier ones
 };
 
 inline constexpr std::size_t kMaxComponentsShown = 200;
@@ -22,21 +22,21 @@ inline constexpr std::size_t kMaxComponentsShown = 200;
 /// The heaviest components of a mixture, heaviest first, kMaxComponentsShown at most.
 std::vector<Component> heaviest_components(const Mixture& mixture);
 
-/// The robot as it stands in the mean of one component.
+/// The robot in the mean of one component.
 struct Posture {
   double weight = 0;  ///< of that component
   std::vector<page::Bone> bones;
 };
 
-/// What a page shows of a distribution, all of it found from the distribution and its robot.
+/// The content of a distribution's page, derived from the distribution and its robot.
 struct DistributionPlot {
   Distribution distribution;
   std::string label;  ///< of its robot
   std::vector<Component> components;
-  Eigen::Matrix3Xd hands;  ///< origin of the transfer frame, m: one column a sample
+  Eigen::Matrix3Xd hands;  ///< origin of the transfer frame, m: one column per sample
   std::vector<Marginal> marginals;
   std::vector<Posture> postures;  ///< of the heaviest components, heaviest first
-  std::string shapes;             ///< what is known of the robot's shapes, in words
+  std::string shapes;             ///< text on the known shapes of the robot
 };
 
 inline constexpr std::size_t kSamplesShown = 2000;
@@ -44,8 +44,8 @@ inline constexpr std::size_t kSamplesShown = 2000;
 /// Draws the samples (seeded: equal distribution, equal plot) and places the robot in the task
 /// frame, or that of its base if the distribution has no placement.
 /// \param description  of the distribution's robot, as the server keeps it.
-/// \throws Failure(NotFound) if there is no mixture or none of it lies within the limits; what
-///         kinematics::read_chain and geometry::read_known_shapes say of the description;
+/// \throws Failure(NotFound) if there is no mixture or none of it lies within the limits; the
+///         errors of kinematics::read_chain and geometry::read_known_shapes on the description;
 ///         InvalidInput if it is of another robot.
 DistributionPlot plot_of(Distribution distribution, const RobotDescription& description);
 

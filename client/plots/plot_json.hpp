@@ -5,11 +5,11 @@
 #include "client/plots/distribution_plot.hpp"
 #include "client/plots/task_history.hpp"
 
-/// What the programs of the pages read. Lengths are whole millimetres, times Unix time in ms.
+/// The data of the pages' scripts. Lengths are whole millimetres, times Unix time in ms.
 namespace kinship::plots {
 
-/// The distribution as `distributions fetch --json` has it, without its mixture, beside what was
-/// found from it.
+/// The distribution as in `distributions fetch --json`, without its mixture, and the data derived
+/// from it.
 std::string to_json(const DistributionPlot& plot);
 
 std::string to_json(const TaskHistory& history);

@@ -8,14 +8,14 @@
 #include "client/plots/task_history.hpp"
 #include "proto/types/transferability.hpp"
 
-/// Pages that show what a server knows: one HTML document each, which needs no network
-/// (client/page), with its data as one JSON document in it.
+/// Pages of a server's data: one HTML document each, which needs no network (client/page), with its
+/// data as one JSON document in it.
 namespace kinship::plots {
 
 void write_page(const DistributionPlot& plot, std::ostream& out);
 void write_page(const TaskHistory& history, std::ostream& out);
 
-/// A matrix, a target a row. \param pairs  every target with the same sources in the same order.
+/// A matrix, a target per row. \param pairs  every target with the same sources in the same order.
 void write_page(const std::string& task, const std::vector<Transferability>& pairs,
                 std::ostream& out);
 

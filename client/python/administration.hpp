@@ -7,10 +7,10 @@ namespace kinship::python {
 
 using ClientClass = pybind11::class_<ClientHandle>;
 
-/// Adds to Client what is asked of the server itself: listings, retiring, backups, what happens.
+/// Adds the administration of the server to Client: listings, retiring, backups, events.
 void bind_administration(ClientClass& client);
 
-/// Adds the class of what is watched, which they mention.
+/// Adds the class Events, which the methods of Client mention.
 void bind_events(pybind11::module_& module);
 
 }  // namespace kinship::python

@@ -8,21 +8,21 @@
 #include <string>
 #include <string_view>
 
-/// Values between numpy and the libraries. A numpy user has a configuration per row, the libraries
-/// have one per column: the bytes are the same.
+/// Values between numpy and the libraries. numpy arrays hold a configuration per row, the libraries
+/// one per column: the bytes are the same.
 namespace kinship::python {
 
 namespace py = pybind11;
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Configurations that came as one (dof numbers) or as rows (n x dof).
+/// Configurations given as one (dof numbers) or as rows (n x dof).
 struct Configurations {
   Eigen::MatrixXd columns;  ///< dof x n
   bool is_one = false;
 };
 
-/// \param what  for messages: whose joints they are.
+/// \param what  the owner of the joints, for messages.
 /// \throws std::invalid_argument if their number of joints differs or there are other dimensions.
 Configurations read_configurations(const Array& q, Eigen::Index dof, std::string_view what);
 

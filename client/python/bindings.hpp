@@ -11,8 +11,8 @@
 
 namespace kinship::python {
 
-/// Adds the classes of one matter to the module; module.cpp calls them in an order in which what a
-/// class mentions is there before.
+/// Adds the classes of one topic to the module; module.cpp calls them in the order of their
+/// dependencies.
 void bind_robots(pybind11::module_& module);
 void bind_scenes(pybind11::module_& module);
 void bind_worlds(pybind11::module_& module);
@@ -22,7 +22,7 @@ void bind_experience(pybind11::module_& module);
 void bind_planning(pybind11::module_& module);
 void bind_client(pybind11::module_& module);
 
-/// A robot as Python names it: itself, its digest (64 hexadecimal digits) or a label.
+/// A robot as a Python argument: the object, its digest (64 hexadecimal digits) or a label.
 using RobotName = std::variant<std::shared_ptr<Robot>, std::string>;
 
 }  // namespace kinship::python

@@ -14,8 +14,8 @@
 
 namespace kinship::python {
 
-/// A client that waits without the interpreter's lock, in slices between which Python hears of
-/// signals (Ctrl-C), and that can be closed while others wait. Called with the lock.
+/// A client that waits without the interpreter's lock, in slices between which Python handles
+/// signals (Ctrl-C), and that can be closed while other threads wait. Called with the lock.
 class ClientHandle {
  public:
   /// \throws as link::Client.
@@ -27,16 +27,16 @@ class ClientHandle {
   /// \throws Failure(InvalidInput) if it is closed.
   std::shared_ptr<link::Client> line() const;
 
-  /// Ends every wait of other threads. What is in the outbox stays there for the next client.
+  /// Ends every wait of other threads. The outbox keeps its reports for the next client.
   void close();
 
   /// As link::Client; an error if there is no server, or a signal's exception.
   Result<FetchReply> fetch(FetchRequest request) const;
   link::Client::OutboxState flush(std::chrono::milliseconds deadline) const;
 
-  /// What a call brings that cannot be taken in slices. One that a signal ends goes on by itself
-  /// until it has its answer or its time has passed, and nobody hears what came of it.
-  /// \param call  made on another thread: has values of its own, and nothing of Python.
+  /// The reply of a call that cannot be made in slices. After a signal the call continues until its
+  /// reply or timeout, and its result is discarded.
+  /// \param call  runs on another thread: owns its values and uses no Python object.
   template <typename Reply>
   Reply wait_for(std::function<Reply(link::Client&)> call) const {
     const auto reply = std::make_shared<std::future<Reply>>(std::async(
@@ -49,17 +49,17 @@ class ClientHandle {
     return reply->get();
   }
 
-  /// The robot that is meant: a label is looked up at the server.
-  /// \throws Failure as link::find_robot says.
+  /// The robot's digest; a label is looked up at the server.
+  /// \throws Failure as link::find_robot.
   Digest find(const RobotName& robot) const;
 
  private:
   std::shared_ptr<link::Client> client_;  // null: closed
-  /// Calls that are waited for, or were until a signal came; an end of them waits for its call.
+  /// Calls under way, also those that a signal abandoned; destroying one waits for its end.
   mutable std::vector<std::shared_ptr<void>> abandoned_;
 };
 
-/// Waits for newer than what is held, as link::Follower, in slices too.
+/// Waits for a newer distribution than `held`, as link::Follower, also in slices.
 std::shared_ptr<const Distribution> wait_for_newer(const link::Follower& follower,
                                                    const std::shared_ptr<const Distribution>& held,
                                                    std::chrono::milliseconds timeout);

@@ -6,17 +6,17 @@
 
 namespace kinship::python {
 
-/// From now on what the libraries throw becomes an exception of kinship.errors with the same text;
-/// a broken precondition (std::invalid_argument) becomes its InvalidInput.
+/// Registers the translation of the libraries' exceptions into those of kinship.errors with the
+/// same text; a broken precondition (std::invalid_argument) becomes its InvalidInput.
 void translate_failures();
 
-/// Leaves for Python with an exception of kinship.errors. Needs the interpreter's lock.
+/// Raises an exception of kinship.errors. Needs the interpreter's lock.
 /// \param name  of its class.
 [[noreturn]] void raise_error(const char* name, const std::string& text);
 
-/// Tells Python's `warnings`. Needs the interpreter's lock.
+/// Issues a warning by Python's `warnings`. Needs the interpreter's lock.
 /// \param name  of a class of kinship.errors.
-/// \throws the exception that the program has made of such warnings.
+/// \throws the warning as an exception, if the program's filters say so.
 void warn(const char* name, const std::string& text);
 
 }  // namespace kinship::python

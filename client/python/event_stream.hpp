@@ -13,21 +13,20 @@
 
 namespace kinship::python {
 
-/// What happens at a server, kept until somebody takes it; the oldest is dropped beyond kMaxEvents.
-/// Shared by threads.
+/// A queue of the server's events; beyond kMaxEvents it drops the oldest. Shared by threads.
 class EventStream {
  public:
   static constexpr std::size_t kMaxEvents = 10'000;
 
   explicit EventStream(const link::Client& client);
 
-  /// Waits so long at most. Missing: nothing came, or it is closed.
+  /// Takes the oldest event; waits for one at most `longest`. Missing: none arrived, or closed.
   std::optional<Event> take(std::chrono::milliseconds longest);
 
   bool is_closed() const;
   std::size_t dropped() const;
 
-  /// Ends every take(), and hears no more.
+  /// Ends every take() and receives no more events.
   void close();
 
  private:

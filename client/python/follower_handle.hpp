@@ -10,7 +10,7 @@
 
 namespace kinship::python {
 
-/// A follower whose distributions keep what samples them. Called with the interpreter's lock.
+/// A follower whose distributions keep their samplers. Called with the interpreter's lock.
 class FollowerHandle {
  public:
   explicit FollowerHandle(std::unique_ptr<link::Follower> follower)
@@ -26,11 +26,12 @@ class FollowerHandle {
   /// Null: there is none.
   std::shared_ptr<SampledDistribution> newest();
 
-  /// In slices between which Python hears of signals. \param held  null: any will do.
+  /// Waits in slices between which Python handles signals.
+  /// \param held  null: any will do.
   std::shared_ptr<SampledDistribution> wait_for_newer(
       const std::shared_ptr<SampledDistribution>& held, std::chrono::milliseconds timeout);
 
-  std::string status() const;  ///< in words
+  std::string status() const;  ///< as text
 
  private:
   std::shared_ptr<SampledDistribution> sampled(std::shared_ptr<const Distribution> distribution);

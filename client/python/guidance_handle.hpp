@@ -10,8 +10,8 @@
 
 namespace kinship::python {
 
-/// What guides a robot's queries at one placement, with the choice between guided and control,
-/// which learns from what is planned. Shared by threads.
+/// The guidance of a robot's queries at one placement, with the choice between guided and control,
+/// which learns from the attempts. Shared by threads.
 class GuidanceHandle {
  public:
   /// \param answer  with guidance.

@@ -17,17 +17,17 @@
 
 namespace kinship::python {
 
-/// A robot with what is computed once of it. Immutable to its users, shared between threads.
+/// A robot with its derived values, computed once. Immutable to its users, shared between threads.
 class Robot {
  public:
-  /// With its collision meshes, or with the reason why they cannot be had: kinematics and the
-  /// server need none.
-  /// \throws Failure as models::describe_robot and kinematics::read_chain say.
+  /// Loads a robot with its collision meshes, or with the reason why they cannot be read:
+  /// kinematics and the server need none.
+  /// \throws Failure as models::describe_robot and kinematics::read_chain.
   /// \param warnings  of models::describe_robot.
   static std::shared_ptr<Robot> load(const models::RobotArguments& arguments,
                                      std::vector<std::string>& warnings);
 
-  /// What a server or a file tells of a robot; it has no files, so its meshes are not known.
+  /// A robot of a server's or file's description, which has no files: its meshes are not known.
   static std::shared_ptr<Robot> of_description(RobotDescription description);
 
   Robot(RobotDescription description, kinematics::Chain chain,
@@ -49,14 +49,14 @@ class Robot {
   Eigen::MatrixXd inverse(const Eigen::Isometry3d& T_base_frame, const std::string& frame,
                           const inverse::InverseOptions& options) const;
 
-  /// What planning and all its worlds share, made when it is first asked for.
-  /// \throws Failure if its collision geometry is not known.
+  /// The robot as shared by planning and its worlds; made at the first call.
+  /// \throws Failure if its collision geometry is unknown.
   std::shared_ptr<const guided::PlannedRobot> planned() const;
 
-  /// Its collision geometry, which must be known, as after planned().
+  /// Its collision geometry; to be called after planned(), which checks that it is known.
   const geometry::RobotShapes& shapes() const { return shapes_.value(); }
 
-  /// The description with solids around its meshes, if it has any that are known.
+  /// The description with solids around its known meshes, if any.
   RobotDescription description_for_server() const;
 
  private:

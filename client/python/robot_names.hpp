@@ -3,14 +3,14 @@
 #include "client/python/bindings.hpp"
 #include "proto/types/attempt.hpp"
 
-/// Which robot is meant by what Python says.
+/// Robots named by Python arguments.
 namespace kinship::python {
 
-/// Has an attempt name a robot by its digest, or by a label.
+/// Sets the robot of an attempt by its digest or label.
 void set_robot(json::NamedAttempt& attempt, const RobotName& robot);
 
 /// The attempt as it can be sent.
-/// \throws Failure(InvalidInput) if its robot is named by a label: nobody here knows its digest.
+/// \throws Failure(InvalidInput) if its robot is named by a label: its digest is not known here.
 const Attempt& attempt_of(const json::NamedAttempt& named);
 
 }  // namespace kinship::python

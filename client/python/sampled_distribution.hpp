@@ -12,7 +12,7 @@
 
 namespace kinship::python {
 
-/// A distribution and what samples it, made when the first sample is drawn. Shared by threads.
+/// A distribution and its sampler, made for the first sample. Shared by threads.
 class SampledDistribution {
  public:
   /// \param value  not null.

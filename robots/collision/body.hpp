@@ -12,22 +12,22 @@
 
 namespace kinship::collision {
 
-/// What surrounds a robot: scene and attached objects, and pairs of names that may touch.
+/// The surroundings of a robot: scene and attached objects, and pairs of names that may touch.
 struct Surroundings {
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
   Scene scene;  ///< in the task frame
   std::vector<AttachedObject> attached;
   std::vector<std::pair<std::string, std::string>> allowed_collisions;
-  bool checks_links = true;  ///< false: whether links touch each other is not looked at
+  bool checks_links = true;  ///< false: contacts between links are not checked
 };
 
 enum class BodyKind { Link, Attached, Obstacle };
 
-/// One solid of the world and what moves it.
+/// One solid of the world and the joint that moves it.
 struct Body {
   BodyKind kind = BodyKind::Link;
   std::string name;  ///< of the link, attachment or obstacle
-  int link = -1;     ///< that it is or hangs on; -1 for obstacles
+  int link = -1;     ///< the link that it is or hangs on; -1 for obstacles
   int joint = -1;    ///< the moving joint that moves it; -1: stands still in the base frame
   Eigen::Isometry3d T_joint_body = Eigen::Isometry3d::Identity();  ///< in the base if joint is -1
   Solid solid;
@@ -35,11 +35,11 @@ struct Body {
 };
 
 /// Every solid of a robot's links.
-/// \throws Failure(InvalidInput) as RobotSolids' constructor says.
+/// \throws Failure(InvalidInput) as RobotSolids' constructor.
 std::vector<Body> link_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes);
 
-/// Puts every body that a joint moves where it is at q.
-/// \param T_base_bodies  one per body; those that stand still are left as they are.
+/// Computes the poses at q of every body that a joint moves.
+/// \param T_base_bodies  one per body; those that stand still do not change.
 void place_bodies(const kinematics::Chain& chain, const std::vector<Body>& bodies,
                   const Eigen::Ref<const Eigen::VectorXd>& q,
                   std::vector<Eigen::Isometry3d>& T_base_bodies);
@@ -48,7 +48,7 @@ void place_bodies(const kinematics::Chain& chain, const std::vector<Body>& bodie
 std::vector<Eigen::Isometry3d> standing_poses(const std::vector<Body>& bodies);
 
 /// Adds attachments, then obstacles, the latter moved from the task frame into the base frame.
-/// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
+/// \throws Failure(InvalidInput) as CollisionWorld's constructor.
 void add_surroundings(const kinematics::Chain& chain, const Surroundings& surroundings,
                       std::vector<Body>& bodies);
 

@@ -12,8 +12,8 @@ using BodyPair = std::pair<std::size_t, std::size_t>;  ///< indices into the bod
 
 using LinkPairs = std::set<std::pair<int, int>>;  ///< of link indices, first < second
 
-/// Pairs of links that hold shapes, are joined by one moving joint, and have no
-/// other link with a shape between them in the kinematic tree: they meet at that joint.
+/// Pairs of links that have shapes, are joined by one moving joint, and have no other link with a
+/// shape between them in the kinematic tree: they meet at that joint.
 /// \param has_shape  one entry per link of chain.links().
 /// \return           link indices, first < second, sorted.
 std::vector<std::pair<int, int>> neighbouring_links(const kinematics::Chain& chain,

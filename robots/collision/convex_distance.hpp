@@ -7,13 +7,13 @@
 
 namespace kinship::collision {
 
-/// How far two shapes are apart, from below: never more than the true distance, and at most 1 % or
+/// Lower bound on the distance of two shapes: never more than the true distance, and at most 1 % or
 /// 1e-6 m less; 0 where they touch.
 ///
 /// The bound comes from a plane between the shapes, so it holds wherever the iteration ends. FCL's
-/// distance is one from above, of two points that it found: no proof may rest on it.
+/// distance is an upper bound, between two points that it found: it proves nothing.
 /// \param T_base_a, T_base_b  poses of the shapes' centres in one frame, m
-/// \param enough_m            what reaches this need not be closer to the distance
+/// \param enough_m            a bound that reaches this need not be tighter
 /// Source: Gilbert, Johnson and Keerthi, A fast procedure for computing the distance between
 /// complex objects in three-dimensional space, IEEE J. Robotics and Automation (1988), theorem 2;
 /// simplices as in Ericson, Real-Time Collision Detection (2005), 5.1.

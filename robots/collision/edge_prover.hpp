@@ -14,16 +14,16 @@
 
 namespace kinship::collision {
 
-/// The smallest clearance that may be asked for, m: far above rounding, so that halving ends.
+/// The smallest clearance allowed, m: far above rounding, so that halving ends.
 inline constexpr double kLeastClearance_m = 1e-5;
 
-/// Clearance of the robot's links, and what it holds, from one another, m, where less is not asked
-/// for: a wrist may pass its hand by a few millimetres wherever it goes, and knows where both are.
+/// Largest clearance required between the robot's links and attachments, m: a wrist may pass its
+/// hand by a few millimetres in every configuration, and both positions are known exactly.
 inline constexpr double kOwnClearance_m = 1e-3;
 
 struct EdgeProofOptions {
-  /// What comes nearer to an obstacle than this may count as touching, m, and, up to
-  /// kOwnClearance_m, what comes nearer to another link. Halving ends there: the smaller, the more
+  /// A body nearer to an obstacle than this may count as touching, m, as may, up to
+  /// kOwnClearance_m, a link nearer to another. Halving ends there: the smaller, the more
   /// configurations an edge along a surface costs.
   double clearance_m = 1e-3;
 };
@@ -32,90 +32,90 @@ struct EdgeProofOptions {
 /// \param name  of the argument, for the message
 void check_clearance(const std::string& name, double clearance_m);
 
-/// Where an edge is not free.
+/// A place where an edge is not free.
 struct EdgeRefutation {
   Eigen::VectorXd q;          ///< dof, joint units
-  double share = 0;           ///< of the edge before q, 0 to 1
-  std::string first, second;  ///< the names of what touches there, or nearly does
-  double clearance_m = 0;     ///< between the two: at most what is asked of them
+  double share = 0;           ///< part of the edge before q, 0 to 1
+  std::string first, second;  ///< the names of the bodies that touch there, or nearly do
+  double clearance_m = 0;     ///< between the two: at most the one required
 };
 
-/// What is known of the straight line between two configurations.
+/// The result for the straight line between two configurations.
 struct EdgeProof {
   std::optional<EdgeRefutation> refutation;  ///< none: no configuration of the edge touches
-  /// Least distance that was measured between two bodies, at the configurations looked at, m, to
-  /// 1 % (of triangles and cubes and 0.1 mm). Between them the bodies may come nearer, but do not
-  /// touch if the edge is free. Infinite where no pair came so near that it had to be measured.
+  /// Least distance measured between two bodies, at the checked configurations, m, to 1 % (of
+  /// triangles and cubes and 0.1 mm). Between these the bodies may come nearer, but do not touch if
+  /// the edge is free. Infinite if no pair was near enough to be measured.
   double least_clearance_m = 0;
-  std::uint64_t configurations = 0;  ///< looked at
+  std::uint64_t configurations = 0;  ///< checked
   std::uint64_t distances = 0;       ///< measured, of a pair of bodies each
 
   bool is_free() const noexcept { return !refutation; }
 };
 
-/// Two things that are as near to each other as may count as touching.
+/// Two bodies near enough to count as touching.
 struct NearPair {
   std::string first, second;  ///< names
   double clearance_m = 0;     ///< between the two; 0: they touch
-  double asked_m = 0;         ///< that is asked of them; at least clearance_m
+  double asked_m = 0;         ///< the one required; at least clearance_m
 };
 
-/// Proves that a robot touches nothing on the straight line between two configurations, or finds
-/// where it does. Not shared between threads, and its world is not asked at the same time; asking
-/// again needs no heap but for what an earlier edge did not.
+/// Proves that a robot touches nothing on the straight line between two configurations, or finds a
+/// place where it does. Not shared between threads, and its world is not used at the same time;
+/// repeated calls allocate only where they need more than earlier edges.
 ///
-/// A pair of bodies is apart on a piece of the edge if what they can move relative to each other is
-/// less than the sum of their distances at its ends, or than twice their distance at its middle.
-/// The latter is asked of the world's lanes, sixteen middles at a time, of bodies grown by that
-/// motion. Of the pairs that this leaves open pieces are halved, the longest first, until none is
-/// left or a pair is as near as `clearance_m`. Halving halves the motion, so it ends.
+/// A pair of bodies is apart on a piece of the edge if their largest relative motion is less than
+/// the sum of their distances at its ends, or than twice their distance at its middle. The world's
+/// lanes test the latter, sixteen middles at a time, with bodies grown by that motion. For the
+/// pairs left open, pieces are halved, the longest first, until none is left or a pair is as near
+/// as `clearance_m`. Halving halves the motion, so it ends.
 /// Source: Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
 /// Articulated Robots in Complex Environments, IEEE Transactions on Robotics 21 (2005), section
 /// III.
 class EdgeProver {
  public:
-  /// \param world  whose pairs are looked at; must outlive this. Its checks are not counted.
+  /// \param world  gives the pairs to check; must outlive this. Its count of checks does not
+  ///               change.
   explicit EdgeProver(CollisionWorld& world);
 
-  /// \param from, to  dof, joint units; limits are not checked, continuous joints turn the way
-  ///                  their numbers say.
+  /// \param from, to  dof, joint units; limits are not checked, continuous joints turn from the one
+  ///                  value to the other.
   /// \throws std::invalid_argument if a size is wrong or a value not finite
   /// \throws Failure(InvalidInput) as check_clearance(), or if a body may move by more than 10 km.
   EdgeProof prove(const Eigen::Ref<const Eigen::VectorXd>& from,
                   const Eigen::Ref<const Eigen::VectorXd>& to,
                   const EdgeProofOptions& options = {});
 
-  /// The same of several edges, which costs less than one after the other.
+  /// The same for several edges, at less cost than one after the other.
   /// \param from, to  dof x n: an edge's ends, a column each
-  /// \return one an edge, until this is asked again
+  /// \return one per edge, valid until the next call
   const std::vector<EdgeProof>& prove_all(const Eigen::Ref<const Eigen::MatrixXd>& from,
                                           const Eigen::Ref<const Eigen::MatrixXd>& to,
                                           const EdgeProofOptions& options = {});
 
-  /// How many configurations, from the first on, are farther than the clearance from touching
-  /// anything, before one is not.
+  /// How many configurations, from the first on, keep the clearance before one does not.
   /// \param qs  dof x n, joint units
   /// \throws as above.
   Eigen::Index clear_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                            const EdgeProofOptions& options = {});
 
-  /// The same the other way round: how many are not, before one is.
+  /// The opposite: how many do not keep it before one does.
   Eigen::Index near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                           const EdgeProofOptions& options = {});
 
-  /// All pairs that are too near at one configuration, of each pair of names the nearest, for
+  /// All pairs that are too near at one configuration, for each pair of names the nearest, for
   /// messages; those of the last joints come first.
   /// \throws as above.
   std::vector<NearPair> find_near(const Eigen::Ref<const Eigen::VectorXd>& q,
                                   const EdgeProofOptions& options = {});
 
  private:
-  /// What is known of a pair at a configuration.
+  /// The distance of a pair at a configuration, as far as it is known.
   struct Distance {
-    double m = -1;  // from below; negative: not looked at
+    double m = -1;  // lower bound; negative: unknown
     bool is_close = false;
   };
-  /// A configuration of the edge; of bodies and pairs what was asked for.
+  /// A configuration of the edge, with the bodies and pairs computed so far.
   struct Place {
     std::size_t edge = 0;
     double share = 0;
@@ -137,35 +137,36 @@ class EdgeProver {
     double from = 0, to = 0;
   };
 
-  /// Checks what is asked and takes over the clearances.
+  /// Checks the arguments and sets the clearances.
   void begin(const Eigen::Ref<const Eigen::MatrixXd>& qs, const EdgeProofOptions& options);
-  double clearance_m(const BodyPair& pair) const;  ///< that is asked of a pair
-  /// Asks the lanes about the edges, part by part; what they leave open becomes pieces.
+  double clearance_m(const BodyPair& pair) const;  ///< required of a pair
+  /// Checks the edges by the lanes, part by part; open parts become pieces.
   void ask_lanes();
-  /// Asks about at most kLanes parts. \param is_last  whether they are not cut into smaller ones
+  /// Checks at most kLanes parts. \param is_last  whether they are not cut into smaller ones
   void ask_parts(std::span<const Part> parts, bool is_last);
-  /// What is to become of a part that the lanes leave open, or where bodies surely touch.
+  /// Cuts a part that the lanes leave open into smaller ones or makes it a piece; refutes the edge
+  /// where bodies surely touch.
   void open_part(const Part& part, int lane, bool surely, bool is_last);
-  /// Whether solids are too near where the lanes say that some touch.
+  /// Whether solids are too near at a place where, by the lanes, some touch.
   bool find_contact(std::size_t edge, double share);
   /// Opens the pairs that the lanes doubt. \return false: all of them.
   bool open_doubtful(int lane);
   /// The configuration at a share of an edge. \return its index.
   std::size_t add_place(std::size_t edge, double share);
   const Eigen::Isometry3d& pose_at(Place& place, std::size_t body);  ///< in the base frame
-  /// What is known of a pair at a place, a cheap distance at least.
+  /// The distance of a pair at a place, at least a cheap one.
   Distance& distance_at(Place& place, std::size_t pair);
   /// Bounds the motion of the bodies of a piece's pairs.
   void bound_motion(const Piece& piece);
   /// Whether a pair is apart all along a piece. Sets the refutation if it is too near at an end.
   bool is_apart(const Piece& piece, std::size_t pair);
-  /// Measures a pair, closely unless it reaches what is enough. \return whether it is not too near.
+  /// Measures a pair, closely up to `enough_m`. \return whether it keeps the clearance.
   bool measure(Place& place, std::size_t pair, double enough_m);
-  /// How many, from the first on, are clear, or not, before one answers otherwise.
+  /// How many, from the first on, keep the clearance, or do not, before one differs.
   Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool clear);
-  /// Whether no pair that the lanes doubt is too near. \param lane  q's, of the last question
+  /// Whether all pairs in doubt keep the clearance. \param lane  q's, of the last question
   bool is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q);
-  /// Of a pair where the world placed it, close where it may be too near.
+  /// Distance of a pair at the world's poses, close if it may be too near.
   double placed_distance_m(const BodyPair& pair) const;
   void look_at(Piece piece);  ///< by value: the list grows
 
@@ -177,7 +178,7 @@ class EdgeProver {
   std::vector<std::size_t> moving_;   // the bodies that joints move
   std::vector<int> index_of_moving_;  // one a body: of moving_, or -1
 
-  // Of the edges that are asked about.
+  // Of the edges of the present call.
   Eigen::MatrixXd from_, change_;  // dof x n
   LaneRoom clearances_;
   std::vector<EdgeProof> proofs_;
@@ -185,7 +186,7 @@ class EdgeProver {
   std::size_t used_places_ = 0;
   std::vector<Piece> pieces_;
   std::vector<std::size_t> open_;                // pairs
-  std::vector<Part> parts_, rest_;               // that the lanes are asked about, now and next
+  std::vector<Part> parts_, rest_;               // checked by the lanes, now and next
   std::vector<Eigen::MatrixXd> edge_motions_m_;  // of each whole edge, by MotionBounds::bound_all
   Eigen::MatrixXd motion_m_, grown_m_;  // moving joints + 1 x bodies: of a piece, of a part
   Eigen::MatrixXd middles_;             // dof x kLanes

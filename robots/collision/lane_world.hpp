@@ -11,24 +11,25 @@
 
 namespace kinship::collision {
 
-/// What pairs may be grown by besides their motion, m: which of them come so near is found once.
+/// Largest growth of pairs besides their motion, m: the pairs that come so near are determined
+/// once.
 inline constexpr double kLargestRoom_m = 0.1;
 
-/// What is known of some configurations; bit i: the i-th.
+/// The result for some configurations; bit i: the i-th.
 struct LaneAnswer {
   std::uint32_t maybe = 0;   ///< may collide; the others are free for sure
   std::uint32_t surely = 0;  ///< collides for sure; a part of maybe
 };
 
-/// By how much more than their motion pairs are grown, m.
+/// Growth of pairs besides their motion, m.
 struct LaneRoom {
-  double standing_m = 0;  ///< of a moving body and what stands still
+  double standing_m = 0;  ///< of a moving and a standing body
   double moving_m = 0;    ///< of two moving bodies
 };
 
-/// The moving bodies of a world as spheres, and what stands around as boxes, capsules and
-/// cylinders, asked about several configurations at once. Where solids touch it never says free.
-/// Not shared between threads.
+/// The moving bodies of a world as spheres, and the standing ones as boxes, capsules and cylinders;
+/// checks several configurations at once. It never reports touching solids as free. Not shared
+/// between threads.
 class LaneWorld {
  public:
   /// \param pairs  that are checked, one of each moves.
@@ -42,17 +43,15 @@ class LaneWorld {
   /// The same with the fastest set.
   LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
-  /// The same, but nothing is known of those behind the first that surely collides.
+  /// The same, but the answer is undefined behind the first that surely collides.
   LaneAnswer ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
-  /// The same of bodies that are grown: where they may not collide they have so much room.
-  /// What surely collides does so as it is.
-  /// \param motion_m  moving joints + 1 x the constructor's bodies, as MotionBounds has it: how
-  /// much
-  ///                  each grows towards what stands still ([0]) and what the k-th joint moves
-  ///                  ([k])
-  /// \param room      by how much more pairs are
-  /// \param is_ahead  nothing is known of those behind the first that surely collides
+  /// The same for grown bodies: those that may not collide have so much room. Bodies that surely
+  /// collide do so without growth.
+  /// \param motion_m  moving joints + 1 x the constructor's bodies, as in MotionBounds: growth of
+  ///                  each towards standing bodies ([0]) and bodies that the k-th joint moves ([k])
+  /// \param room      additional growth of pairs
+  /// \param is_ahead  the answer is undefined behind the first that surely collides
   LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                        const Eigen::Ref<const Eigen::MatrixXd>& motion_m, const LaneRoom& room,
                        bool is_ahead);
@@ -60,13 +59,13 @@ class LaneWorld {
   /// Whether it has room for the robot; else everything may collide.
   bool has_room() const noexcept { return has_room_; }
 
-  /// Pairs that may touch at one of the configurations asked about last, not surely colliding.
+  /// Pairs that may touch at one configuration of the last call, if that does not surely collide.
   /// \param pairs  of the constructor's bodies.
   /// \return whether they are known; else each may.
   bool doubtful_pairs(int lane, std::vector<BodyPair>& pairs) const;
 
  private:
-  /// How a configuration becomes what the kernels are asked, joint by joint.
+  /// The conversion of a configuration for the kernels, joint by joint.
   struct alignas(16) Writing {
     double lower[kLaneJoints], upper[kLaneJoints];  // so that the numbers hold: of what slides its
                                                     // limits, of an angle what is exact after turns
@@ -84,11 +83,12 @@ class LaneWorld {
 
   friend class LaneWorldMaker;
 
-  /// Writes a configuration into a lane of the question. \return whether the numbers hold for it.
+  /// Writes a configuration into a lane of the question. \return whether its values are within the
+  /// bounds of Writing.
   /// \param q  dof, finite.
   bool write_lane(const double* q, int lane);
   /// Writes configurations into the question, idle lanes as the last one.
-  /// \return those that the numbers do not hold for.
+  /// \return the configurations with values beyond the bounds of Writing.
   std::uint32_t write_question(const Eigen::Ref<const Eigen::MatrixXd>& qs);
   LaneAnswer answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set, bool is_ahead,
                     bool is_grown = false);

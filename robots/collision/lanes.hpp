@@ -9,11 +9,11 @@
 
 namespace kinship::collision {
 
-inline constexpr int kLanes = 16;        ///< configurations that are asked about side by side
-inline constexpr int kLaneJoints = 32;   ///< of a chain, and what follows them
-inline constexpr int kLaneBodies = 128;  ///< that joints move
+inline constexpr int kLanes = 16;        ///< configurations checked side by side
+inline constexpr int kLaneJoints = 32;   ///< of a chain, with their mimic joints
+inline constexpr int kLaneBodies = 128;  ///< moved by joints
 inline constexpr int kCoverRows = 5;     ///< centres' x, y, z, then outer and inner radii
-inline constexpr int kLaneDoubts = 64;   ///< that are told of
+inline constexpr int kLaneDoubts = 64;   ///< reported at most
 
 /// A joint, seen from a frame whose z axis is the joint's; lengths in m.
 struct LaneJoint {
@@ -23,30 +23,31 @@ struct LaneJoint {
   bool is_tilt;  ///< R turns about the x axis alone, by R[7] and R[8], its sine and cosine
 };
 
-/// A sphere of a cover. `outer` is so much larger and `inner` so much smaller than the true one
-/// that rounding never matters.
+/// A sphere of a cover. `outer` is larger and `inner` smaller than the true radius by a margin for
+/// rounding.
 struct LaneSphere {
   float center[3];
   float outer;
-  float inner;  ///< not above 0: nothing is known of what lies inside
+  float inner;  ///< not above 0: the inside is unknown
 };
 
 enum class LaneShape {
   Box,
-  AlignedBox,  ///< its axes are those of the frame it is given in: `axes` is the identity
+  AlignedBox,  ///< aligned with its frame: `axes` is the identity
   Capsule,
   Cylinder
 };
 
-/// A shape that holds a solid, in the frame of what moves it. A sphere is a capsule without length.
+/// A shape that holds a solid, in the frame of the joint that moves it. A sphere is a capsule
+/// without length.
 struct LaneForm {
   LaneShape shape;
-  float axes[9], center[3];  ///< axes of the shape's frame: row-major, one a column
+  float axes[9], center[3];  ///< axes of the shape's frame: row-major, one per column
   float half[3];             ///< of a box; of a capsule or cylinder [2], of the straight part
   float radius;              ///< of a capsule or cylinder
 };
 
-/// A solid that a joint moves: a form, one sphere around all of it, and those that cover it
+/// A solid that a joint moves: a form, one sphere around all of it, and spheres that cover it
 /// closely, all in the joint's moving frame.
 struct LaneBody {
   int joint;
@@ -55,78 +56,77 @@ struct LaneBody {
   float radius;             ///< of the sphere about the form's centre
   int first, count;         ///< of LaneScene::spheres
   int first_cover;          ///< of LaneScene::cover: the same spheres, kCoverRows times `room`
-  int room;                 ///< for so many, a multiple of kLanes
-  int first_reach;          ///< of LaneScene::reach: a word a block of what it may touch
+  int room;                 ///< capacity, a multiple of kLanes
+  int first_reach;          ///< of LaneScene::reach: a word per block, of obstacles it may touch
   int first_other, others;  ///< of LaneScene::others: earlier bodies it may not touch
 };
 
 /// One of two bodies that may not touch each other.
 struct LaneOther {
   int body;
-  float reach;  ///< centres that are farther apart are of bodies that are, m
+  float reach;  ///< bodies with centres farther apart do not touch, m
 };
 
 /// A solid that stands still, in the scene's frame.
 struct LaneObstacle {
   LaneForm form;
   bool is_solid;     ///< false: a surface somewhere within the form, near its spheres
-  int first, count;  ///< of LaneScene::spheres; used of surfaces only
+  int first, count;  ///< of LaneScene::spheres; for surfaces only
 };
 
-/// A robot and what surrounds it, as plain numbers, in a frame at the base's origin whose axes are
-/// those of the boxes around, if most of these have the same.
+/// A robot and its surroundings, as plain numbers, in a frame at the base's origin with the axes of
+/// the surrounding boxes, if most of these have the same.
 struct LaneScene {
   int moving_joints, bodies;
-  float slack;  ///< what rounding may do to a distance, m
+  float slack;  ///< largest rounding error of a distance, m
   const LaneJoint* joints;
   const LaneBody* body;
   const LaneObstacle* obstacle;
   int blocks;             ///< of kLanes obstacles
   const float* bounds;    ///< of each block: kLanes least x, y, z, then kLanes largest
-  const unsigned* reach;  ///< of each body and block: a bit an obstacle
+  const unsigned* reach;  ///< of each body and block: a bit per obstacle
   const LaneSphere* spheres;
-  const float* cover;  ///< where no sphere is left, one far away without an inside
+  const float* cover;  ///< filled up with a far sphere without an inside
   const LaneOther* others;
 };
 
-/// A body and what it may touch.
+/// A body and an obstacle or body that it may touch.
 struct LaneDoubt {
   std::uint32_t lanes;
   int body;
   int obstacle, other;  ///< one of them, the other one is -1
 };
 
-/// Sixteen configurations and what is known of each. Index of lanes last; bit i: lane i.
+/// Sixteen configurations and the result for each. Index of lanes last; bit i: lane i.
 struct alignas(64) LaneQuestion {
   float q[kLaneJoints]
-         [kLanes];  ///< the joint's value plus what its frame was turned, rad in [-pi, pi], or m
-  int count;        ///< lanes that are asked for, from 0 on
-  /// By how much each body, and each of LaneScene::others as its body sees it, is grown, m: what
-  /// may not collide then has so much room. What surely collides does so as it is.
+         [kLanes];  ///< the joint's value plus the turn of its frame, rad in [-pi, pi], or m
+  int count;        ///< lanes in use, from 0 on
+  /// Growth of each body, and of each of LaneScene::others towards its body, m: bodies that may not
+  /// collide have so much room. Bodies that surely collide do so without growth.
   const float *growth, *other_growth;
-  /// Whether nothing matters behind the first lane that collides for sure; what is said of those is
-  /// `surely`.
+  /// Whether lanes behind the first sure collision need no answer; they are then set in `surely`.
   bool is_ahead;
   int likely_body, likely_obstacle;  ///< tried first; out: the last that surely collided
   std::uint32_t maybe;               ///< out: may collide; the others are free for sure
   std::uint32_t surely;              ///< out: collides for sure; a part of maybe
-  /// Out: why a lane that does not collide for sure may do so; the first kLaneDoubts of as many as
-  /// there are. Nothing else touches there.
+  /// Out: the bodies that may collide in lanes that do not collide for sure; the first kLaneDoubts
+  /// of `doubts`. Nothing else touches there.
   LaneDoubt doubt[kLaneDoubts];
   int doubts;
 };
 
-/// Answers a question. \param places  room for 3 * kLanes floats a sphere of the scene, aligned as
-/// a LaneQuestion. No heap, no state.
+/// Answers a question. \param places  room for 3 * kLanes floats per sphere of the scene, aligned
+/// as a LaneQuestion. No heap, no state.
 using LaneKernel = void (*)(const LaneScene& scene, LaneQuestion& question, float* places);
 
-/// The kernel of one instruction set and what people call it.
+/// The kernel of one instruction set and its name.
 struct LaneSet {
   std::string_view name;  ///< "sse2", "avx2", "avx512vl", "avx512"
   LaneKernel kernel;
 };
 
-/// The instruction sets that this machine knows, the slowest first; at least one.
+/// The instruction sets of this machine, the slowest first; at least one.
 std::span<const LaneSet> lane_sets();
 
 // One unit each; to be called only where the machine knows the instructions.

@@ -8,13 +8,13 @@
 
 namespace kinship::collision {
 
-/// How far the points of a robot's bodies can move on a straight line between two configurations.
+/// Bounds on the motion of a robot's bodies on a straight line between two configurations.
 ///
-/// Joint by joint: a prismatic joint moves a point by what it slides, a revolute one by at most its
-/// turn times the point's distance from the joint's axis. That distance is bounded by the lengths
-/// of the links between (bound_all), or closer by what it is at both ends of the line and by how
-/// far the joints between axis and body move the body (bound). Neither needs limits. Source:
-/// Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
+/// Joint by joint: a prismatic joint moves a point by its displacement, a revolute one by at most
+/// its turn times the point's distance from the joint's axis. That distance is bounded by the
+/// lengths of the links between (bound_all), or closer by its values at both ends of the line and
+/// the body's motion by the joints between axis and body (bound). Neither needs limits.
+/// Source: Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
 /// Articulated Robots in Complex Environments, IEEE Transactions on Robotics 21 (2005), section IV;
 /// the distances at both ends are ours.
 class MotionBounds {
@@ -22,27 +22,29 @@ class MotionBounds {
   MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies);
 
   /// Bounds of the way of all bodies' points on a line, in the frame of every joint before each, m:
-  /// coarser than bound(), without looking at a configuration. Of a part of the line the same part.
+  /// coarser than bound(), without forward kinematics. They scale with parts of the line.
   /// \param from, to  dof, joint units: the ends of the line
-  /// \param motion_m  out: moving joints + 1 x bodies, as bound() has it
+  /// \param motion_m  out: moving joints + 1 x bodies, as in bound()
   void bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
                  const Eigen::Ref<const Eigen::VectorXd>& to,
                  Eigen::Ref<Eigen::MatrixXd> motion_m) const;
 
   /// Largest distances of a body's points from the axes of the joints that move it, at one
   /// configuration, m; 0 for prismatic joints.
-  /// \param T_base_joints  poses of the joints' moving frames there, one a moving joint
-  /// \param reach_m        out: one a moving joint; the body's own and those before it are written
+  /// \param T_base_joints  poses of the joints' moving frames there, one per moving joint
+  /// \param reach_m        out: one per moving joint; written for the body's own joint and those
+  ///                       before it
   void measure(std::size_t body, const std::vector<Eigen::Isometry3d>& T_base_joints,
                Eigen::Ref<Eigen::VectorXd> reach_m) const;
 
   /// Bounds of the way of a body's points between two configurations, in the frame of every joint
-  /// before it, m. Of a part of the way they are the same part at most: it is a speed as well.
+  /// before it, m. A part of the way has at most the same part of the bound, which therefore limits
+  /// the speed too.
   /// \param change    dof, joint units: of the joints from one end to the other
-  /// \param from_m, to_m  what measure() says at both ends
+  /// \param from_m, to_m  of measure() at both ends
   /// \param motion_m  out: moving joints + 1; [0]: in the base's frame, [k]: in the moving frame of
-  ///                  the k-th joint, counted from 1; only those of the body's own joint and of the
-  ///                  ones before it are written
+  ///                  the k-th joint, counted from 1; written for the body's own joint and those
+  ///                  before it
   void bound(std::size_t body, const Eigen::Ref<const Eigen::VectorXd>& change,
              const Eigen::Ref<const Eigen::VectorXd>& from_m,
              const Eigen::Ref<const Eigen::VectorXd>& to_m,
@@ -52,7 +54,7 @@ class MotionBounds {
   struct Hull {
     int joint = -1;
     Eigen::Matrix3Xd corners;          // 3 x 1, 2 or 8, in the joint's moving frame
-    double radius_m = 0;               // all of the body lies so near to what the corners span
+    double radius_m = 0;               // the body lies within it of the corners' hull
     double across_m = 0, reach_m = 0;  // from the joint's axis, from its origin
   };
 
@@ -61,7 +63,7 @@ class MotionBounds {
     Eigen::Vector3d axis;  // in its frame
     bool slides = false;
     int before = -1;        // the moving joint before it
-    int source = 0;         // of `change`: itself, or what it follows,
+    int source = 0;         // of `change`: itself, or the joint it follows,
     double multiplier = 1;  // so many times
     double offset = 0;      // and so much more, rad or m
     // Of its origin where it does not slide, from the axis and the origin of the joint before.

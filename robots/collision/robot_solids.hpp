@@ -9,9 +9,9 @@
 
 namespace kinship::collision {
 
-/// What all worlds of one robot have in common, made once: the solids of its links, for meshes
-/// their trees of triangles, and the pairs of links that are checked. Immutable, cheap to copy, may
-/// be shared between threads.
+/// The common part of all worlds of one robot, made once: the solids of its links, for meshes their
+/// trees of triangles, and the pairs of links that are checked. Immutable, cheap to copy, may be
+/// shared between threads.
 class RobotSolids {
  public:
   /// Never checked: links fixed to each other, neighbouring links, the shapes' never-colliding
@@ -24,7 +24,7 @@ class RobotSolids {
     kinematics::Chain chain;
     std::vector<Body> bodies;  ///< of the links
     LinkPairs unchecked;
-    LinkPairs always_touching;  ///< of these, those found in random configurations
+    LinkPairs always_touching;  ///< of these, the ones found in random configurations
   };
   const Parts& parts() const noexcept { return *parts_; }
 
@@ -32,12 +32,12 @@ class RobotSolids {
   std::shared_ptr<const Parts> parts_;
 };
 
-/// Names the pairs of links that are not checked because they touch wherever the robot goes, and
-/// says what to do: a sentence without a full stop at its end; empty if there are none.
+/// A sentence, without a full stop, on the pairs of links that are not checked because they always
+/// touch, with advice; empty if there are none.
 std::string describe_always_touching(const RobotSolids& robot);
 
-/// The links of a robot and what surrounds it.
-/// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
+/// The bodies of a robot's links and its surroundings.
+/// \throws Failure(InvalidInput) as CollisionWorld's constructor.
 std::vector<Body> bodies_among(const RobotSolids& robot, const Surroundings& surroundings);
 
 }  // namespace kinship::collision

@@ -10,12 +10,12 @@ namespace {
 
 constexpr unsigned kAllOfAGroup = (1U << KINSHIP_SIMD_WIDTH) - 1U;
 
-/// What is known of a group of lanes.
+/// The result for a group of lanes.
 struct Verdict {
   unsigned maybe = 0, surely = 0;
 };
 
-/// Configurations of one group: where its joints and, as far as somebody asked, its spheres are.
+/// Configurations of one group: the poses of its joints and, as far as needed, its spheres.
 class Group {
  public:
   /// \param first  lane of the question
@@ -74,7 +74,7 @@ class Group {
     }
   }
 
-  /// What collided last does so often again, and then the rest need not be asked.
+  /// Tries the last collision first: it often recurs, and then the rest is not checked.
   void try_likely() {
     if (question_.likely_body < 0)
       return;
@@ -83,7 +83,8 @@ class Group {
                    moved(frames_[body.joint], body.form.center), kAllOfAGroup);
   }
 
-  /// First the box around where the body is in any lane, against those of many obstacles.
+  /// First checks the box around the body's places in all lanes against the boxes of many
+  /// obstacles.
   KINSHIP_SIMD_INLINE void check_obstacles(int index, const WidePoint& center) {
     const LaneBody& body = scene_.body[index];
     const float growth = question_.growth[index], radius = body.radius + growth;
@@ -118,8 +119,7 @@ class Group {
     }
   }
 
-  /// How far a grown body reaches along the scene's axes, to either side of its centre, in each
-  /// lane.
+  /// Half extents of a grown body along the scene's axes, in each lane.
   KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body, float growth) const {
     const LaneForm& form = body.form;
     const WideFrame& frame = frames_[body.joint];
@@ -137,7 +137,8 @@ class Group {
     return half;
   }
 
-  /// Lanes in which a box along the axes overlaps that around an obstacle. \param bounds  its own.
+  /// Lanes in which a box along the axes overlaps an obstacle's box. \param bounds  of the
+  /// obstacle.
   static KINSHIP_SIMD_INLINE unsigned overlap(const float* bounds, const WidePoint& center,
                                               const WidePoint& half) {
     return below(all(bounds[0]), center.x + half.x) &
@@ -225,7 +226,7 @@ class Group {
     }
   }
 
-  /// Of a surface: lanes in which a sphere reaches those that cover it.
+  /// Lanes in which a sphere reaches the spheres that cover a surface.
   unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, float radius) const {
     unsigned reached = 0;
     for (int i = obstacle.first; i < obstacle.first + obstacle.count; ++i) {
@@ -346,7 +347,8 @@ class Group {
     });
   }
 
-  /// \param planes  what planes between the two say of some lanes; asked only where that matters.
+  /// \param planes  gives the result of planes between the two for some lanes; called only where
+  ///                needed.
   template <typename Ask>
   KINSHIP_SIMD_INLINE void conclude(Verdict found, LaneDoubt doubt, const Ask& planes) {
     if (found.maybe == 0)

@@ -46,7 +46,7 @@ KINSHIP_SIMD_INLINE Wide absolute(Wide value) { return Wide(WideInt(value) & 0x7
 
 KINSHIP_SIMD_INLINE Wide positive(Wide value) { return value > 0.0F ? value : Wide{}; }
 
-/// Of all lanes.
+/// Least value of all lanes.
 KINSHIP_SIMD_INLINE float least(Wide value) {
 #if defined(__SSE2__)
 #if KINSHIP_SIMD_WIDTH == 16
@@ -73,7 +73,7 @@ KINSHIP_SIMD_INLINE float least(Wide value) {
 
 KINSHIP_SIMD_INLINE float largest(Wide value) { return -least(-value); }
 
-/// One bit a lane where a < b.
+/// One bit per lane with a < b.
 KINSHIP_SIMD_INLINE unsigned below(Wide a, Wide b) {
 #if KINSHIP_SIMD_WIDTH == 16
   return _mm512_cmp_ps_mask(__m512(a), __m512(b), _CMP_LT_OQ);
@@ -129,7 +129,7 @@ KINSHIP_SIMD_INLINE WideFrame standing(const float (&R)[9], const float (&p)[3])
           {all(p[0]), all(p[1]), all(p[2])}};
 }
 
-/// Where a point of a frame lies.
+/// A point in every lane.
 struct WidePoint {
   Wide x, y, z;
 };

@@ -6,7 +6,7 @@
 namespace kinship::collision {
 namespace {
 
-/// Where a form lies.
+/// Pose of a form.
 struct WideForm {
   WidePoint axis[3];
   WidePoint center;
@@ -49,7 +49,7 @@ KINSHIP_SIMD_INLINE bool is_box(const LaneForm& form) {
   return form.shape == LaneShape::Box || form.shape == LaneShape::AlignedBox;
 }
 
-/// How far a form reaches from its centre along a direction of length `norm`, times that length.
+/// Extent of a form from its centre along a direction of length `norm`, times that length.
 KINSHIP_SIMD_INLINE Wide extent(const LaneForm& form, const WideForm& at, const WidePoint& n,
                                 Wide norm) {
   const Wide along = dot(n, at.axis[2]);
@@ -64,12 +64,12 @@ KINSHIP_SIMD_INLINE Wide extent(const LaneForm& form, const WideForm& at, const 
   return straight + root(dot(across, across)) * form.radius;
 }
 
-/// What rounding may do to a distance, and how much what is apart has between it besides, m.
+/// Largest rounding error of a distance, and the gap required between separate forms besides, m.
 struct Margin {
   float slack, growth;
 };
 
-/// What planes between two forms say of some lanes.
+/// The result of planes between two forms for some lanes.
 struct Planes {
   unsigned apart;        ///< one lies between them
   unsigned overlapping;  ///< none does, and the forms share more than rounding could feign
@@ -93,8 +93,8 @@ class Separation {
   bool is_done(unsigned open) const { return (open & ~apart_) == 0; }
   const WidePoint& between() const { return between_; }
 
-  /// Across a side of a box, or any other direction. One too short to be a direction separates
-  /// nothing: all distances along it are.
+  /// Tries a plane across a side of a box, or any other direction. One too short to be a direction
+  /// separates nothing, as all distances along it are too short.
   KINSHIP_SIMD_INLINE void attempt(const WidePoint& n) {
     const Wide norm = root(dot(n, n));
     const Wide reached = extent(a_form_, a_, n, norm) + extent(b_form_, b_, n, norm);
@@ -105,8 +105,9 @@ class Separation {
     depth_ = depth < depth_ ? depth : depth_;
   }
 
-  /// Across an edge of each of two boxes, after their sides. Of edges that are nearly parallel the
-  /// sides alone tell, if the boxes overlap by more than it takes to make them parallel.
+  /// Tries a plane across an edge of each of two boxes, after their sides. For nearly parallel
+  /// edges the sides alone decide, if the boxes overlap by more than it takes to make them
+  /// parallel.
   KINSHIP_SIMD_INLINE void attempt_edges(const WidePoint& n) {
     constexpr float kSine = 1e-3F;
     const Wide squared = dot(n, n), norm = root(squared);
@@ -134,7 +135,8 @@ class Separation {
   Wide depth_ = all(1e9F);  // least overlap so far
 };
 
-/// Across what joins the centres, as it is and without its part along either's longest axis.
+/// Tries planes across the line between the centres, also without its part along either's longest
+/// axis.
 KINSHIP_SIMD_INLINE void attempt_others(const WideForm& a, const WideForm& b, Separation& planes) {
   const WidePoint& between = planes.between();
   planes.attempt(minus(between, a.axis[2], dot(between, a.axis[2])));
@@ -142,9 +144,10 @@ KINSHIP_SIMD_INLINE void attempt_others(const WideForm& a, const WideForm& b, Se
   planes.attempt(minus(between, b.axis[2], dot(between, b.axis[2])));
 }
 
-/// Tries planes of the forms' axes, across an axis of each, and, where one is no box, across what
-/// joins their centres, also without its part along either's longest axis. Of two boxes these are
-/// all that matter, so that they say too which overlap; of the others they may miss some.
+/// Tries planes of the forms' axes, across an axis of each, and, if one is no box, across the line
+/// between their centres, also without its part along either's longest axis. For two boxes these
+/// planes are sufficient, so that they also decide overlap; for other forms they may miss a
+/// separation.
 /// \param open    lanes that matter; ends as soon as all of these are apart.
 /// Source: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996 (boxes).
 Planes separated(const WideForm& a, const LaneForm& a_form, const WideForm& b,

@@ -15,16 +15,17 @@ class CollisionGeometry;
 
 namespace kinship::collision {
 
-/// A shape prepared for many questions: spheres that cover it and its own bounding box, both of
-/// which say "apart" cheaply, and FCL's geometry for when they cannot. Immutable, cheap to copy.
+/// A shape prepared for many checks: covering spheres and its own bounding box, both of which show
+/// "apart" cheaply, and FCL's geometry for the other cases. Immutable, cheap to copy.
 ///
-/// Of a mesh the shape only says how far it reaches, and its triangles are what touches: what lies
+/// For a mesh, the shape only bounds its extent, and the triangles are checked for contact: a solid
 /// wholly within a closed mesh does not touch it.
 class Solid {
  public:
   /// \param triangles  null, or a mesh within the shape, in its frame: 3 x 3 n, three columns a
   ///                   triangle, n >= 1. Copied.
-  /// \throws Failure(InvalidInput) if a size is not finite and positive, or the triangles are none.
+  /// \throws Failure(InvalidInput) if a size is not finite and positive, or the triangles are
+  ///         invalid.
   explicit Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles = nullptr);
 
   /// The cubes of a block of a point cloud, each of them solid; the solid's frame is at the centre
@@ -34,9 +35,9 @@ class Solid {
 
   const Shape& shape() const noexcept { return shape_; }  ///< holds all of the solid
   bool is_hollow() const noexcept { return is_hollow_; }  ///< triangles or cubes within the shape
-  /// Of the sphere about the centre that holds everything.
+  /// Radius of the sphere about the centre that holds all of the solid.
   double radius_m() const noexcept { return radius_m_; }
-  /// Of the box about the centre that holds everything.
+  /// Half extents of the box about the centre that holds all of the solid.
   const Eigen::Vector3d& half_extents_m() const noexcept { return half_extents_m_; }
   /// Spheres that together hold all of the solid closely.
   const std::vector<CoverSphere>& cover() const noexcept { return *cover_; }
@@ -46,30 +47,30 @@ class Solid {
                     const Eigen::Isometry3d& T_base_b);
 
   /// Whether the surface of `mesh` is closed around `inner`, which must not touch it; false if
-  /// `mesh` is no mesh. Of several surfaces one in the other the innermost decides.
+  /// `mesh` is no mesh. Of nested surfaces the innermost decides.
   /// Source: van Oosterom and Strackee, The Solid Angle of a Plane Triangle (1983), eq. 8; summed
   /// up it is the winding number of the surface around a point.
   friend bool encloses(const Solid& mesh, const Eigen::Isometry3d& T_base_mesh, const Solid& inner,
                        const Eigen::Isometry3d& T_base_inner);
 
-  /// A distance that two solids keep at least, from spheres and boxes that hold them; 0: unknown.
+  /// A lower bound on the distance of two solids, from spheres and boxes that hold them; 0:
+  /// unknown.
   friend double cheap_distance_m(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
                                  const Eigen::Isometry3d& T_base_b);
 
-  /// How far two solids are apart, from below: at most 1 % and 0.1 mm less than it is; 0 where they
-  /// touch. Of shapes by convex_distance_m, of triangles and cubes by FCL.
-  /// \param enough_m  what reaches this need not be so close to the distance
+  /// Lower bound on the distance of two solids: at most 1 % and 0.1 mm less than the distance; 0
+  /// where they touch. Of shapes by convex_distance_m, of triangles and cubes by FCL.
+  /// \param enough_m  a bound that reaches this need not be so tight
   friend double close_distance_m(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
                                  const Eigen::Isometry3d& T_base_b, double enough_m);
 
  private:
   void bound();  ///< by its shape
-  /// How far the spheres that cover this solid stay away from the bounding box of `other`, at
-  /// least.
+  /// Lower bound on the distance of this solid's covering spheres from the bounding box of `other`.
   double cover_distance_m(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
-  /// How far the spheres that hold this solid closely stay away from `other`'s shape, at least.
+  /// Lower bound on the distance of this solid's close cover from `other`'s shape.
   double close_cover_distance_m(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
-  /// Whether the spheres that cover this solid stay clear of the bounding box of `other`.
+  /// Whether this solid's covering spheres miss the bounding box of `other`.
   bool cover_misses_box_of(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
 
   Shape shape_;

@@ -8,10 +8,10 @@
 
 namespace kinship::geometry {
 
-/// Smallest extent that a fitted shape gets, m: a flat mesh becomes a plate this thick.
+/// Smallest extent of a fitted shape, m: a flat mesh becomes a plate this thick.
 inline constexpr double kMinFitted_m = 1e-3;
 
-/// A solid around points, and where its centre stands in their frame.
+/// A solid around points, and the pose of its centre in their frame.
 struct FittedShape {
   Shape shape;
   Eigen::Isometry3d T_points_shape = Eigen::Isometry3d::Identity();
@@ -19,20 +19,20 @@ struct FittedShape {
 
 /// A box or capsule that holds every point: of the boxes along the axes of the points' frame and
 /// along their principal axes, and the capsules along each of these axes, the one with the smallest
-/// volume. Conservative; not the smallest there is.
+/// volume. Conservative; not the smallest possible.
 /// \param points  3 x n, n >= 1, finite, m.
 FittedShape fit_shape(const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
 /// A mesh in the solid around it.
 struct FittedMesh {
   FittedShape fitted;
-  /// In the frame of the solid: 3 x 3 n, m, three columns a triangle; never null.
+  /// In the frame of the solid: 3 x 3 n, m, three columns per triangle; never null.
   std::shared_ptr<const Eigen::Matrix3Xd> triangles;
 };
 
-/// \param corners  3 x 3 n, m, three columns a triangle.
+/// \param corners  3 x 3 n, m, three columns per triangle.
 /// \return         InvalidInput without triangles, for numbers that are not finite, and for a mesh
-///                 that is larger than a shape may be.
+///                 above the size limit of a shape.
 Result<FittedMesh> fit_mesh(const Eigen::Matrix3Xd& corners);
 
 }  // namespace kinship::geometry

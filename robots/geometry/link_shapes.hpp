@@ -20,9 +20,9 @@ struct LinkShape {
   int link = 0;  ///< index into Chain::links()
   Shape shape;
   Eigen::Isometry3d T_link_shape = Eigen::Isometry3d::Identity();  ///< of the shape's centre
-  bool approximate = false;  ///< fitted around a mesh, which lies inside
-  /// The surface of that mesh in the frame of the shape: 3 x 3 n, m, three columns a triangle. Null
-  /// without a mesh. Shared by the copies of a robot's shapes, and never changed.
+  bool approximate = false;                                        ///< fitted around a mesh
+  /// The surface of that mesh in the frame of the shape: 3 x 3 n, m, three columns per triangle.
+  /// Null without a mesh. Shared by the copies of a robot's shapes; immutable.
   std::shared_ptr<const Eigen::Matrix3Xd> triangles = nullptr;
 };
 
@@ -30,32 +30,29 @@ struct LinkShape {
 struct RobotShapes {
   std::vector<LinkShape> shapes;
   std::vector<std::pair<int, int>> never_colliding;  ///< link indices, first < second
-  std::vector<int> left_out = {};     ///< links of which a mesh was left out, ascending, distinct
-  std::vector<int> visual_only = {};  ///< links that are drawn and have no solid, ascending
+  std::vector<int> left_out = {};     ///< links with a mesh left out, ascending, distinct
+  std::vector<int> visual_only = {};  ///< links with visuals and no solid, ascending
   std::vector<int> from_visual = {};  ///< links whose solids are their visuals, ascending
 };
 
-/// Where the corners of a mesh come from, by the URI or file name that the URDF gives.
-/// \return 3 x 3 n, m, three columns a triangle, in the mesh's frame, not scaled; nothing if the
-/// mesh
-///         is to be left out; or why it cannot be had, which names the URI.
+/// Gives the corners of a mesh by the URI or file name in the URDF.
+/// \return 3 x 3 n, m, three columns per triangle, in the mesh's frame, not scaled; nothing if the
+///         mesh is to be left out; or an error that names the URI.
 using MeshSource = std::function<Result<std::optional<Eigen::Matrix3Xd>>(const std::string& uri)>;
 
-/// A MeshSource for who must not miss a solid: InvalidInput for every mesh.
+/// A MeshSource for callers that must not miss a solid: InvalidInput for every mesh.
 Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri);
 
-/// A MeshSource for who has the URDF's text only and can do without: the links' meshes are missing
-/// among the shapes.
+/// A MeshSource for callers with the URDF's text only: it leaves every mesh out of the shapes.
 Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
 
 /// Reads the collision elements of a description's URDF for the links of its chain: boxes,
-/// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule;
-/// a mesh keeps its triangles, scaled as the URDF says, in the box or capsule that fit_shape puts
-/// around them.
+/// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule; a
+/// mesh keeps its triangles, with the URDF's scale, in the box or capsule of fit_shape around them.
 /// Shapes come in the order of the links; a link paired with itself is left out.
 /// \return InvalidInput with the link named for a size that is not finite and positive, a mesh
-///         scaled by 0 or without area, or a pair that names no link; what parse_urdf says of the
-///         text; what `meshes` says of a mesh, with the link named.
+///         scaled by 0 or without area, or a pair that names no link; the error of parse_urdf; the
+///         error of `meshes`, with the link named.
 Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
                                 const MeshSource& meshes = refuse_mesh);
 

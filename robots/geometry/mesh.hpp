@@ -11,15 +11,16 @@ namespace kinship::geometry {
 inline constexpr std::size_t kMaxMeshBytes = 64'000'000;
 inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 
-/// The corners of the triangles of a mesh, in its own frame: 3 x 3 n, m, three columns a triangle;
-/// a face with more corners is a fan of triangles.
+/// The corners of the triangles of a mesh, in its own frame: 3 x 3 n, m, three columns per
+/// triangle; a face with more corners is a fan of triangles.
 ///
-/// A unit that a DAE file names is applied; its up-axis is not: x, y and z mean what they say, as
-/// in other readers of URDF.
+/// The unit of a DAE file is applied; its up-axis is not: x, y and z are taken as written, as in
+/// other readers of URDF.
 /// \param bytes   contents of a file, untrusted.
 /// \param format  the file's ending: stl (binary or text), obj or dae, in either case.
-/// \return        InvalidInput for another format, what cannot be read, holds no triangles or
-///                numbers that are not finite; TooLarge above kMaxMeshBytes or kMaxMeshTriangles.
+/// \return        InvalidInput for another format, and for a file that is unreadable, without
+///                triangles or with numbers that are not finite; TooLarge above kMaxMeshBytes or
+///                kMaxMeshTriangles.
 Result<Eigen::Matrix3Xd> read_mesh(std::string_view bytes, std::string_view format);
 
 }  // namespace kinship::geometry

@@ -12,10 +12,10 @@ struct CoverOptions {
   double min_gain = 0.02;  ///< a cut must lower the volume of all shapes together by this part
 };
 
-/// Shapes that together hold every point of a mesh's triangles, so that what touches the mesh
-/// touches one of them: the mesh is cut by planes, where that lowers the volume most, and a solid
+/// Shapes that together hold every point of a mesh's triangles, so that a body that touches the
+/// mesh touches one of them: planes cut the mesh where that lowers the volume most, and a solid is
 /// fitted tightly around each piece. Equal input, equal shapes.
-/// \param corners  3 x 3 n, m, finite, three columns a triangle, n >= 1.
+/// \param corners  3 x 3 n, m, finite, three columns per triangle, n >= 1.
 std::vector<FittedShape> cover_mesh(const Eigen::Matrix3Xd& corners,
                                     const CoverOptions& options = {});
 

@@ -14,7 +14,7 @@ std::string_view take_line(std::string_view& text);
 /// Cuts the first word off, which ends at a blank or tab; empty if there is none.
 std::string_view take_word(std::string_view& line);
 
-/// The number that a whole word is, in any locale; a plus may stand before it.
+/// The number of a whole word, in any locale; a plus may precede it.
 template <typename Number>
 std::optional<Number> number_of(std::string_view word) {
   if (word.starts_with('+'))
@@ -29,8 +29,8 @@ std::optional<Number> number_of(std::string_view word) {
 /// \throws Failure(InvalidInput) that quotes a word which is no number, with its line.
 [[noreturn]] void refuse_word(std::size_t line_number, std::string_view word);
 
-/// What readers of mesh files read as other numbers than are written: a word in the vertices of an
-/// OBJ file that is no number as a whole (1,000.5 becomes 1, 0x10 becomes 0).
+/// Refuses words that readers of OBJ files would misread: a word in the vertices that is no number
+/// as a whole (1,000.5 becomes 1, 0x10 becomes 0).
 /// \throws Failure(InvalidInput) as refuse_word, for the first.
 void require_obj_numbers(std::string_view text);
 

@@ -15,7 +15,7 @@ inline constexpr std::size_t kMaxVoxels = 500'000;  ///< of one cloud
 /// \param points   3 x n, m, finite
 /// \param voxel_m  edge of a cube, > 0
 /// \return 3 x n, m; InvalidInput if there is no point, one lies farther than a kilometre, or they
-///         span more than 65 000 cubes; TooLarge above kMaxVoxels, with what to change.
+///         span more than 65 000 cubes; TooLarge above kMaxVoxels, with advice.
 Result<Eigen::Matrix3Xd> voxels_of(const Eigen::Matrix3Xd& points, double voxel_m);
 
 /// Some cubes of a cloud, and a box that holds them.
@@ -26,9 +26,9 @@ struct VoxelBlock {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
 };
 
-/// All cubes in blocks, made by cutting the one with the longest box in the middle, again and
-/// again. \param voxels  of voxels_of(), n >= 1 \param most    blocks, >= 1; there are fewer of
-/// fewer cubes
+/// All cubes in blocks, made by cutting the one with the longest box in the middle, repeatedly.
+/// \param voxels  of voxels_of(), n >= 1
+/// \param most    blocks, >= 1; fewer for fewer cubes
 std::vector<VoxelBlock> blocks_of(const Eigen::Matrix3Xd& voxels, double voxel_m, std::size_t most);
 
 }  // namespace kinship::geometry

@@ -11,7 +11,7 @@ namespace kinship::geometry {
 /// Largest extent, radius or length of a shape, m.
 inline constexpr double kMaxShape_m = 1000.0;
 
-/// Why a shape is none: a size that is not finite, not positive or above kMaxShape_m, with its
+/// Why a shape is invalid: a size that is not finite, not positive or above kMaxShape_m, with its
 /// value. A capsule may have length 0. Empty if the shape is sound.
 std::optional<std::string> broken_rule(const Shape& shape);
 

@@ -21,8 +21,8 @@ struct Displacement {
   Displacement inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
 };
 
-/// What a joint turns about (or slides along): a line in the base link while every joint is at 0.
-/// The joint's own frame plays no part: two joints whose lines meet do so whatever their origins.
+/// The axis that a joint turns about or slides along: a line in the base link, with every joint at
+/// 0. It does not depend on the joint's own frame: lines meet wherever the joints' origins lie.
 struct Axis {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit vector
   Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< any point of the line
@@ -42,16 +42,16 @@ struct Axis {
     return {R, point - R * point};
   }
 
-  /// Where a displacement carries the line.
+  /// The line after a displacement.
   Axis moved(const Displacement& by) const { return {by.R * direction, by(point), prismatic}; }
 };
 
 /// Shortest distance between two lines.
 double distance_between(const Axis& a, const Axis& b);
 
-/// A chain as a product of exponentials: the transfer frame stands at the product of the axes'
+/// A chain as a product of exponentials: the pose of the transfer frame is the product of the axes'
 /// displacements, from base to tip, times `T_base_transfer` at zero. Lengths are in units of
-/// `scale_m`, about the arm's reach, so that tolerances mean the same for arms of every size.
+/// `scale_m`, about the arm's reach, so that tolerances are the same for arms of every size.
 struct AxisChain {
   std::vector<Axis> axes;        ///< one per joint, from base to tip
   Displacement T_base_transfer;  ///< with every joint at 0

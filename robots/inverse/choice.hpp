@@ -26,11 +26,11 @@ class Configurations {
   std::vector<double> values_;
 };
 
-/// Whether a configuration is at least `distance` from all of those.
+/// Whether a configuration is at least `distance` from all of `from`.
 bool is_apart(const JointSpace& space, const Configurations& from, const double* q,
               double distance) noexcept;
 
-/// Shuffled uniformly, then one after the other taken that is at least `distance` from those
+/// Takes, in uniformly shuffled order, each configuration at least `distance` from those taken
 /// before, until there are `most`.
 Configurations chosen(const JointSpace& space, Configurations all, std::size_t most,
                       double distance, CounterGenerator generator);

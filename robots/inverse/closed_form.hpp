@@ -27,7 +27,7 @@ class Branches {
   /// The values of one configuration, dof of them, joint units.
   const double* operator[](int i) const { return values_[static_cast<std::size_t>(i)].data(); }
 
-  /// Whether a joint would have left its limits: without them there might have been more.
+  /// Whether joint limits cut off branches: without limits there might be more.
   bool outside_limits() const noexcept { return outside_limits_; }
   void leave_out(bool any) noexcept { outside_limits_ = outside_limits_ || any; }
 
@@ -46,8 +46,8 @@ class Branches {
 /// by threads; its calls take neither heap nor locks.
 class ClosedForm {
  public:
-  /// So many configurations within limits it has to give on average to pay, at a pose that the arm
-  /// reaches and random values of its locked joints.
+  /// Fewest configurations within limits, on average over reachable poses and random values of the
+  /// locked joints, for which the closed form pays.
   static constexpr double kWorthwhile = 0.5;
 
   static constexpr double kExactMargin_rad = 1e-5;
@@ -56,25 +56,25 @@ class ClosedForm {
   /// Joints whose values the caller chooses, ascending, 0 the first; empty: the pose fixes all.
   std::span<const int> locks() const noexcept { return locks_; }
 
-  /// At most as many configurations per pose and values of the locked joints.
+  /// Largest number of configurations per pose and values of the locked joints.
   int branches() const noexcept { return planar_ ? 2 : kMaxBranches; }
 
-  /// Whether the axes have the structure exactly. If not, what `append` gives is a solution of the
-  /// nominal chain, off by about `deviation()`, and has to be polished.
+  /// Whether the axes have the structure exactly. If not, `append` gives solutions of the nominal
+  /// chain, off by about `deviation()`, which need a polish.
   bool exact() const noexcept { return deviation() <= kExactStructure; }
   double deviation() const noexcept;  ///< share of the arm's size, or rad
 
   /// Configurations within limits per reachable pose and random values of the locked joints, as
-  /// tried when built.
+  /// measured when built.
   double mean_within_limits() const noexcept { return mean_within_limits_; }
 
-  /// What makes it work, e.g. "spherical wrist 5-6-7".
+  /// Its structure, e.g. "spherical wrist 5-6-7".
   std::string structure_name() const;
 
   /// Appends all branches whose turning joints are within limits but for a margin (kNearMargin_rad
-  /// if the structure is not exact, else kExactMargin_rad): in no particular order, any turn, not
-  /// verified, and at the boundary of reach also such as fall just short of the pose. Singular
-  /// poses get representatives of their families, with 0 for a joint that could have any value.
+  /// if the structure is not exact, else kExactMargin_rad): in no particular order, in any turn,
+  /// not verified, and at the boundary of reach also ones that just miss the pose. Singular poses
+  /// get representatives of their families, with 0 for a joint that could have any value.
   /// \param T_base_transfer  pose of the transfer frame in the base link, m.
   /// \param locked           one value per lock, joint units.
   void append(const Eigen::Isometry3d& T_base_transfer, std::span<const double> locked,
@@ -99,18 +99,18 @@ class ClosedForm {
   double mean_within_limits_ = 0;
 };
 
-/// What is known about the closed form of a chain.
+/// The closed form of a chain, if any.
 struct ClosedFormFinding {
-  std::optional<ClosedForm> form;  ///< one that pays
-  /// A structure that is there but does not pay, for want of configurations within limits.
+  std::optional<ClosedForm> form;  ///< a closed form that pays
+  /// A closed form that does not pay, for too few configurations within limits.
   std::optional<ClosedForm> left_out;
 };
 
-/// Tries what the structure of a chain offers on random poses (same chain, same answer).
+/// Tries the closed forms of a chain's structure on random poses (same chain, same answer).
 ClosedFormFinding find_closed_form(const kinematics::Chain& chain);
 
-/// How a chain's inverse kinematics are solved, in words, e.g. "spherical wrist 5-6-7; lock q3;
-/// closed form, 8 branches per lock", and what of the task axes cannot be.
+/// Text on the solution of a chain's inverse kinematics, e.g. "spherical wrist 5-6-7; lock q3;
+/// closed form, 8 branches per lock", and on task axes that the chain cannot serve.
 std::string describe_structure(const kinematics::Chain& chain);
 
 }  // namespace kinship::inverse

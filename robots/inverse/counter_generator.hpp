@@ -24,7 +24,7 @@ class CounterGenerator {
         state_ = split_mixed(state_ ^ std::bit_cast<std::uint64_t>(pose(row, column) + 0.0));
   }
 
-  /// A generator of its own for one of many attempts; this one stays as it is.
+  /// A separate generator for one of many attempts; this one does not change.
   CounterGenerator of_attempt(std::uint64_t attempt) const noexcept {
     return CounterGenerator(split_mixed(state_ ^ split_mixed(attempt + kSplitMixStep)));
   }

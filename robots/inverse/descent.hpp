@@ -17,11 +17,12 @@ using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>
 using TaskError = Eigen::Matrix<double, 6, 1>;
 
 /// From an actual to a wanted pose of the transfer frame, both in the base link. Without the yaw
-/// row, say, the error vanishes exactly if a rotation about the base's z axis is all that is left.
+/// row, for example, the error vanishes exactly if the poses differ only by a rotation about the
+/// base's z axis.
 TaskError task_error(const Eigen::Isometry3d& T_base_wanted, const Eigen::Isometry3d& T_base_actual,
                      const TaskAxes& axes);
 
-/// How well a configuration that is called a solution reaches its pose, m and rad.
+/// Largest pose error of a solution, m and rad.
 inline constexpr double kPoseTolerance = 1e-6;
 
 /// Whether the chain's forward kinematics put the transfer frame at the pose, in the task axes that
@@ -38,14 +39,14 @@ class Descent {
   explicit Descent(const kinematics::Chain& chain);
 
   /// Steer: joints outside their limits are pulled towards mid-range within the chain's redundancy
-  /// (none: no effect). Hold: no joint leaves its limits, for who starts within them; one that
-  /// would be pushed across stays there, and the others do its part. Joints with a full turn of
-  /// room need no help: a turn brings them back.
+  /// (none: no effect). Hold: no joint leaves its limits, given a start within them; one that would
+  /// be pushed across stays there, and the others compensate. Joints with a full turn of room need
+  /// neither: a turn brings them back.
   enum class Limits { Steer, Ignore, Hold };
 
   /// Moves `q` towards the pose, in at most `max_iterations` steps. It may end outside the limits
   /// unless they are held.
-  /// \return the squared norm of the task error that is left.
+  /// \return the squared norm of the remaining task error.
   double run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int max_iterations,
              JointVector& q) const;
 

@@ -8,16 +8,17 @@
 
 namespace kinship::inverse {
 
-/// What `SimdKernels::eliminate` knows about an arm; nothing if it is of no use to it: not six
-/// turning joints whose whole pose matters, or axes so placed that the resultant is 0 everywhere,
-/// as trial shows (same chain, same answer). \param lanes  of that chain.
+/// The data of an arm for `SimdKernels::eliminate`; nothing if that cannot solve the arm: not six
+/// turning joints with all task axes, or axes whose resultant is 0 everywhere, as a trial shows
+/// (same chain, same answer).
+/// \param lanes  of that chain.
 std::optional<LaneElimination> elimination_of(const kinematics::Chain& chain,
                                               const LaneChain& lanes, const SimdKernels& kernels);
 
 /// Its tables, the same for every arm.
 const LaneHarmonics& harmonics();
 
-/// One pose of the transfer frame, m, as LaneBatch::target has it in one lane.
+/// Writes one pose of the transfer frame, m, in the format of a lane of LaneBatch::target.
 void write_target(const Eigen::Isometry3d& T_base_transfer, double length_m, double (&target)[12]);
 
 }  // namespace kinship::inverse

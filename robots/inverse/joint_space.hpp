@@ -8,19 +8,18 @@
 namespace kinship::inverse {
 
 /// Rounding by which a joint may lie outside its limits before it is moved onto them, joint units.
-/// Whoever calls the result a solution has yet to verify it.
+/// The result must then be verified before it counts as a solution.
 inline constexpr double kLimitRounding = 1e-6;
 
-/// What is asked of the joints of one chain for each of thousands of configurations, without
-/// their names.
+/// The joints of one chain for computations on thousands of configurations, without their names.
 class JointSpace {
  public:
   explicit JointSpace(const kinematics::Chain& chain);
 
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(joints_.size()); }
 
-  /// Replaces each joint's value by the one that stands for all its +-2 pi copies: continuous
-  /// joints in (-pi, pi], revolute joints nearest mid-range, prismatic joints as they are.
+  /// Replaces each joint's value by the representative of its +-2 pi copies: continuous joints in
+  /// (-pi, pi], revolute joints nearest mid-range, prismatic joints as they are.
   /// \param q       dof, joint units.
   /// \param margin  by which a value may lie outside a limit before it is moved onto it.
   /// \return        whether every joint is then within its limits.
@@ -31,7 +30,7 @@ class JointSpace {
   double squared_distance(const double* a, const double* b) const noexcept;
 
   /// The value of a joint for a number in [0, 1): uniform within its limits; within a turn around
-  /// mid-range where they are wider.
+  /// mid-range if they are wider.
   double value_at(Eigen::Index joint, double share) const noexcept {
     const Range& range = joints_[static_cast<std::size_t>(joint)];
     return range.middle + (2 * share - 1) * range.half_drawn;
@@ -49,7 +48,7 @@ class JointSpace {
     double lower, upper, middle;
     double half_drawn;  ///< half the interval that values are drawn from
     double half_anywhere;
-    bool turns;  ///< a whole turn changes nothing
+    bool turns;  ///< values a whole turn apart are equivalent
     bool continuous;
   };
   std::vector<Range> joints_;

@@ -8,20 +8,20 @@
 
 namespace kinship::inverse {
 
-/// The kernels of one instruction set and what people call it.
+/// The kernels of one instruction set and its name.
 struct InstructionSet {
   std::string_view name;  ///< "sse2", "avx2", "avx512"
   SimdKernels kernels;
 };
 
-/// The instruction sets that this machine knows, the slowest first; at least one.
+/// The instruction sets of this machine, the slowest first; at least one.
 std::span<const InstructionSet> instruction_sets();
 
-/// The chain as `SimdKernels::step` wants it. Its unit of length is a power of two near the arm's
-/// reach, so that robots of any size descend alike.
+/// The chain for `SimdKernels::step`. Its unit of length is a power of two near the arm's reach, so
+/// that robots of any size descend alike.
 LaneChain lane_chain(const kinematics::Chain& chain);
 
-/// The chain as `SimdKernels::check` wants it.
+/// The chain for `SimdKernels::check`.
 LaneArm lane_arm(const kinematics::Chain& chain);
 
 /// Sum of the lengths between joints: no configuration puts the transfer frame farther than this

@@ -8,12 +8,12 @@ namespace kinship::inverse {
 inline constexpr int kLanes = 8;
 inline constexpr int kLaneJoints = 32;
 
-/// What becomes of joints outside their limits; see Descent::Limits for the meanings.
+/// Treatment of joints outside their limits; see Descent::Limits.
 enum class LaneLimits { Steer, Ignore, Hold };
 
-/// A joint, seen from frames that lie with z along the joints and were turned about z until a
-/// turn about x is all that is left between neighbours. Lengths (and the values of a sliding joint)
-/// are in units of the chain's length_m.
+/// A joint, in frames with z along the joints and turned about z so that neighbours differ only by
+/// a turn about x. Lengths (and the values of a sliding joint) are in units of the chain's
+/// length_m.
 struct LaneJoint {
   double p[3];                    ///< in the frame of the joint before
   double tilt_cosine, tilt_sine;  ///< of the turn about x from there
@@ -24,18 +24,18 @@ struct LaneJoint {
   bool bounded;  ///< has less than a turn of room
 };
 
-/// A chain as the descent sees it: plain numbers, without its own units of length.
+/// A chain for the descent: plain numbers, lengths in units of length_m.
 struct LaneChain {
   int dof;
   int rows;                       ///< number of task axes that matter
-  int row_of[6];                  ///< the rows that matter, then 6, which stands for a row of zeros
-  double length_m;                ///< what 1 stands for
+  int row_of[6];                  ///< the rows that matter, then 6 for a row of zeros
+  double length_m;                ///< the unit of length
   double R_first[9], p_first[3];  ///< frame of the first joint in the base link, row-major
   LaneJoint joints[kLaneJoints];  ///< p and tilt of the first are not used
   double R_last[9], p_last[3];    ///< transfer frame in the last frame
 };
 
-/// Eight descents side by side, each towards a pose of its own. Index of lanes last.
+/// Eight descents side by side, each towards its own pose. Index of lanes last.
 struct alignas(64) LaneBatch {
   double target[12][kLanes];      ///< R row-major, then p, in the base link
   double q[kLaneJoints][kLanes];  ///< lane's values; in: where to start; out: one step on
@@ -44,8 +44,8 @@ struct alignas(64) LaneBatch {
   double outside[kLanes];         ///< out: not 0 if a joint was steered
 };
 
-/// A chain as its URDF has it, for the check of what the descent found: joint axes as they are,
-/// lengths in m.
+/// A chain as in its URDF, for the check of the descent's results: original joint axes, lengths in
+/// m.
 struct LaneArm {
   struct Joint {
     double R[9], p[3], axis[3];
@@ -57,7 +57,7 @@ struct LaneArm {
   double matters[6];  ///< 1 or 0 for each task axis
 };
 
-/// How far eight configurations are from their poses, in the task axes that matter.
+/// The errors of eight configurations from their poses, in the task axes that matter.
 struct alignas(64) LaneCheck {
   double target[12][kLanes];
   double q[kLaneJoints][kLanes];  ///< joint units
@@ -68,20 +68,20 @@ struct alignas(64) LaneCheck {
 inline constexpr int kLaneMarks = 4;
 
 /// Points of a chain whose joints all turn, each on the line from a joint to the next one (from the
-/// last: to the transfer frame), so far from the joint as `share` of that line.
+/// last: to the transfer frame), at `share` of that line from the joint.
 struct LaneMarks {
   int joint[kLaneMarks];
   double share[kLaneMarks];
 };
 
-/// Postures that are moved until their marks are where others want them.
+/// Postures to be moved until their marks reach wanted positions.
 struct alignas(64) LanePull {
   double wanted[3 * kLaneMarks][kLanes];  ///< x, y, z of one mark after the other, in the base, m
   double q[kLaneJoints][kLanes];          ///< lane's values; in: where to start; out: one step on
   double distance_m[kLanes];              ///< out: of the marks before the step, root of squares
 };
 
-/// What the elimination of five joint values knows about an arm of six turning joints; see
+/// The data of an arm of six turning joints for the elimination of five joint values; see
 /// robots/inverse/elimination.hpp.
 struct LaneElimination {
   static constexpr int kInvariants = 14;  ///< of the last axis, seen from the second
@@ -96,11 +96,11 @@ struct LaneElimination {
 struct LaneHarmonics {
   static constexpr int kDegree = 8;
   static constexpr int kCoefficients =
-      2 * kDegree + 1;                    ///< of 1, cos, .. cos 8, then sin, .. sin 8
-  static constexpr int kPadded = 24;      ///< kCoefficients, in whole vectors
-  static constexpr int kSamples = 24;     ///< that coefficients are made of
-  static constexpr int kIntervals = 256;  ///< of a turn that is searched
-  static constexpr int kPoints = 136;  ///< where those of the first half of it meet; whole vectors
+      2 * kDegree + 1;                      ///< of 1, cos, .. cos 8, then sin, .. sin 8
+  static constexpr int kPadded = 24;        ///< kCoefficients, in whole vectors
+  static constexpr int kSamples = 24;       ///< that coefficients are computed from
+  static constexpr int kIntervals = 256;    ///< of the searched turn
+  static constexpr int kPoints = 136;       ///< ends of the first half of these; in whole vectors
   double cosine[kSamples], sine[kSamples];  ///< of the angles of samples
   double to_coefficients[kSamples][kPadded];
   double at_points[kCoefficients][kPoints];
@@ -108,7 +108,7 @@ struct LaneHarmonics {
 
 inline constexpr int kLaneBranches = 24;
 
-/// Configurations that the elimination proposes for one pose.
+/// Configurations from the elimination for one pose.
 struct LaneBranches {
   int count;
   double q[6][kLaneBranches];  ///< lane's values, any turn; not finite where a step failed
@@ -125,7 +125,8 @@ struct SimdKernels {
   void (*check)(const LaneArm& arm, LaneCheck& check);
 
   /// One step of damped least squares on the distance of the marks in every lane, with the pose of
-  /// the transfer frame as a heavily weighted part that stays. For chains without sliding joints.
+  /// the transfer frame, which stays, as a heavily weighted part. For chains without sliding
+  /// joints.
   /// Source: Levenberg, Quarterly of Applied Mathematics 2 (1944).
   void (*pull)(const LaneChain& chain, const LaneMarks& marks, LanePull& pull);
 

@@ -14,24 +14,23 @@ namespace kinship::inverse {
 struct PlanarBranches {
   std::array<std::array<double, 3>, 2> angles{};
   int count = 0;
-  bool outside = false;  ///< whether one was left out because a joint would be outside its window
+  bool outside = false;  ///< whether one was left out for a joint outside its window
 };
 
-/// Which joints of a planar arm are free, and where the others stand.
+/// The free joints of a planar arm, and the values of the others.
 struct PlanarTask {
   const std::vector<int>& free;            ///< ascending, two or three
   const std::vector<TurnWindow>& windows;  ///< of the free joints
-  const double* values;                    ///< of all joints, rad; those of free ones do not count
+  const double* values;                    ///< of all joints, rad; values of free ones are ignored
   double slack = 0;                        ///< see SixJointTask
 };
 
 /// An arm whose joints all turn about one direction, which is x, y or z of its base: a planar arm
-/// in closed form. Where the direction of the transfer frame matters three joints are free, else
-/// two.
+/// in closed form. Three joints are free if the direction of the transfer frame matters, else two.
 class PlanarForm {
  public:
-  /// \return nothing if the joints are not parallel (but for kNearStructure), the task axes ask for
-  /// something else than a place in the plane with or without a direction, or joints are missing.
+  /// \return nothing if the joints are not parallel (within kNearStructure), the task axes are not
+  ///         a place in the plane with or without a direction, or there are too few joints.
   static std::optional<PlanarForm> of(const AxisChain& axes, const kinematics::Chain& chain);
 
   int free_joints() const { return turn_matters_ ? 3 : 2; }

@@ -51,7 +51,7 @@ KINSHIP_SIMD_INLINE void invariants(const T (&l)[3], const T (&p)[3], T* result)
   result[11] = p[2] * l[0] - p[0] * l[2];
 }
 
-/// What is wanted of the arm, without the constant frames at its ends.
+/// The wanted pose, without the constant frames at the arm's ends.
 struct WantedFrame {
   double R[9], p[3];
 };
@@ -84,7 +84,8 @@ struct WantedAxis {
       sine[LaneElimination::kInvariants];
 };
 
-/// A vector of the base seen from axis 2, joint 1 having turned, joint 2 not. T: double or Wide.
+/// A vector of the base seen from axis 2, after the turn of joint 1, before that of joint 2. T:
+/// double or Wide.
 template <typename T>
 KINSHIP_SIMD_INLINE void tilt_back(const LaneJoint& second, const T (&v)[3], T (&result)[3]) {
   result[0] = v[0];
@@ -120,7 +121,7 @@ KINSHIP_SIMD_INLINE WantedAxis wanted_axis(const LaneJoint& second, const Wanted
   return axis;
 }
 
-/// What is orthogonal to the two columns that joint 1 comes with, and what solves for them.
+/// The complement of the two columns of joint 1, and the rows that solve for them.
 struct StillElimination {
   double free[kPairs][kStill];  ///< rows; orthonormal, orthogonal to both columns
   double solve[2][kStill];      ///< rows; give cosine and sine of joint 1
@@ -172,7 +173,7 @@ KINSHIP_SIMD_INLINE StillElimination still_elimination(const WantedAxis& wanted)
   return result;
 }
 
-/// The complex row that is 0 on the three columns of the pairs that joint 1 comes with.
+/// The complex row that is 0 on the three columns of joint 1 in the pairs.
 KINSHIP_SIMD_INLINE void turning_elimination(const WantedAxis& wanted, Complex (&row)[kPairs]) {
   Complex a[kPairs], b[kPairs], c[kPairs];
   for (int k = 0; k < kPairs; ++k) {

@@ -11,7 +11,7 @@ constexpr double kLargestPullStep = 0.3;  // of one joint, joint units
 constexpr int kMarkRows = 3 * kLaneMarks;
 constexpr int kPullRows = kMarkRows + 6;
 
-/// How the marks and the pose move with one joint; m, and of the pose kPoseWeight times.
+/// Derivative of the marks and the pose by one joint; m, the pose times kPoseWeight.
 struct WidePullColumn {
   Wide rows[kPullRows];
 };
@@ -19,7 +19,7 @@ struct WidePullColumn {
 /// Index in the lower half of a symmetric matrix, row by row.
 KINSHIP_SIMD_INLINE constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
 
-/// Where the marks are: on the line from a joint to the next one, or to the transfer frame.
+/// Positions of the marks: on the line from a joint to the next one, or to the transfer frame.
 KINSHIP_SIMD_INLINE void place(const LaneChain& chain, const LaneMarks& marks,
                                const WideColumn* columns, const WideFrame& frame,
                                Wide (&p)[kMarkRows]) {

@@ -17,8 +17,8 @@ struct SixEquations {
   double terms[kEquations][LaneElimination::kPadded];
 };
 
-/// Reflects rows so that the first alone has something left in `column`, and the columns after it
-/// along. \return what is left.
+/// Reflects rows so that only the first has a nonzero entry in `column`; applies it to the later
+/// columns too. \return that entry.
 /// Source: A. Householder, Journal of the ACM 5 (1958).
 template <int kRows>
 KINSHIP_SIMD_INLINE Wide reflect(Wide* const (&rows)[kRows], int column, int columns) {
@@ -50,7 +50,7 @@ KINSHIP_SIMD_INLINE Wide reflect(Wide* const (&rows)[kRows], int column, int col
 /// twelve linear equations in sin^3, sin^2 cos, sin cos^2 and cos^3 of that half, each times 1, cos
 /// and sin of joint 5. Reflections bring them to a triangle; the first six unknowns are eliminated
 /// block by block, since both halves are the same equations.
-/// \param left  the triangle of the last six, those of sin cos^2 and cos^3; below it anything.
+/// \param left  the triangle of the last six unknowns, of sin cos^2 and cos^3; undefined below it.
 /// \return the determinant, but for a factor that is the same at every angle.
 Wide resultant(const SixEquations& equations, Wide cosine, Wide sine,
                Wide (&left)[kEquations][kEquations]) {
@@ -119,12 +119,12 @@ KINSHIP_SIMD_INLINE WideHarmonic harmonic_at(const double* of, Wide angle) {
   return {real[0], -imaginary[1], -real[2]};
 }
 
-/// Angles between bounds, to be moved to where a sum of harmonics, or its derivative, is 0.
+/// Angles between bounds, to be refined to zeros of a sum of harmonics, or of its derivative.
 struct Zeros {
   static constexpr int kRoom = kLaneBranches + KINSHIP_SIMD_WIDTH;
   int count = 0;
   double at[kRoom], lower[kRoom], upper[kRoom];
-  double sign[kRoom];  ///< at the upper bound; at the lower one it is the other
+  double sign[kRoom];  ///< at the upper bound; opposite at the lower one
 
   void add(double angle, double from, double to, double sign_at_upper) {
     if (count == kLaneBranches)
@@ -136,7 +136,7 @@ struct Zeros {
   }
 };
 
-/// Newton's method between bounds that close in; where it would leave them, it halves them.
+/// Newton's method between shrinking bounds; a step that would leave them halves them instead.
 /// \tparam kOfSlope  for a zero of the derivative.
 template <bool kOfSlope>
 void refine(const double* coefficients, int steps, Zeros& zeros) {
@@ -190,8 +190,8 @@ KINSHIP_SIMD_INLINE void scan(const double* coefficients, const LaneHarmonics& h
 constexpr double kInterval = kTurnOf / LaneHarmonics::kIntervals;
 constexpr int kHalfIntervals = LaneHarmonics::kIntervals / 2;
 
-/// Sorts intervals: into those where the sign changes, each with its first guess, and those at
-/// whose bottom it might change twice.
+/// Sorts intervals: into those with a sign change, each with its first guess, and those whose
+/// minimum might have two.
 KINSHIP_SIMD_INLINE void sort_intervals(const HarmonicScan& scanned, Zeros& crossings,
                                         Zeros& dips) {
   constexpr unsigned kEvery = (1U << KINSHIP_SIMD_WIDTH) - 1;
@@ -226,7 +226,7 @@ KINSHIP_SIMD_INLINE void sort_intervals(const HarmonicScan& scanned, Zeros& cros
   }
 }
 
-/// Turns dips that go through 0 into two zeros each, and such as only touch it into one.
+/// Turns dips through 0 into two zeros each, and dips that only touch 0 into one.
 KINSHIP_SIMD_INLINE void split(const double* coefficients, Zeros& dips, Zeros& zeros) {
   constexpr double kTouches = 1e-5;  // squared angle
   refine<true>(coefficients, 3, dips);
@@ -248,8 +248,8 @@ KINSHIP_SIMD_INLINE void split(const double* coefficients, Zeros& dips, Zeros& z
 }
 
 /// All angles of joint 3 at which the six equations have a common solution. The resultant is a sum
-/// of harmonics up to the eighth: where it is 0 is searched for in intervals of a turn. Two zeros
-/// in one interval are found, the second and third of three are not.
+/// of harmonics up to the eighth; its zeros are searched in intervals of a turn. Two zeros in one
+/// interval are found, the second and third of three are not.
 KINSHIP_SIMD_INLINE void zeros_of(const SixEquations& equations, const LaneHarmonics& harmonics,
                                   Zeros& zeros) {
   constexpr int kNewtonSteps = 6;

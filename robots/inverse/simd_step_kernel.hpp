@@ -16,7 +16,7 @@ struct WideColumn {
   Wide rows[7];
 };
 
-/// On to the frame of the next joint.
+/// Moves on to the frame of the next joint.
 KINSHIP_SIMD_INLINE void follow(const LaneJoint& joint, WideFrame& frame) {
   const double c = joint.tilt_cosine, s = joint.tilt_sine;
 #pragma GCC unroll 3
@@ -28,7 +28,7 @@ KINSHIP_SIMD_INLINE void follow(const LaneJoint& joint, WideFrame& frame) {
   }
 }
 
-/// Poses of the last joint: where each joint is and its axis go into columns for now.
+/// Pose of the last joint; columns receive each joint's position and axis for now.
 KINSHIP_SIMD_INLINE WideFrame forward(const LaneChain& chain, const Wide* q, WideColumn* columns) {
   WideTurns turns;
   for (int j = 0; j < chain.dof; ++j)
@@ -84,7 +84,7 @@ KINSHIP_SIMD_INLINE Wide pull_of(const LaneJoint& joint, Wide q, Wide& outside) 
   return pulled ? -kSteeringGain * off_middle : Wide{};
 }
 
-/// The joints at a limit that the error pushes across are left out.
+/// Leaves out the joints at a limit that the error pushes across.
 template <int kRows>
 KINSHIP_SIMD_INLINE void hold(const LaneJoint& joint, Wide q, const Wide (&error)[kRows],
                               const int* row_of, WideColumn& column) {
@@ -130,7 +130,7 @@ KINSHIP_SIMD_INLINE void solve(Wide (&system)[kRows][kRows], Wide (&wanted)[kRow
       wanted[c] -= system[r][c] * wanted[r];
 }
 
-/// One iteration while it is made. kRows: of the task; row_of maps them to those of a column.
+/// State of one iteration. kRows: of the task; row_of maps them to those of a column.
 template <int kRows>
 struct WideIteration {
   WideIteration(const LaneChain& of, LaneLimits with, const int* rows)
@@ -161,7 +161,7 @@ KINSHIP_SIMD_INLINE WideFrame evaluate(const Wide (&target)[12], WideIteration<k
   return frame;
 }
 
-/// J J^T, damped, and what is wanted of it.
+/// J J^T, damped, and the right side.
 template <int kRows>
 KINSHIP_SIMD_INLINE void linearize(const WideFrame& frame, WideIteration<kRows>& now) {
 #pragma GCC unroll 6

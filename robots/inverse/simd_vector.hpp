@@ -132,7 +132,7 @@ KINSHIP_SIMD_INLINE Wide angle_of(Wide sine, Wide cosine) {
   return sine < 0.0 ? -half : half;
 }
 
-/// Sines and cosines of all joints: computed side by side, before the poses that wait for each
+/// Sines and cosines of all joints: computed side by side, before the poses, which depend on each
 /// other.
 struct WideTurns {
   Wide sine[kLaneJoints], cosine[kLaneJoints];

@@ -7,12 +7,11 @@
 
 namespace kinship::inverse {
 
-/// How three axes that place a point are told apart: by two neighbours of them, the first two or
-/// the last two.
+/// Relation of two neighbours, the first two or the last two, among three axes that place a point.
 enum class PointRule { FirstMeet, FirstParallel, LastMeet, LastParallel };
 
-/// How a chain of six turning joints is solved. If `reversed`, all of it is meant for the chain
-/// read from tip to base.
+/// The solution rule of a chain of six turning joints. If `reversed`, it applies to the chain read
+/// from tip to base.
 struct SixJointRule {
   enum class Kind {
     SphericalWrist,  ///< axes 4, 5, 6 meet; axes 1, 2, 3 place that point by `point`
@@ -27,11 +26,11 @@ struct SixJointRule {
 
 inline constexpr int kMaxBranches = 8;  ///< of six joints by these rules
 
-/// What six joints come to: one column of angles (rad, any turn) per branch.
+/// Solutions for six joints: one column of angles (rad, any turn) per branch.
 struct SixJointBranches {
   std::array<std::array<double, 6>, kMaxBranches> angles;
   int count = 0;
-  bool outside = false;  ///< whether a joint would have left its window on the way to a branch
+  bool outside = false;  ///< whether a joint outside its window has cut off branches
 
   void add(const std::array<double, 6>& q) {
     if (count < kMaxBranches)
@@ -39,19 +38,19 @@ struct SixJointBranches {
   }
 };
 
-/// What is asked of six turning joints.
+/// A problem of six turning joints.
 struct SixJointTask {
   std::array<Axis, 6> axes;
   Displacement wanted;
   std::array<TurnWindow, 6> windows;  ///< branches with a joint outside its own are left out
-  /// How far beyond the boundary of what it can reach a step may be asked to go (share of its
-  /// reach); it then goes to the boundary.
+  /// Largest excess of a step's target beyond the boundary of its reach (share of the reach); the
+  /// step then ends at the boundary.
   double slack = 0;
 };
 
-/// All branches of six turning joints whose displacements, from base to tip, make `wanted`.
-/// Axes of a wrist have the point where they meet as their point, parallel axes one direction (or
-/// its opposite): the rule is followed without looking whether it holds.
+/// All branches of six turning joints whose displacements, from base to tip, make `wanted`. Axes of
+/// a wrist have the point where they meet as their point, parallel axes one direction (or its
+/// opposite): the rule is applied without a check that it holds.
 SixJointBranches solve_six_joints(const SixJointTask& task, const SixJointRule& rule);
 
 }  // namespace kinship::inverse

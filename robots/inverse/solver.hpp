@@ -13,28 +13,28 @@
 
 namespace kinship::inverse {
 
-/// What inverse kinematics computes once per chain, for callers that ask for many poses of it.
-/// Immutable, may be shared by threads. `inverse` is the same for one pose.
+/// Inverse kinematics of one chain, with its precomputations, for many poses. Immutable, may be
+/// shared by threads. `inverse` is the same for one pose.
 class Solver {
  public:
-  /// What candidates come from. Best: the closed form where there is one that is faster, or the
-  /// elimination where the arm has six turning joints, and the descents where they leave gaps.
+  /// Sources of candidates. Best: a closed form if it is faster, or the elimination for an arm of
+  /// six turning joints, and the descents for the gaps they leave.
   enum class Engines { Best, ClosedForm, Descents };
 
   /// With the fastest instruction set of this machine. The chain is not needed afterwards.
   explicit Solver(const kinematics::Chain& chain);
 
-  /// With the kernels given; solutions differ between instruction sets by rounding only, and in a
-  /// pose of thousands by a start that rounding sent another way.
+  /// With the kernels given; solutions differ between instruction sets by rounding only, and for
+  /// one pose in thousands by a start that rounding has diverted.
   Solver(const kinematics::Chain& chain, const SimdKernels& kernels,
          Engines engines = Engines::Best);
 
   /// Distinct configurations that put the tip link at a pose; see `inverse`.
-  /// \throws std::invalid_argument as `inverse` does.
+  /// \throws std::invalid_argument as `inverse`.
   InverseSolutions solve(const Eigen::Isometry3d& T_base_tip,
                          const InverseOptions& options = {}) const;
 
-  /// In words, e.g. "multi-start Levenberg-Marquardt".
+  /// For people, e.g. "multi-start Levenberg-Marquardt".
   std::string name() const;
 
   const SimdKernels& kernels() const noexcept { return kernels_; }
@@ -48,7 +48,7 @@ class Solver {
   const Eigen::Isometry3d& T_tip_transfer() const noexcept { return T_tip_transfer_; }
   /// Whether joints can move while the transfer frame stays; see is_redundant.
   bool redundant() const noexcept { return redundant_; }
-  /// Whether some of them do the same; see has_repeated_joints.
+  /// Whether some joints repeat others; see has_repeated_joints.
   bool repeats_joints() const noexcept { return repeats_joints_; }
   /// Whether the pose is too far away for a chain of this length.
   bool beyond_reach(const Eigen::Isometry3d& T_base_transfer) const;

@@ -8,15 +8,15 @@
 
 namespace kinship::inverse {
 
-/// Axes that deviate by no more from a structure (share of the arm's size; sine) have it exactly,
-/// but for the rounding of model files and arithmetic.
+/// Largest deviation from a structure (share of the arm's size; sine) of axes that have it exactly,
+/// apart from rounding in model files and arithmetic.
 inline constexpr double kExactStructure = 1e-9;
-/// Axes that deviate by no more nearly have it: a calibrated robot, whose deviations add up along
-/// the chain. Its branches need a polish.
+/// Largest deviation of axes that nearly have it, as in a calibrated robot, whose deviations add up
+/// along the chain. Its branches need a polish.
 inline constexpr double kNearStructure = 0.03;
 
-/// What makes a chain of turning joints solvable in closed form: six joints that obey a rule once
-/// the others are locked, whatever the values they are locked at.
+/// A structure with which a chain of turning joints is solvable in closed form: six joints obey a
+/// rule once the others are locked, at any values.
 struct SixJointStructure {
   std::vector<int> locks;  ///< joints, ascending, 0 the first; dof - 6 of them
   SixJointRule rule;
@@ -31,20 +31,20 @@ struct SixJointStructure {
 std::vector<SixJointStructure> six_joint_structures(const AxisChain& chain);
 inline constexpr int kMaxLocked = 2;
 
-/// Writes the axes that are left free while others are locked into a task, and takes from its
-/// wanted displacement what the locked ones do.
+/// Writes the free axes into a task, and removes the displacements of the locked ones from its
+/// wanted displacement.
 /// \param locks   ascending, size axes.size() - 6.
 /// \param values  one per lock: rad, or lengths in units of the arm's size.
 void lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const double* values,
           SixJointTask& task);
 
-/// The common direction of parallel turning joints, and by how much (sine) they deviate from it.
+/// The common direction of parallel turning joints, and their deviation from it (sine).
 struct CommonDirection {
   Eigen::Vector3d direction;
   double deviation = 0;
 };
 
-/// \return nothing unless all joints turn about axes that are parallel but for kNearStructure.
+/// \return nothing unless all joints turn about axes that are parallel within kNearStructure.
 std::optional<CommonDirection> common_direction(const AxisChain& chain);
 
 }  // namespace kinship::inverse

@@ -7,19 +7,19 @@
 
 #include "robots/inverse/axis.hpp"
 
-/// The few problems that closed forms are put together from: turns about one or two axes that
-/// bring a point or a direction to where it is wanted. Lengths in units of the arm's size. Where
-/// every turn would do, none stands for all; nothing here is ever NaN for finite input.
+/// The subproblems of closed forms: turns about one or two axes that bring a point or a direction
+/// to a wanted place. Lengths in units of the arm's size. Where every turn is a solution, the zero
+/// turn represents all; no result is NaN for finite input.
 ///
 /// Source: Paden, Kinematics and control of robot manipulators (1986); Murray, Li and Sastry, A
 /// mathematical introduction to robotic manipulation (1994), section 3.3; Elias and Wen, IK-Geo:
 /// unified robot inverse kinematics using subproblem decomposition (2025).
 namespace kinship::inverse {
 
-inline constexpr double kSingular = 1e-8;  ///< shorter: a direction that means nothing
+inline constexpr double kSingular = 1e-8;  ///< a shorter direction is undefined
 inline constexpr double kDouble = 1e-14;   ///< two turns closer than its root are one
 
-/// A turn by an angle, kept as cosine and sine: one arc tangent at the end is all a joint costs.
+/// A turn by an angle, as cosine and sine: a joint costs only one arc tangent, at the end.
 struct Turn {
   double cosine = 1;
   double sine = 0;
@@ -31,7 +31,7 @@ struct Turn {
   }
 };
 
-/// The turns that a joint's limits allow, told without an arc tangent.
+/// The turns within a joint's limits, tested without an arc tangent.
 struct TurnWindow {
   double cosine_middle = 1, sine_middle = 0;
   double cosine_half = -2;  ///< of the half range; below -1: any turn
@@ -59,7 +59,8 @@ struct Turns {
 };
 
 /// The turns with a cos + b sin = c.
-/// \param slack  share of the amplitude by which c may exceed it: the nearest turn stands then.
+/// \param slack  share of the amplitude by which c may exceed it: the result is then the nearest
+///               turn.
 inline Turns solve_cosine(double a, double b, double c, double slack) {
   const double amplitude = std::sqrt(a * a + b * b);
   if (amplitude < kSingular) {

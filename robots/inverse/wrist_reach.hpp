@@ -7,15 +7,15 @@
 
 namespace kinship::inverse {
 
-/// How far the last axis of an arm gets from the first: a point of the one, which a pose places, is
-/// never farther from a point of the other, which stands still, than the links between them are
-/// long. A bound only: within it a pose may be out of reach all the same.
+/// Bound on the distance of an arm's last axis from the first: a point of the last, which a pose
+/// places, is never farther from a fixed point of the first than the links between them are long.
+/// Within the bound a pose may still be out of reach.
 class WristReach {
  public:
-  /// None for a chain with a sliding joint, or whose poses leave open where the last axis lies.
+  /// None for a chain with a sliding joint, or whose poses do not determine the last axis.
   static std::optional<WristReach> of(const kinematics::Chain& chain);
 
-  /// Whether no configuration, within limits or not, comes to the pose within kPoseTolerance.
+  /// Whether no configuration, within limits or not, reaches the pose within kPoseTolerance.
   /// \param T_base_transfer  of the transfer frame in the base link.
   bool is_beyond(const Eigen::Isometry3d& T_base_transfer) const {
     return (T_base_transfer * p_transfer_wrist_ - p_base_shoulder_).norm() > reach_m_;

@@ -27,10 +27,9 @@ struct Joint {
 };
 
 /// A joint beside the chain that follows one of its joints: a parallelogram's, a counterweight's.
-/// Its value is multiplier * q[source] + offset, whatever limits of its own it has.
+/// Its value is multiplier * q[source] + offset, regardless of its own limits.
 struct MimicJoint {
-  /// Its frame in the moving frame of `before`. The limits are what the source's limits make of it,
-  /// set by the Chain.
+  /// Its frame in the moving frame of `before`. The Chain derives the limits from the source's.
   Joint joint;
   int before = -1;  ///< index of the moving joint before it, below its own; -1: the base link
   int source = 0;   ///< index of the joint of the chain that it follows
@@ -48,7 +47,7 @@ struct ChainLink {
   int parent = -1;
 };
 
-/// What a Chain is made of.
+/// The parts of a Chain.
 struct ChainParts {
   std::string base_link, tip_link;
   std::vector<Joint> joints;  ///< from base to tip
@@ -60,23 +59,23 @@ struct ChainParts {
   std::vector<MimicJoint> mimics = {};  ///< each after the one before it
 };
 
-/// The first thing that keeps parts from being a Chain, with its value and the limit, in words.
+/// The first fault that keeps parts from being a Chain, as text with its value and the limit.
 std::optional<std::string> find_fault(const ChainParts& parts);
 
-/// A kinematic chain from a base link to a tip link with a transfer frame: what a robot is to us.
+/// A kinematic chain from a base link to a tip link with a transfer frame: the model of a robot.
 ///
 /// Its moving joints are counted from the base to the tip, and after these its mimic joints.
 ///
 /// Invariant: 1 to kMaxDof joints, unit axes, finite limits with lower < upper, rigid transforms,
 /// every coordinate, limit and value of a mimic joint at most kMaxPlacement_m, at least one task
-/// axis, links after their parents; what follows a continuous joint does so by full turns.
+/// axis, links after their parents; a joint that follows a continuous one does so by full turns.
 class Chain {
  public:
   /// The limits of continuous joints are set to -pi and pi.
   /// \throws std::invalid_argument with find_fault() if the invariant does not hold.
   explicit Chain(ChainParts parts);
 
-  /// What it is made of, to make another one like it.
+  /// Its parts, to make a similar chain.
   const ChainParts& parts() const noexcept { return parts_; }
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(parts_.joints.size()); }
   const std::vector<Joint>& joints() const noexcept { return parts_.joints; }
@@ -95,20 +94,20 @@ class Chain {
   bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 0) const;
 
   int moving_joints() const noexcept;  ///< dof() and the mimic joints
-  /// \param joint  of the moving ones, as what follows.
+  /// \param joint  of the moving ones, as in the next functions.
   const Joint& moving_joint(int joint) const noexcept;
   int joint_before(int joint) const noexcept;  ///< -1: the base link
-  /// The last moving joint that moves both of what two joints move; -1: none does.
+  /// The last moving joint that moves the links of both joints; -1: none does.
   int joint_before_both(int a, int b) const noexcept;
-  /// The last joint of the chain whose value moves what this one moves.
+  /// The last joint of the chain whose value moves the links of this one.
   int last_source(int joint) const noexcept;
 
   /// Index into links(), or -1.
   int find_link(std::string_view name) const noexcept;
 
-  /// Identity of the robot: SHA-256 of joint types, axes, origins, limits, transfer frame and
-  /// task axes, each number rounded to 1e-9 (m, rad, 1) so that machines whose libraries differ in
-  /// the last bits agree. Names, labels, geometry and what follows the chain do not count.
+  /// Identity of the robot: SHA-256 of joint types, axes, origins, limits, transfer frame and task
+  /// axes, each number rounded to 1e-9 (m, rad, 1) so that machines whose libraries differ in the
+  /// last bits agree. Names, labels, geometry and mimic joints do not count.
   Digest digest() const;
 
  private:

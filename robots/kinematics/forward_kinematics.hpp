@@ -19,12 +19,12 @@ Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eig
 Eigen::Isometry3d T_base_transfer(const Chain& chain,
                                   std::span<const Eigen::Isometry3d> T_base_joints);
 
-/// Pose of each moving joint's moving frame in the base link: those of the chain, from base to tip,
-/// then those of the mimic joints.
+/// Pose of each moving joint's moving frame in the base link: joints of the chain, from base to
+/// tip, then mimic joints.
 std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
                                            const Eigen::Ref<const Eigen::VectorXd>& q);
 
-/// The same into what there is, so that who asks often needs no heap.
+/// The same into an existing vector, so that repeated calls allocate nothing.
 void joint_poses(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q,
                  std::vector<Eigen::Isometry3d>& poses);
 

@@ -8,16 +8,16 @@
 
 #include "proto/types/result.hpp"
 
-/// The links of a URDF before it is known which of them are a robot's base and tip.
+/// The links of a URDF before base and tip link are known.
 namespace kinship::kinematics {
 
-/// What joins a link to its parent, as the URDF says.
+/// The joint from a link to its parent, as in the URDF.
 struct TreeJoint {
   std::string name;
   std::string type;                    ///< revolute, continuous, prismatic, fixed, floating, planar
-  std::optional<double> lower, upper;  ///< joint units; hard limits of what has them
+  std::optional<double> lower, upper;  ///< joint units; hard limits, if any
   std::string mimics = {};             ///< the joint that it follows; empty: none
-  std::string fault = {};              ///< why it can be no joint of a robot; empty: nothing
+  std::string fault = {};              ///< why it can be no joint of a robot; empty: it can
 
   /// Whether it can be a joint of a chain: it has one value of its own.
   bool moves() const {
@@ -33,10 +33,10 @@ struct TreeLink {
 };
 
 /// Every link of a URDF, in the order of Chain::links(): parents before their children.
-/// \return what parse_urdf() says of a text that is none.
+/// \return the error of parse_urdf() for any other text.
 Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf);
 
-/// The robot's name in a URDF. \return what parse_urdf() says of a text that is none.
+/// The robot's name in a URDF. \return the error of parse_urdf() for any other text.
 Result<std::string> read_robot_name(const std::string& urdf);
 
 /// Base and tip links that make an arm of a tree.
@@ -48,12 +48,12 @@ struct ChainEnds {
 
 /// The arms of a tree, those with most joints first. An arm ends where no joint moves beyond, or
 /// where several do (the fingers of a gripper) and none of these branches has three joints; a
-/// branch that has begins an arm of its own from the same base, unless what leads to it is a whole
-/// arm (the fingers of a hand). The joints of a gripper at an arm's end (is_gripping_joint) are no
-/// part of it; the ends with these joints come after all others. The likeliest base is the root
-/// link, or the first link below it where the root is a mere place (`world`, `map`, `odom`,
-/// `base_footprint`); the likeliest tip the last link that is fixed to the last joint, with
-/// `tool0`, `tcp` and the like before others.
+/// branch with three joints begins an arm of its own from the same base, unless the joints before
+/// it are a whole arm (the fingers of a hand). The joints of a gripper at an arm's end
+/// (is_gripping_joint) are no part of it; the ends with these joints come after all others. The
+/// likeliest base is the root link, or the first link below it if the root is a mere place
+/// (`world`, `map`, `odom`, `base_footprint`); the likeliest tip the last link that is fixed to the
+/// last joint, with `tool0`, `tcp` and the like before others.
 std::vector<ChainEnds> suggest_ends(const std::vector<TreeLink>& tree);
 
 }  // namespace kinship::kinematics

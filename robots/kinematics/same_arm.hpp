@@ -7,8 +7,8 @@ namespace kinship::kinematics {
 /// How alike two chains move their transfer frames.
 enum class ArmLikeness {
   Different,
-  Near,   ///< calibrated units of one type: a configuration needs a polish to mean the same pose
-  Exact,  ///< but for the rounding of their numbers: a configuration means the same pose
+  Near,   ///< calibrated units of one type: a configuration needs a polish to give the same pose
+  Exact,  ///< equal apart from rounding: a configuration gives the same pose
 };
 
 inline constexpr int kArmComparisons = 100;    ///< configurations that are compared

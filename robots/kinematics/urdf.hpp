@@ -16,8 +16,8 @@ namespace kinship::kinematics {
 /// \return the chain, or InvalidInput or TooLarge with the link, joint, value and limit named.
 Result<Chain> read_chain(const RobotDescription& description);
 
-/// Where the joints of a description stand that are not on its chain and do not follow it: those
-/// with one value, by name, joint units. \return what read_chain() says.
+/// Values of the joints of a description that are not on its chain and do not follow it: of joints
+/// with one value, by name, joint units. \return the error of read_chain() if there is no chain.
 Result<std::map<std::string, double>> held_values(const RobotDescription& description);
 
 }  // namespace kinship::kinematics

@@ -16,15 +16,13 @@ namespace kinship::kinematics {
 using UrdfModel = std::shared_ptr<const urdf::ModelInterface>;
 
 /// Parses URDF text from outside with urdfdom, without output and without throwing.
-/// \param complaints  if not null: what the parser said about parts that it left out of a model
-/// that
-///                    it gave all the same.
+/// \param complaints  if not null: the parser's messages on parts that it left out of the model.
 /// \return a model whose links form one tree and whose names have at most kMaxLinkNameBytes;
 ///         InvalidInput or TooLarge with the parser's own message otherwise.
 Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints = nullptr);
 
 /// Why a joint that moves can be no joint of a robot, e.g. crossed limits; empty if it can.
-/// \param model  that it is of
+/// \param model  of the joint
 std::string find_joint_fault(const urdf::ModelInterface& model, const urdf::Joint& joint);
 
 }  // namespace kinship::kinematics

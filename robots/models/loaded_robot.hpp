@@ -11,7 +11,7 @@
 
 namespace kinship::models {
 
-/// What a server is told of a robot, and what planning needs of it.
+/// A robot as described to a server, with the data that planning needs.
 struct LoadedRobot {
   RobotDescription description;
   kinematics::Chain chain;
@@ -20,14 +20,14 @@ struct LoadedRobot {
 };
 
 /// A robot as a command line names it, with its collision meshes, to plan for.
-/// \return what describe_robot, kinematics::read_chain, geometry::read_shapes, MeshFiles and
-///         geometry::find_missing_solids say.
+/// \return also the errors of describe_robot, kinematics::read_chain, geometry::read_shapes,
+///         MeshFiles and geometry::find_missing_solids.
 Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 
-/// The shapes of a robot that these arguments describe. Links that are named as needing no solid
-/// are not among its `visual_only` ones.
+/// The shapes of the robot of these arguments. Links named as needing no solid are not among its
+/// `visual_only` ones.
 /// \param description, chain  made of the arguments.
-/// \return also InvalidInput if such a link is not there or has solids.
+/// \return also InvalidInput if such a link is missing or has solids.
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const RobotDescription& description,
                                           const kinematics::Chain& chain);

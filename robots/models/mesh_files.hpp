@@ -13,7 +13,7 @@
 
 namespace kinship::models {
 
-/// Where packages of robot descriptions are, by name.
+/// Folders of the packages of robot descriptions, by name.
 using PackageFolders = std::map<std::string, std::filesystem::path>;
 
 /// "NAME=DIR" each.
@@ -24,13 +24,13 @@ Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments)
 /// The files that URDFs and problems name.
 class MeshFiles {
  public:
-  /// \param urdf_folder  of the URDF file: relative names start there.
+  /// \param urdf_folder  of the URDF file, for relative names.
   MeshFiles(std::filesystem::path urdf_folder, PackageFolders packages)
       : urdf_folder_(std::move(urdf_folder)), packages_(std::move(packages)) {}
 
   /// The file of a mesh: package://NAME/FILE, file:///FILE, or a file name.
-  /// \return InvalidInput with the URI, and with the option that helps if it names a package whose
-  ///         folder is not known.
+  /// \return InvalidInput with the URI, and with the option that helps if it names a package with
+  ///         unknown folder.
   Result<std::filesystem::path> find(const std::string& uri) const;
 
   /// The corners of a mesh: a geometry::MeshSource.
@@ -42,7 +42,7 @@ class MeshFiles {
   Result<geometry::FilePoints> read_points(const std::string& uri) const;
 
  private:
-  /// \param parse  makes it of a file's content, by the ending of the file's name.
+  /// \param parse  parses a file's content, by the ending of the file's name.
   template <typename Content>
   Result<Content> read_file(const std::string& what, const std::string& uri, std::size_t max_bytes,
                             Result<Content> (*parse)(std::string_view, std::string_view)) const;

@@ -10,8 +10,8 @@
 
 namespace kinship::models {
 
-/// A robot as a command line names it: a model folder, or a URDF file with what it does not say.
-/// What is given beside a model folder replaces what its chain.toml says.
+/// A robot as a command line names it: a model folder, or a URDF file with the missing data.
+/// Arguments beside a model folder replace the values of its chain.toml.
 struct RobotArguments {
   std::filesystem::path source = {};  ///< a folder with chain.toml and robot.urdf, or a URDF file
   std::string base_link = {};         ///< required for a URDF file
@@ -24,19 +24,19 @@ struct RobotArguments {
   std::filesystem::path srdf = {};         ///< its disabled pairs are added to the folder's
   std::vector<std::string> packages = {};  ///< "NAME=DIR" each, for meshes named package://NAME/...
   bool collision_from_visual = false;      ///< links without collision elements get their visuals
-  std::vector<std::string> without_collision = {};  ///< links that may be drawn and get no solid
+  std::vector<std::string> without_collision = {};  ///< links that may have visuals and no solid
 };
 
-/// Reads the files and puts the description together. The URDF is taken as text, unless an SRDF
-/// asks for its links.
-/// \param warnings  if not null: what the files say and the robot cannot have, in words: links that
-///                  an SRDF names and the URDF does not.
+/// Reads the files and makes the description. The URDF is taken as text, unless an SRDF needs its
+/// links.
+/// \param warnings  if not null: texts on parts of the files that the robot cannot have: links that
+///                  an SRDF names and the URDF does not have.
 /// \return InvalidInput, NotFound or TooLarge with the argument or file named.
 Result<RobotDescription> describe_robot(const RobotArguments& arguments,
                                         std::vector<std::string>* warnings = nullptr);
 
-/// Whether it is said where the transfer frame lies: by `transfer`, or by a model folder, whose
-/// chain.toml must say it. Otherwise it is the tip link's.
+/// Whether the transfer frame is given: by `transfer`, or by a model folder, whose chain.toml must
+/// have it. Otherwise it is the tip link's frame.
 bool says_transfer(const RobotArguments& arguments);
 
 /// "x y z qx qy qz qw" (spaces or commas) as a pose.

@@ -16,16 +16,16 @@
 namespace kinship::models {
 
 /// Reads the meshes and point clouds that problems name. A file is read once for each scale or size
-/// of voxels; what was read is kept, and shared by all scenes that name it.
+/// of voxels; its content is kept, and shared by all scenes that name it.
 class SceneMeshes {
  public:
-  /// \param problem_folder  where relative names start.
+  /// \param problem_folder  for relative names.
   SceneMeshes(std::filesystem::path problem_folder, PackageFolders packages)
       : files_(std::move(problem_folder), std::move(packages)) {}
 
-  /// Fills in the triangles of a scene's meshes and of those that are attached, and the voxels of
-  /// its point clouds.
-  /// \return what MeshFiles says, with the object named; nothing if all went well.
+  /// Fills in the triangles of a scene's meshes and of attached ones, and the voxels of its point
+  /// clouds.
+  /// \return the error of MeshFiles, with the object named; nothing without an error.
   std::optional<Error> read(Scene& scene, std::vector<AttachedObject>& attached);
 
  private:

@@ -9,14 +9,14 @@
 
 namespace kinship::models {
 
-/// What marks a text as xacro that is still to be expanded: an element `xacro:...`, or `${...}`,
-/// `$(find ...)`, `$(arg ...)` in an attribute of an element of the model; with its line, in words.
-/// Empty if it is none, or no XML. What plugins are told (`<gazebo>`, `<ros2_control>`) does not
-/// count, and neither does a mere declaration xmlns:xacro, which expanded files keep.
+/// The first mark of a text as unexpanded xacro: an element `xacro:...`, or `${...}`, `$(find
+/// ...)`, `$(arg ...)` in an attribute of an element of the model; as text with its line. Empty for
+/// other texts, or no XML. Settings of plugins (`<gazebo>`, `<ros2_control>`) do not count, nor
+/// does a mere declaration xmlns:xacro, which expanded files keep.
 std::string xacro_mark(std::string_view text);
 
-/// What to say of a file whose text is xacro: what shows it, and how it is expanded.
-/// \param ending  of what comes out of it, ".urdf" or ".srdf".
+/// The error for a file whose text is xacro: its mark, and how to expand it.
+/// \param ending  of the expanded file, ".urdf" or ".srdf".
 std::optional<Error> check_expanded(const std::filesystem::path& file, std::string_view text,
                                     std::string_view ending);
 

@@ -19,23 +19,23 @@
 /// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.
 namespace kinship::planning {
 
-/// Where an extension of a tree came.
+/// The end of a tree's extension.
 struct Extension {
-  Eigen::Index node = 0;  ///< the last one
-  bool reached = false;   ///< the target
+  Eigen::Index node = 0;  ///< the last node
+  bool reached = false;   ///< reached the target
 };
 
-/// What an extension aims at: a sample may lie anywhere, a node of the other tree is a valid
+/// The target of an extension: a sample may lie anywhere, a node of the other tree is a valid
 /// configuration.
 enum class Aim { Sample, Node };
 
-/// \throws std::invalid_argument as plan_birrt says; `planner` names it.
+/// \throws std::invalid_argument as plan_birrt; `planner` is its name in the message.
 void check_arguments(const char* planner, const Eigen::VectorXd& start,
                      const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
                      const BirrtOptions& options);
 
 /// The goals that hold a constraint.
-/// \return empty, with a reason as plan_cbirrt2 says, if the start or all goals do not.
+/// \return empty, with a reason as in plan_cbirrt2, if the start or all goals do not.
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                                        const RegionConstraint& constraint, NoPath& reason);
 
@@ -54,8 +54,8 @@ PlanSummary plan_along(const Eigen::VectorXd& start, const Eigen::MatrixXd& goal
   return summary;
 }
 
-/// Two trees, from the start and from every goal, of which the smaller one is extended.
-/// \tparam Steering  goes from a node to a target as far as it can: see steering.hpp.
+/// A search with two trees, from the start and from every goal, that extends the smaller one.
+/// \tparam Steering  extends from a node towards a target as far as possible: see steering.hpp.
 template <typename Steering>
 class BidirectionalSearch {
  public:
@@ -79,7 +79,7 @@ class BidirectionalSearch {
     return search();
   }
 
-  /// Plants both trees. \return the summary if there is nothing to search for.
+  /// Plants both trees. \return the summary if no search is needed.
   std::optional<PlanSummary> answer_at_once(const Eigen::VectorXd& start,
                                             const Eigen::MatrixXd& goals,
                                             Eigen::MatrixXd& free_goals) {
@@ -94,8 +94,8 @@ class BidirectionalSearch {
     return std::nullopt;
   }
 
-  /// The same from trees that have been begun: the start or the free goals and what can be reached
-  /// from them; all of it was checked.
+  /// The same from started trees: the start or the free goals, and the configurations reached from
+  /// them; all were checked.
   PlanSummary run_from(Tree start_tree, Tree goal_tree) {
     start_tree_ = std::move(start_tree);
     goal_tree_ = std::move(goal_tree);
@@ -103,7 +103,7 @@ class BidirectionalSearch {
     return search();
   }
 
-  /// What was planned and spent so far.
+  /// The summary so far.
   PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason,
                       FoundBy found_by = FoundBy::Search) {
     PlanSummary summary;
@@ -145,7 +145,7 @@ class BidirectionalSearch {
     return summary(std::nullopt, budget_.reason());
   }
 
-  /// \return why there is nothing to plan, if so.
+  /// \return why no search is possible; None if it is.
   NoPath plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     if (goals.cols() == 0)
       return NoPath::NoGoal;
@@ -175,9 +175,8 @@ class BidirectionalSearch {
     return path;
   }
 
-  /// Extends the start tree from its root towards one goal after the other, the nearest first.
-  /// Where nothing is in the way, no sample can do better. \return the path to the first one
-  /// reached.
+  /// Extends the start tree from its root towards one goal after the other, the nearest first. A
+  /// free straight line is better than any sample. \return the path to the first goal reached.
   std::optional<Eigen::MatrixXd> go_straight(const Eigen::MatrixXd& goals) {
     const Eigen::VectorXd start = start_tree_.node(0);
     const Eigen::VectorXd distances = (goals.colwise() - start).colwise().norm();
@@ -196,7 +195,7 @@ class BidirectionalSearch {
     return std::nullopt;
   }
 
-  /// The track that is followed now. \param checks  that the search has cost. \return null: none.
+  /// The track to follow now. \param checks  of the search so far. \return null: none.
   const Track* next_track(std::uint64_t checks) {
     if (!is_track_due(checks))
       return nullptr;
@@ -212,7 +211,7 @@ class BidirectionalSearch {
                               options_.track_check_fraction * static_cast<double>(checks);
   }
 
-  /// How many can come to nothing, a check each, before a track is due.
+  /// How many samples may fail, a check each, before a track is due.
   Eigen::Index samples_before_track(std::uint64_t checks) const {
     std::uint64_t count = 1;
     while (count < SamplesAhead::kAhead && !is_track_due(checks + count))
@@ -220,8 +219,8 @@ class BidirectionalSearch {
     return static_cast<Eigen::Index>(count);
   }
 
-  /// Extends the goal tree along a track until something is in the way, then the start tree towards
-  /// where that came. \return the path if they met.
+  /// Extends the goal tree along a track until it is blocked, then the start tree towards its end.
+  /// \return the path if they met.
   std::optional<Eigen::MatrixXd> follow(const Track& track) {
     const std::uint64_t before = budget_.checks();
     const Eigen::VectorXd root = track.configurations.col(0);
@@ -238,8 +237,8 @@ class BidirectionalSearch {
     return met.reached ? std::optional(join(met.node, there.node)) : std::nullopt;
   }
 
-  /// Extends the smaller tree towards samples until it comes anywhere, then the other towards where
-  /// that was. \param ahead  at most so many samples. \return the path if they met.
+  /// Extends the smaller tree towards samples until it grows, then the other towards its new end.
+  /// \param ahead  maximum number of samples. \return the path if they met.
   std::optional<Eigen::MatrixXd> iterate(Eigen::Index ahead) {
     const bool start_grows = start_tree_.size() <= goal_tree_.size();
     Tree& grown = start_grows ? start_tree_ : goal_tree_;
@@ -254,9 +253,10 @@ class BidirectionalSearch {
     return join(start_grows ? there->node : met.node, start_grows ? met.node : there->node);
   }
 
-  /// Extends a tree towards samples until it grows. As long as it does not, the next sample's
-  /// extension begins as if it were the first: so those of several are asked for together.
-  /// \param which  of the samples' nearest nodes is the tree's. \return empty if it did not grow.
+  /// Extends a tree towards samples until it grows. Until then each sample's extension begins as if
+  /// it were the first: so the first configurations of several are checked together.
+  /// \param which  index of the tree among the samples' nearest nodes. \return empty if it did not
+  ///               grow.
   std::optional<Extension> grow(Tree& tree, std::size_t which, Eigen::Index ahead) {
     Eigen::Index asked = 0;
     spent_[0] = steering_.spent();
@@ -292,8 +292,8 @@ class BidirectionalSearch {
 
   using Beginning = SamplesAhead::Beginning;
 
-  /// How a tree's extension towards a sample begins: at the nearest node, towards a target beyond
-  /// the sample.
+  /// The beginning of a tree's extension towards a sample: at the nearest node, towards a target
+  /// beyond the sample.
   const Beginning& begin(const Tree& tree, std::size_t which, Eigen::Index skipped) {
     SamplesAhead::Sample& sample = samples_.at(static_cast<std::uint64_t>(skipped));
     const Eigen::Index near = tree.nearest(sample.q, sample.nearest[which]);
@@ -335,7 +335,7 @@ class BidirectionalSearch {
   std::uint64_t track_checks_ = 0;
   // Of the samples ahead, a column each: kept, so that an iteration allocates nothing.
   Eigen::MatrixXd firsts_{sampler_.bounds().cols(), SamplesAhead::kAhead};
-  std::array<Eigen::Index, SamplesAhead::kAhead> starts_{};      // those that have a first one
+  std::array<Eigen::Index, SamplesAhead::kAhead> starts_{};      // samples that have a first one
   std::array<std::uint64_t, SamplesAhead::kAhead + 1> spent_{};  // before each sample, after all
   Eigen::VectorXd tip_;
 };

@@ -10,17 +10,17 @@
 /// For this library's sources only.
 namespace kinship::planning {
 
-/// Configurations in boxes of at most 64 that lie close together: only boxes that reach nearer than
-/// what was found are looked into. Immutable.
+/// Configurations in boxes of at most 64 that lie close together: a search scans only boxes that
+/// reach nearer than the nearest one found. Immutable.
 class BoxedNodes {
  public:
   /// \param configurations  dof x n, n >= 1.
-  /// \param first           index of the first one; the others' follow.
+  /// \param first           index of the first one; the others follow.
   BoxedNodes(const Eigen::Ref<const Eigen::MatrixXf>& configurations, Eigen::Index first);
 
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(order_.size()); }
 
-  /// Looks for a nearer one, or one as near with a lower index.
+  /// Searches for a nearer one, or an equally near one with a lower index.
   /// \param wanted  dof. \param squared  kept between calls, so that searching allocates nothing.
   void improve(const float* wanted, NearestNode& nearest, std::vector<float>& squared) const;
 

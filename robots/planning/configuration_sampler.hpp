@@ -14,9 +14,9 @@
 
 namespace kinship::planning {
 
-/// Where a planner's samples come from: a share of them from a mixture, a share from around the
-/// tracks of the query, the rest uniform within bounds. Immutable but for tracks, which
-/// are made when they are needed: may be shared, between threads if it has none.
+/// The source of a planner's samples: a share from a mixture, a share around the tracks of the
+/// query, the rest uniform within bounds. Immutable except for tracks, which are made when needed:
+/// may be shared, between threads only without tracks.
 class ConfigurationSampler {
  public:
   /// Uniform.
@@ -24,20 +24,20 @@ class ConfigurationSampler {
   /// \throws std::invalid_argument if a bound is not finite or a lower one exceeds its upper.
   explicit ConfigurationSampler(Eigen::Matrix2Xd bounds);
 
-  /// Guided samples follow the mixture truncated to the bounds. Joints wider than a turn know no
-  /// limits in the draw; they are moved by full turns into the bounds afterwards, and the draw is
-  /// repeated if no turn lies there. If nothing comes out, the sample is uniform.
-  /// \param chain  says which joints may be moved by full turns.
+  /// Guided samples follow the mixture truncated to the bounds. Joints wider than a turn are drawn
+  /// without limits and then moved by full turns into the bounds; the draw is repeated if no turn
+  /// lies there. If all draws fail, the sample is uniform.
+  /// \param chain  defines the joints that may be moved by full turns.
   /// \param guided_fraction  of the samples, 0 to 1.
-  /// \throws std::invalid_argument also if dimensions differ or the share is none.
+  /// \throws std::invalid_argument also if dimensions differ or the share is not 0 to 1.
   /// \throws Failure(Internal) if a covariance is not positive definite.
   ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
                        const Mixture& mixture, double guided_fraction);
 
-  /// The same, with samples around tracks besides.
+  /// The same with additional samples around tracks.
   /// \param tracks    not null.
-  /// \param fraction  of all samples, 0 to 1; what the mixture has is cut down to what is left.
-  /// \throws std::invalid_argument if the fraction is none.
+  /// \param fraction  of all samples, 0 to 1; the mixture's share is reduced to at most the rest.
+  /// \throws std::invalid_argument if the fraction is not 0 to 1.
   ConfigurationSampler with_tracks(std::shared_ptr<QueryTracks> tracks, double fraction) const;
 
   Eigen::VectorXd sample(std::mt19937_64& generator) const {
@@ -45,15 +45,15 @@ class ConfigurationSampler {
   }
   /// The same with another share of guided samples; a uniform sampler has none.
   Eigen::VectorXd sample(std::mt19937_64& generator, double guided_fraction) const;
-  /// The same into what there is. \param q  dof.
+  /// The same into an existing vector. \param q  dof.
   void draw(std::mt19937_64& generator, double guided_fraction, Eigen::VectorXd& q) const;
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
-  /// Of all samples; 0 if uniform.
+  /// Share of all samples; 0 if uniform.
   double guided_fraction() const noexcept { return mixture_fraction_ + track_fraction_; }
-  /// Ways to try before anything is drawn, made when first asked for; null: there are none.
+  /// Tracks to follow before samples are drawn, made at first use; null: none.
   QueryTracks* tracks() const noexcept { return tracks_.get(); }
-  /// Where guided samples come from that do not come from tracks; none if there are none.
+  /// The mixture of the guided samples; none if all come from tracks or are uniform.
   const std::optional<Mixture>& mixture() const noexcept { return mixture_; }
   /// The same posture within the bounds; empty if no turn lies there.
   std::optional<Eigen::VectorXd> moved_into_bounds(const Eigen::VectorXd& q) const {

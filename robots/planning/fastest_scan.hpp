@@ -10,7 +10,7 @@ struct Scans {
   BoxDistances boxes;
 };
 
-/// Those for what this machine knows.
+/// The scans for this machine's instruction set.
 const Scans& fastest_scans();
 
 }  // namespace kinship::planning

@@ -19,13 +19,13 @@ struct GoalOptions {
 struct GoalConfigurations {
   Eigen::MatrixXd configurations;      ///< dof x n, n >= 0: free and within the bounds
   int found = 0;                       ///< by inverse kinematics, before bounds and collisions
-  int within_bounds = 0;               ///< of these
+  int within_bounds = 0;               ///< of `found`
   std::uint64_t collision_checks = 0;  ///< counted apart from the plan's
   NoPath reason = NoPath::None;        ///< why there are none
 };
 
-/// Goal configurations of a plan that shall bring the transfer frame to a pose. Where none of
-/// `max_configurations` is free, a redundant arm is asked for further ones, up to ten times.
+/// Goal configurations of a plan to a pose of the transfer frame. If none of `max_configurations`
+/// is free, inverse kinematics of a redundant arm is repeated for others, up to ten times.
 /// \param T_base_goal  pose of the transfer frame in the base link, m.
 /// \param bounds       2 x dof (see planning_bounds); solutions are moved by full turns into them.
 GoalConfigurations goal_configurations(const kinematics::Chain& chain,
@@ -33,7 +33,7 @@ GoalConfigurations goal_configurations(const kinematics::Chain& chain,
                                        const Eigen::Matrix2Xd& bounds, const IsFree& is_free,
                                        const GoalOptions& options = {});
 
-/// The same with what inverse kinematics computed of the chain, for whoever asks more than once.
+/// The same with an existing solver of the chain, for repeated calls.
 GoalConfigurations goal_configurations(const kinematics::Chain& chain,
                                        const inverse::Solver& solver,
                                        const Eigen::Isometry3d& T_base_goal,

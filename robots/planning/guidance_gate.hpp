@@ -7,8 +7,8 @@
 
 namespace kinship::planning {
 
-/// Beyond this squared Mahalanobis distance from every component of a mixture a configuration has
-/// nothing to do with the experience behind it.
+/// A configuration beyond this squared Mahalanobis distance from every component of a mixture is
+/// unrelated to the experience behind it.
 inline constexpr double kGateDistance = 60;
 /// Added to each variance before distances are measured, squared joint units: a narrow component is
 /// no wall. With it kGateDistance was found not to fire on good distributions.
@@ -17,14 +17,14 @@ inline constexpr double kGateVariance = 0.05 * 0.05;
 /// The mixture with kGateVariance added to each variance.
 Mixture widened(const Mixture& mixture);
 
-/// How far a query is from what a distribution knows: squared Mahalanobis distances to the nearest
-/// component, dimensionless, its variances widened by kGateVariance.
+/// Distance of a query from a distribution: squared Mahalanobis distances to the nearest component,
+/// dimensionless, its variances widened by kGateVariance.
 struct QueryDistance {
   double start = 0;
   double goal = 0;  ///< of the nearest goal; infinite if there is none
 
-  /// Whether the query should rather be planned uniformly: a mixture that does not even know where
-  /// it starts or ends says little about what lies between.
+  /// Whether the query should be planned uniformly: a mixture far from its start or goals says
+  /// little about the configurations between.
   bool is_beyond(double limit) const noexcept { return start > limit || goal > limit; }
 };
 

@@ -12,27 +12,27 @@
 
 namespace kinship::planning {
 
-/// How much of what there is a query uses.
+/// How a query uses its guidance.
 struct GuideOptions {
   Guide guide = Guide::All;
   double guided_fraction = 1;  ///< of the samples, 0 to 1
-  TrackOptions tracks = {};    ///< but for `retreats`, which the guide says
-  /// Beyond it a mixture gives fewer of its samples, none far beyond (query_distance).
+  TrackOptions tracks = {};    ///< except `retreats`, which the guide sets
+  /// Beyond it a mixture gives fewer samples, far beyond it none (query_distance).
   double gate_distance = kGateDistance;
 };
 
-/// Where the samples of a query come from.
+/// The sampler of a query and its shares.
 struct GuidedSampler {
   ConfigurationSampler sampler;
   double track_share = 0;    ///< of all samples, around tracks
   double mixture_share = 0;  ///< of all samples, of the mixture
-  bool gate_fired = false;   ///< the mixture has less than its part
+  bool gate_fired = false;   ///< the gate reduced the mixture's share
 };
 
-/// Tracks and mixture have parts of the guided samples that the guide says, the mixture all of them
-/// where there is no experience. A mixture that the query is far from gives fewer, the fewer the
-/// farther: it says little about what lies between. The retreat is tried from every goal, but only
-/// from the three nearest where stored ways follow.
+/// The guide sets the shares of tracks and mixture in the guided samples; without experience, a
+/// guide that uses the mixture takes all from it. The farther the query is from the mixture, the
+/// fewer samples the mixture gives: it then says little about the configurations between. The
+/// retreat is tried from every goal, but only from the three nearest if stored ways follow.
 /// \param mixture     null: there is none.
 /// \param experience  null: there is none, and no tracks.
 /// \throws std::invalid_argument if a share is not 0 to 1 or sizes differ.

@@ -14,31 +14,31 @@
 
 namespace kinship::planning {
 
-/// Whether configurations are free; counts them itself. Each question is one collision check,
-/// whatever answers it.
+/// Whether configurations are free. Each checked configuration is one collision check, whichever
+/// function answers.
 class IsFree {
  public:
   /// \return whether a configuration is free.
   using One = std::function<bool(const Eigen::VectorXd& q)>;
-  /// \param qs  dof x n. \return how many of them, from the first on, answer alike before one does
-  /// not; later ones are not looked at, or as if they were not.
+  /// \param qs  dof x n. \return how many, from the first on, have the same answer (free or
+  ///            blocked) before one differs; later ones are not checked, or without effect.
   using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
-  /// How near to touching each of some straight lines comes, m, as far as that had to be measured,
-  /// else infinity; nothing of one that is not free all along.
+  /// Least clearance of each of some straight lines, m, if it had to be measured, else infinity;
+  /// nothing for a line that is not free.
   using Lines = std::vector<std::optional<double>>;
   /// \param from, to  dof x n: the ends of the lines, a column each
   using Edges = std::function<Lines(const Eigen::Ref<const Eigen::MatrixXd>& from,
                                     const Eigen::Ref<const Eigen::MatrixXd>& to)>;
 
-  /// Several are asked for one after the other.
+  /// Several configurations are checked one after the other.
   template <typename Callable>
   requires std::predicate<Callable&, const Eigen::VectorXd&> IsFree(
       Callable one)  // NOLINT(google-explicit-constructor): a function is all that most have
       : one_(std::move(one)) {}
 
-  /// \param free     says how many are free before one is not.
-  /// \param blocked  says how many are not before one is; none: asked for one by one.
-  /// \param edges    proves lines; none: what was asked about along a line has to do.
+  /// \param free     returns how many are free before one is not.
+  /// \param blocked  returns how many are not before one is; none: checked one by one.
+  /// \param edges    proves lines; none: the configurations checked along a line suffice.
   IsFree(One one, Ahead free, Ahead blocked = {}, Edges edges = {})
       : one_(std::move(one)),
         free_(std::move(free)),
@@ -55,7 +55,7 @@ class IsFree {
   /// Whether lines are proven, and edges() decides.
   bool proves_edges() const { return static_cast<bool>(edges_); }
 
-  /// As Edges says; infinity where lines are not proven. Counts no check.
+  /// As Edges; infinity if lines are not proven. Counts no check.
   Lines edges(const Eigen::Ref<const Eigen::MatrixXd>& from,
               const Eigen::Ref<const Eigen::MatrixXd>& to) const {
     if (edges_)
@@ -69,7 +69,7 @@ class IsFree {
     return std::ranges::all_of(lines, [](const auto& line) { return line.has_value(); });
   }
 
-  /// The same, but for what is said of lines.
+  /// The same with another proof of lines.
   IsFree with_edges(Edges edges) const { return {one_, free_, blocked_, std::move(edges)}; }
 
   /// How many are not free, from the first on, before one is.
@@ -90,16 +90,16 @@ class IsFree {
   Edges edges_;
 };
 
-/// As many configurations as are asked for together, and as few as cost less together.
+/// Configurations checked together at most, and the fewest that cost less together.
 inline constexpr Eigen::Index kTogether = 16, kFewTogether = 8;
 
 /// Whether configurations are free in a world, several at once at the cost of little more than one.
-/// \param world   must outlive what is returned, which counts in it.
-/// \param before  called before each question; what it throws goes to who asks.
+/// \param world   must outlive the returned object; counts the checks.
+/// \param before  called before each call; its exceptions reach the caller.
 IsFree free_in(collision::CollisionWorld& world, std::function<void()> before = {});
 
-/// The same, but what comes nearer than a clearance counts as touching, and lines are proven.
-/// \param prover  must outlive what is returned.
+/// The same, but bodies nearer than a clearance count as touching, and lines are proven.
+/// \param prover  must outlive the returned object.
 IsFree proven_in(collision::EdgeProver& prover, const collision::EdgeProofOptions& options,
                  std::function<void()> before = {});
 

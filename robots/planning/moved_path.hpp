@@ -7,16 +7,16 @@
 
 namespace kinship::planning {
 
-/// Where a query begins and ends, as poses of the transfer frame in the task frame.
+/// Start and goal of a query, as poses of the transfer frame in the task frame.
 struct PoseQuery {
   Eigen::Isometry3d T_task_start;
   Eigen::Isometry3d T_task_goal;
 };
 
-/// How far two poses are from each other, m: a radian counts as 0.3 m.
+/// Distance of two poses, m: a radian counts as 0.3 m.
 double pose_distance_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 
-/// Which paths are most like a query: nearest in goal, then start pose.
+/// The paths nearest to a query, by the sum of the distances of their start and goal poses.
 /// \return indices into `paths`, the nearest first, at most `count`.
 std::vector<std::size_t> nearest_paths(const std::vector<PosePath>& paths, const PoseQuery& query,
                                        std::size_t count);
@@ -28,9 +28,9 @@ std::vector<std::size_t> nearest_paths(const std::vector<PosePath>& paths, const
 /// \return as many poses as the path has; the first and last are those of the query.
 std::vector<Eigen::Isometry3d> moved_onto(const PosePath& path, const PoseQuery& query);
 
-/// A way that needs no experience: the hand comes straight to where it is `distance_m` before its
-/// goal, against the z axis of the transfer frame, which points out of the palm, and from there
-/// straight to the goal. With 0 it comes straight all the way.
+/// A path without experience: the hand moves straight to the pose `distance_m` before its goal,
+/// against the z axis of the transfer frame, which points out of the palm, and from there straight
+/// to the goal. With 0 it moves straight all the way.
 PosePath retreat(double distance_m);
 
 }  // namespace kinship::planning

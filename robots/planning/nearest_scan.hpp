@@ -5,25 +5,25 @@
 
 namespace kinship::planning {
 
-inline constexpr long kScanBlock = 16;  ///< configurations that are looked at side by side
+inline constexpr long kScanBlock = 16;  ///< configurations scanned side by side
 
 /// Configurations side by side, as plain numbers: joint after joint, `stride` apart. Behind the
 /// last one infinity, up to a multiple of kScanBlock.
 struct ScannedNodes {
-  const float* values;  ///< aligned to nothing in particular
+  const float* values;  ///< of any alignment
   long stride;          ///< a multiple of kScanBlock
   int dof;
 };
 
-/// What is nearest so far.
+/// The nearest so far.
 struct ScanResult {
   float squared;
   long index;
 };
 
-/// Looks for a nearer one among some of the configurations, the first of equals; those before
-/// `first` may be looked at once more. Sums in the order of the joints, rounded after each
-/// operation: the answer does not depend on the instruction set.
+/// Searches for a nearer one among some of the configurations, the first of equals; it may scan
+/// some before `first` again. Sums in the order of the joints, rounded after each operation: the
+/// answer does not depend on the instruction set.
 using NearestScan = void (*)(const ScannedNodes& nodes, long first, long end, const float* wanted,
                              ScanResult& nearest);
 

@@ -8,12 +8,12 @@ namespace kinship::planning {
 enum class NoPath {
   None,  ///< it has one
   NoGoal,
-  StartOutOfReach,    ///< a start pose, as inverse kinematics says
+  StartOutOfReach,    ///< a start pose, by inverse kinematics
   StartBeyondLimits,  ///< a start pose reached only outside the joint limits
-  StartNotFound,      ///< a start pose of which no configuration was found
-  GoalOutOfReach,     ///< a goal pose, as inverse kinematics says
+  StartNotFound,      ///< a start pose for which no configuration was found
+  GoalOutOfReach,     ///< a goal pose, by inverse kinematics
   GoalBeyondLimits,   ///< a goal pose reached only outside the joint limits
-  GoalNotFound,       ///< a goal pose of which no configuration was found
+  GoalNotFound,       ///< a goal pose for which no configuration was found
   GoalOutsideBounds,  ///< of planning
   StartCollides,
   GoalsCollide,  ///< every one
@@ -23,11 +23,11 @@ enum class NoPath {
   TimeLimit,
   GaveUp,  ///< a planner of OMPL, before checks and time were used up
   NothingRecalled,
-  RecallCollides,  ///< the path that was recalled
-  EdgesRefuted     ///< what is free where it was asked about is not in between, however closely
+  RecallCollides,  ///< the recalled path collides
+  EdgesRefuted     ///< a line between free configurations is not free, even in the finest steps
 };
 
-/// For people, without what only the query knows: "every goal collides". Empty for None.
+/// For people, without details of the query: "every goal collides". Empty for None.
 std::string_view describe(NoPath reason);
 
 }  // namespace kinship::planning

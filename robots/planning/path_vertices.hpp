@@ -14,13 +14,13 @@ Eigen::Index count_of_parts(double distance, double step);
 /// \throws std::invalid_argument if there is no waypoint or the step is not positive.
 Eigen::MatrixXd densified(const Eigen::MatrixXd& waypoints, double step);
 
-/// The least waypoints that `densified` turns into the given ones again (within 1e-9): what was
-/// checked stays what is checked, and the content does not depend on the step.
+/// The fewest waypoints that `densified` turns into the given ones again (within 1e-9): the checked
+/// configurations stay the same, and the content does not depend on the step.
 /// \param waypoints  dof x n, n >= 1, at most `step` apart; repeated ones are dropped.
 Eigen::MatrixXd sparse_vertices(const Eigen::MatrixXd& waypoints, double step);
 
-/// Counts over the configurations between the ends of a line, the middle first, then the middles of
-/// the halves, and so on: what stands in the way is found early.
+/// Enumerates the configurations between the ends of a line, the middle first, then the middles of
+/// the halves, and so on: obstacles are found early.
 class MiddlesFirst {
  public:
   /// \param parts  of the line: its ends are 0 and `parts`.

@@ -11,17 +11,17 @@ namespace kinship::planning {
 
 inline constexpr double kTurn = 2 * M_PI;
 
-/// Where a plan from `start` may go: the joint limits, but joints wider than a turn, continuous
-/// ones among them, only one turn, with the start in its middle or, near a limit, up to the limit.
-/// So each posture exists once, in the turn nearest to the start: over several turns it exists
-/// many times, and trees that meet in different turns do not meet.
+/// The bounds of a plan from `start`: the joint limits, but for joints wider than a turn, including
+/// continuous ones, only one turn, with the start in its middle or, near a limit, up to the limit.
+/// So each posture exists once, in the turn nearest to the start: over several turns it exists many
+/// times, and trees that meet in different turns do not meet.
 /// \return 2 x dof: lower, upper, joint units.
 /// \throws std::invalid_argument if start has another size than the chain or is not finite.
 Eigen::Matrix2Xd planning_bounds(const kinematics::Chain& chain,
                                  const Eigen::Ref<const Eigen::VectorXd>& start);
 
-/// Whether a full turn of each joint is another configuration of the same posture that a plan may
-/// have to choose from: joints wider than a turn, continuous ones among them.
+/// Whether a full turn of each joint gives another configuration of the same posture, among which a
+/// plan may have to choose: joints wider than a turn, including continuous ones.
 std::vector<bool> turning_joints(const kinematics::Chain& chain);
 
 /// The same posture within bounds: turning joints are moved by full turns.

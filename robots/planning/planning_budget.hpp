@@ -14,15 +14,15 @@ namespace kinship::planning {
 /// CPU time of the calling thread, s.
 double thread_time_s();
 
-/// Asks whether configurations are free until checks or time are used up. The limit is wall-clock
-/// time, what was spent is CPU time of the thread. Lives on one thread.
+/// Checks configurations until checks or time are used up. The limit is wall-clock time, the time
+/// spent is CPU time of the thread. Used by one thread.
 class PlanningBudget {
  public:
   /// \param is_free  must outlive this.
   PlanningBudget(const IsFree& is_free, std::uint64_t max_checks,
                  std::chrono::duration<double> time_limit);
 
-  /// False also if the budget is used up; then nothing was asked.
+  /// False also if the budget is used up; then nothing is checked.
   bool is_free(const Eigen::VectorXd& q) {
     if (exhausted())
       return false;
@@ -31,13 +31,13 @@ class PlanningBudget {
   }
 
   /// How many configurations, from the first on, are free before one is not; the check of that one
-  /// counts too. Fewer also if the budget is used up: it ends at the last check, but sees only
-  /// before the first whether its time is over.
+  /// counts too. Fewer if the budget is used up: checks end at the limit, but the time is tested
+  /// only before the first one.
   /// \param qs  dof x n, some kTogether
   Eigen::Index free_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
-  /// Which configuration is the first that is free; those before it and it are counted. Empty if
-  /// none is, or if the budget is used up before.
+  /// Index of the first free configuration; counts it and those before it. Empty if none is free,
+  /// or if the budget is used up before.
   /// \param qs  dof x n, some kTogether
   std::optional<Eigen::Index> first_free(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
@@ -49,7 +49,7 @@ class PlanningBudget {
   NoPath reason() const noexcept { return reason_; }
 
  private:
-  /// How many of some configurations may be asked for.
+  /// How many of `wanted` configurations may be checked.
   Eigen::Index left_of(Eigen::Index wanted) const {
     return static_cast<Eigen::Index>(
         std::min<std::uint64_t>(max_checks_ - checks_, static_cast<std::uint64_t>(wanted)));

@@ -10,8 +10,8 @@
 
 namespace kinship::planning {
 
-/// The tracks of one query, made a few at a time when they are asked for: a query that is a
-/// straight line makes none. For one thread.
+/// The tracks of one query, made a few at a time on demand: a query solved by a straight line makes
+/// none. Used by one thread.
 class QueryTracks {
  public:
   /// \param guide  not null.
@@ -22,8 +22,8 @@ class QueryTracks {
   /// \return null: there are no more.
   const Track* track(std::size_t index);
 
-  /// Normal about a configuration of a track made so far, each as likely as any other, within the
-  /// bounds; empty if there is no track, or if no draw of many lay within.
+  /// A normal sample about a configuration of the tracks made so far, all equally likely, within
+  /// the bounds; empty if there is no track, or if no draw of many lay within.
   std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator);
 
  private:

@@ -4,7 +4,7 @@
 
 #include "robots/planning/region_constraint.hpp"
 
-/// What the projections onto a region share; for this library's sources only.
+/// Shared parts of the projections onto a region; for this library's sources only.
 namespace kinship::planning {
 
 inline constexpr int kMaxIterations = 12;                                     ///< of a projection
@@ -16,12 +16,13 @@ inline constexpr double kMinCosine =
 
 /// A rotation outside its bounds.
 struct AngleExcess {
-  Eigen::Vector3d beyond;  ///< roll, pitch, yaw, rad; 0 where they keep to them
+  Eigen::Vector3d beyond;  ///< roll, pitch, yaw, rad; 0 within the bounds
   bool is_flipped;         ///< whether the rotation counts as (roll + pi, pi - pitch, yaw + pi)
 };
 
-/// Of both ways to write a rotation the one that is less outside, angles modulo a full turn.
-/// \param angles  roll, pitch, yaw, rad; any for those that have no bounds.
+/// The excess of a rotation in the one of its two representations that is less outside, angles
+/// modulo a full turn.
+/// \param angles  roll, pitch, yaw, rad; arbitrary for unbounded ones.
 /// \param bounds  2 x 3: lower, upper; both infinite, or less than a turn apart.
 AngleExcess angle_excess(const Eigen::Vector3d& angles,
                          const Eigen::Ref<const Eigen::Matrix<double, 2, 3>>& bounds);

@@ -28,19 +28,19 @@ class RegionConstraint {
   using Matrix6 =
       Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, static_cast<int>(kMaxDof)>;
 
-  /// Waypoints of a constrained path lie at most this far outside the region, and what lies
-  /// between two of them at most this far; the norm of `excess`, 1 m = 1 rad.
+  /// Largest distance outside the region of a constrained path's waypoints, and of the lines
+  /// between them; the norm of `excess`, 1 m = 1 rad.
   static constexpr double kWaypointTolerance = 1e-3, kBetweenTolerance = 5e-3;
 
   /// \param T_task_base  pose of the chain's base link in the task frame.
-  /// \param bounds       2 x dof: where a projection may go, joint units (see planning_bounds).
+  /// \param bounds       2 x dof: bounds of a projection, joint units (see planning_bounds).
   /// \throws std::invalid_argument if the region has a fault or the bounds do not fit the chain.
   RegionConstraint(const kinematics::Chain& chain, const TaskSpaceRegion& region,
                    const Eigen::Isometry3d& T_task_base, const Eigen::Matrix2Xd& bounds);
 
-  /// How far the transfer frame is outside the region: displacement beyond the bounds in x, y, z
-  /// (m), roll, pitch, yaw (rad); 0 where it keeps to them. An angle is taken modulo a full turn,
-  /// and of the two ways to write a rotation the one that is less outside counts.
+  /// Excess of the transfer frame: displacement beyond the region's bounds in x, y, z (m), roll,
+  /// pitch, yaw (rad); 0 within the bounds. Angles count modulo a full turn, and of the two
+  /// representations of a rotation the one that is less outside.
   Vector6 excess(const Eigen::VectorXd& q) const;
 
   /// Derivative of the displacement, and so of the excess where that is not zero: 6 x dof, per
@@ -51,13 +51,13 @@ class RegionConstraint {
   bool holds(const Eigen::VectorXd& q) const { return distance(q) <= kWaypointTolerance; }
 
   /// Moves q into the region (to half the tolerance of waypoints) by damped least squares over the
-  /// coordinates that are outside, aiming a little inside where there is room, so that few
-  /// iterations do. Never leaves the bounds. Counts one projection.
-  /// \return false if it did not get there; q is then anywhere within the bounds.
+  /// coordinates that are outside, aiming a little inside if there is room, so that few iterations
+  /// suffice. Never leaves the bounds. Counts one projection.
+  /// \return false if it did not converge; q is then anywhere within the bounds.
   bool project(Eigen::VectorXd& q);
 
   std::uint64_t projections() const noexcept { return projections_; }
-  /// For who makes some ahead and counts only what was needed.
+  /// For a caller that projects ahead and counts only the projections it needed.
   void set_projections(std::uint64_t projections) noexcept { projections_ = projections; }
 
  private:
@@ -78,7 +78,7 @@ class RegionConstraint {
     Eigen::Vector3d p;
   };
 
-  /// Where nothing but roll and pitch is bounded; else null.
+  /// Not null if only roll and pitch are bounded.
   std::shared_ptr<const RegionTilt> tilt() const;
   void sweep(const Eigen::VectorXd& q, Sweep& along) const;
   /// \param flipped  whether the rotation counts as (roll + pi, pi - pitch, yaw + pi).
@@ -92,7 +92,7 @@ class RegionConstraint {
   Eigen::Matrix<double, 2, 6> region_bounds_;
   Vector6 margin_;  // how far inside its bounds a coordinate is aimed at
   Eigen::Matrix2Xd bounds_;
-  std::shared_ptr<const RegionTilt> tilt_;  // what copies share: it never changes
+  std::shared_ptr<const RegionTilt> tilt_;  // shared by copies; immutable
   std::uint64_t projections_ = 0;
 };
 

@@ -10,25 +10,25 @@
 /// For this library's sources only.
 namespace kinship::planning {
 
-/// Roll and pitch of the frame at the end of a chain, in a region that bounds nothing else. All
-/// they depend on is the third row of the frame's rotation, and a row is swept along the chain at a
-/// fraction of what a pose costs, their derivative as two columns back. Immutable.
+/// Roll and pitch of the frame at the end of a chain, in a region that bounds only these. They
+/// depend only on the third row of the frame's rotation; a row is swept along the chain at a
+/// fraction of the cost of a pose, and their derivative back as two columns. Immutable.
 class RegionTilt {
  public:
-  /// A joint and what comes before it; its axis is the z-axis of its frame.
+  /// A joint and its frame; its axis is the z-axis of the frame.
   struct Joint {
-    Eigen::Matrix3d R;  ///< in the frame before it, after that one's joint has turned
+    Eigen::Matrix3d R;  ///< in the previous frame, after that frame's joint has turned
     bool slides;
   };
 
   /// \param joints  at least one, at most kMaxDof, the first in the region's frame.
   /// \param R_end   of the frame at the end, after the last joint.
   /// \param bounds  2 x 2: of roll and pitch, rad, as angle_excess() takes them.
-  /// \param margin  how far inside these a projection aims, rad.
+  /// \param margin  distance inside the bounds at which a projection aims, rad.
   RegionTilt(const std::vector<Joint>& joints, const Eigen::Matrix3d& R_end,
              const Eigen::Matrix2d& bounds, const Eigen::Array2d& margin);
 
-  /// Beyond the bounds, roll and pitch, rad.
+  /// Roll and pitch beyond the bounds, rad.
   Eigen::Array2d excess(const Eigen::VectorXd& q) const;
 
   /// As RegionConstraint::project. \param bounds  2 x dof: of q.
@@ -44,7 +44,7 @@ class RegionTilt {
     Eigen::RowVector3d end;
   };
 
-  /// What an angle may be, as a cone: asked about without computing it.
+  /// The range of an angle as a cone, to test the angle without computing it.
   struct Cone {
     double sine, cosine;  // of its middle
     double slope;         // of its sides; not a number: no cone
@@ -58,7 +58,7 @@ class RegionTilt {
   static Cone cone_of(double lower, double upper);
   void sweep(const Eigen::VectorXd& q, Sweep& along) const;
   Excess excess(const Eigen::RowVector3d& end) const;
-  /// A step of damped least squares from where q is.
+  /// A step of damped least squares from q.
   void improve(const Sweep& along, const Excess& outside, Eigen::VectorXd& q) const;
 
   Eigen::Index dof_;

@@ -21,22 +21,22 @@ using Way = std::function<std::optional<Eigen::MatrixXd>(const Eigen::VectorXd& 
 /// Moves a configuration onto a constraint. False if that fails.
 using Project = std::function<bool(Eigen::VectorXd& q)>;
 
-/// Vertices and edges of a query, and what is known of them.
+/// Vertices and edges of a query, and the results of their checks.
 class RoadmapGraph {
  public:
   /// \param goals  at least one; start and goals were found free.
   RoadmapGraph(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals, Way way);
 
-  /// Adds what plan_roadmap says.
+  /// Adds the components' vertices and edges, as plan_roadmap describes.
   void add_components(const ConfigurationSampler& sampler, const Project& project,
                       const RoadmapOptions& options, std::mt19937_64& generator);
 
-  /// The cheapest path of which nothing is known to be blocked; checks until one is free.
+  /// Searches the cheapest path without known collisions and checks it, until one is free.
   /// \param max_checks  of the budget, to be spent here.
   /// \return            dof x n from start to a goal; empty if there is none, or no budget.
   std::optional<Eigen::MatrixXd> search(PlanningBudget& budget, std::uint64_t max_checks);
 
-  /// What free edges lead to from the start, or from the goals.
+  /// The tree of free edges from the start, or from the goals.
   Tree reached_from_start() const { return reached(0, 1); }
   Tree reached_from_goals() const { return reached(1, goal_count_); }
 
@@ -73,7 +73,7 @@ class RoadmapGraph {
 
   Way way_;
   std::size_t goal_count_;
-  std::vector<Vertex> vertices_;  // start, goals, then those of components
+  std::vector<Vertex> vertices_;  // start, goals, then the components' vertices
   std::vector<Edge> edges_;
 };
 

@@ -11,21 +11,20 @@
 /// For this library's sources only.
 namespace kinship::planning {
 
-/// The samples of one search, drawn some ahead of their use, and what is known of them. Each is
-/// what it would be if it were drawn when it is used, and so is the generator once those that were
-/// not used have been given back.
+/// The samples of one search, drawn ahead of their use, with their nearest nodes and extensions.
+/// Each sample equals the one that a draw at its use would give; after give_back() so does the
+/// generator's state.
 class SamplesAhead {
  public:
   static constexpr std::uint64_t kAhead = 8;
 
-  /// How an extension of a tree towards a sample begins, which stays so as long as no node is
-  /// nearer.
+  /// The beginning of a tree's extension towards a sample; valid as long as no node is nearer.
   struct Beginning {
     Eigen::Index near = -1;   ///< its node; -1: not known
-    Eigen::VectorXd target;   ///< where it leads
+    Eigen::VectorXd target;   ///< of the extension
     Eigen::VectorXd first;    ///< its first configuration
     bool is_any = false;      ///< whether there is one
-    std::uint64_t spent = 0;  ///< on finding it, besides checks
+    std::uint64_t spent = 0;  ///< to find it, besides checks
   };
 
   struct Sample {
@@ -37,14 +36,14 @@ class SamplesAhead {
   /// Both must outlive this.
   SamplesAhead(const ConfigurationSampler& sampler, std::mt19937_64& generator);
 
-  /// \param skipped  of those that were not used, below kAhead.
+  /// \param skipped  number of unused samples before it, below kAhead.
   Sample& at(std::uint64_t skipped);
 
-  /// \param count  the first of those that were not used; each was looked at.
+  /// \param count  number of unused samples to mark as used, in order; at() returned each before.
   void use(std::uint64_t count) { used_ += count; }
 
-  /// Forgets what was not used. To be called before anything else has the generator or changes what
-  /// is drawn.
+  /// Drops unused samples. To be called before another user takes the generator, or the sampler
+  /// changes.
   void give_back();
 
   std::uint64_t used() const noexcept { return used_; }

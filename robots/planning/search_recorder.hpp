@@ -9,24 +9,24 @@
 
 namespace kinship::planning {
 
-/// Writes down how the two trees of a search grow (BirrtOptions::recorder). It changes nothing of
-/// the search but its time. Of one thread, and of one search at a time.
+/// Records how the two trees of a search grow (BirrtOptions::recorder). It changes only the time of
+/// the search. Used by one thread, for one search at a time.
 class SearchRecorder {
  public:
   enum class Side { Start, Goal };
 
-  /// A search begins, and forgets the one before. \param budget  of which checks are told; as long
-  /// as nodes come.
+  /// Begins a search and drops the previous one.
+  /// \param budget  gives the number of checks; outlives the calls of add().
   void begin(const PlanningBudget& budget);
 
-  /// A tree has a new node. \param parent  in the same tree, -1: a root.
+  /// Adds a node of a tree. \param parent  in the same tree, -1: a root.
   void add(Side side, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Index parent);
 
-  /// Both trees have met in nodes that hold the same configuration. There is no path if one
-  /// of them came after kMaxRecordedNodes.
+  /// Joins the trees at nodes of equal configuration. No path is recorded if one of the nodes came
+  /// after kMaxRecordedNodes.
   void join(Eigen::Index start_node, Eigen::Index goal_node);
 
-  /// What was recorded since begin(); without a name.
+  /// The record since begin(), without a name.
   RecordedSearch search() const;
 
  private:

@@ -17,11 +17,11 @@ struct StartConfiguration {
   NoPath reason = NoPath::None;        ///< why there is none
 };
 
-/// Where a plan begins whose start is a pose of the transfer frame: of the pose's free
-/// configurations the one nearest to a goal configuration (Euclidean, 1 m = 1 rad; joints wider
-/// than a turn the shorter way round). Without goal configurations, the one nearest to the middle
-/// of the joint limits (in parts of each joint's range; continuous joints do not count): goals then
-/// are a pose too, all of whose configurations the plan may end in. Equal arguments, equal answer.
+/// The start of a plan from a pose of the transfer frame: of the pose's free configurations the one
+/// nearest to a goal configuration (Euclidean, 1 m = 1 rad; joints wider than a turn the shorter
+/// way round). Without goal configurations, the one nearest to the middle of the joint limits (in
+/// parts of each joint's range; continuous joints do not count): the goal is then a pose too, and
+/// the plan may end in any of its configurations. Equal arguments, equal answer.
 /// \param T_base_start  pose of the transfer frame in the base link, m.
 /// \param goals         dof x n, n >= 0.
 StartConfiguration start_configuration(const kinematics::Chain& chain,

@@ -11,7 +11,7 @@
 /// The two steerings of BidirectionalSearch; for this library's sources only.
 namespace kinship::planning {
 
-/// Goes straight to the target, as far as it is free.
+/// Steers straight to the target, as far as the line is free.
 class StraightSteering {
  public:
   StraightSteering(Eigen::Index dof, double step)
@@ -22,8 +22,8 @@ class StraightSteering {
     return set_out(tree.node(from), target) ? go(tree, from, 1, budget) : Extension{from, true};
   }
 
-  /// The first configuration of an extension, before anything is asked. \return false: there is
-  /// none, the target is the origin.
+  /// The first configuration of an extension, before any check. \return false: none, the target is
+  /// the origin.
   bool first_of(const Eigen::Ref<const Eigen::VectorXd>& origin,
                 const Eigen::Ref<const Eigen::VectorXd>& target, Eigen::VectorXd& first) {
     if (!set_out(origin, target))
@@ -41,14 +41,14 @@ class StraightSteering {
     return is_last(1) ? Extension{from, true} : go(tree, from, 2, budget);
   }
 
-  /// What was spent besides checks, and as much again.
+  /// Cost besides checks, and its restoration.
   std::uint64_t spent() const { return 0; }
   void set_spent(std::uint64_t) {}
 
  private:
   static constexpr double kShortest = 1e-9;  // joint units: no last step as short as rounding
 
-  /// \return whether there is a way to go.
+  /// \return whether the target differs from the origin.
   bool set_out(const Eigen::Ref<const Eigen::VectorXd>& origin,
                const Eigen::Ref<const Eigen::VectorXd>& target) {
     origin_ = origin;
@@ -70,7 +70,7 @@ class StraightSteering {
       q.noalias() = origin_ + i * step_ * direction_;
   }
 
-  /// Few are asked for at first: most ways are short.
+  /// Checks few at first: most ways are short.
   Extension go(Tree& tree, Eigen::Index from, int first, PlanningBudget& budget) {
     for (Eigen::Index together = kFewTogether;; together = kTogether) {
       Eigen::Index count = 0;
@@ -94,7 +94,7 @@ class StraightSteering {
   Eigen::MatrixXd way_;
 };
 
-/// Slides along the constraint towards the target, as far as it is free and comes nearer.
+/// Steers along the constraint towards the target, as far as it is free and comes nearer.
 class ConstrainedSteering {
  public:
   ConstrainedSteering(Eigen::Index dof, double step, RegionConstraint& constraint)
@@ -112,7 +112,7 @@ class ConstrainedSteering {
     return go(tree, from, aim, budget);
   }
 
-  /// The first configuration of an extension towards a sample, before anything is asked.
+  /// The first configuration of an extension towards a sample, before any check.
   /// \return false: there is none.
   bool first_of(const Eigen::Ref<const Eigen::VectorXd>& origin,
                 const Eigen::Ref<const Eigen::VectorXd>& target, Eigen::VectorXd& first) {
@@ -133,15 +133,15 @@ class ConstrainedSteering {
     return go(tree, tree.add(first, from), Aim::Sample, budget);
   }
 
-  /// Projections: those that an extension needed, whenever they were made.
+  /// Projections that the extensions needed, whenever they were made.
   std::uint64_t spent() const { return constraint_.projections(); }
   void set_spent(std::uint64_t spent) { constraint_.set_projections(spent); }
 
  private:
   enum class Next { Further, Arrived, Stuck };
 
-  /// From q_ on. Where it goes on is known before anything is asked, so a few steps are asked for
-  /// together, more and more: what comes behind one that is not free was projected for nothing.
+  /// From q_ on. The steps are known before any check, so a few are checked together, more and
+  /// more: those behind one that is not free were projected in vain.
   Extension go(Tree& tree, Eigen::Index from, Aim aim, PlanningBudget& budget) {
     constexpr Eigen::Index kFirst = 2;
     for (Eigen::Index together = kFirst;; together = std::min(2 * together, kTogether)) {

@@ -22,13 +22,13 @@ class Tree {
   Eigen::Index nearest(const Eigen::Ref<const Eigen::VectorXd>& q) const {
     return nearest_.find(q);
   }
-  /// The same where the nearest of the first nodes is known.
+  /// The same if the nearest of the first nodes is known.
   Eigen::Index nearest(const Eigen::Ref<const Eigen::VectorXd>& q, NearestNode& known) const {
     nearest_.update(q, known);
     return known.index;
   }
 
-  /// Tells a recorder of the nodes there are and of all that come. \param recorder  borrowed.
+  /// Records the present nodes and all later ones. \param recorder  borrowed.
   void record(SearchRecorder& recorder, SearchRecorder::Side side);
 
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(parents_.size()); }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// All of the component `client`: register a robot, report attempts, fetch and follow
-/// distributions, draw from them. Include this one; what it includes may move, names in namespace
-/// kinship do so only with a new minor version.
+/// distributions, draw from them. Include this header; the headers it includes may move, names in
+/// namespace kinship do so only with a new minor version.
 #include <kinship/version.hpp>
 
 #include "client/link/client.hpp"
