@@ -141,9 +141,9 @@ struct StoreStatus {
   bool damaged = false;  ///< something cannot be read any more; `message` names it
   /// End of the last complete search of the file for damage; 0: never.
   std::int64_t scrubbed_ms = 0;
-  double scrub_part = 0;  ///< progress of the current search, 0 to 1
-  std::string message;  ///< why not writable, what is damaged, warnings; mostly one warning or none
-  std::uint64_t rollbacks = 0;       ///< noticed since the store was opened, each with a new epoch
+  double scrub_part = 0;        ///< progress of the current search, 0 to 1
+  std::string message;          ///< reason why not writable, damage, warnings; mostly one or none
+  std::uint64_t rollbacks = 0;  ///< noticed since the store was opened, each with a new epoch
   std::vector<ReplicaUse> replicas;  ///< hosts of a database, for the readings of fits
 };
 
@@ -212,7 +212,7 @@ class Store {
   /// \return NotFound for an unknown robot; Unavailable if it was stopped.
   virtual Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {},
                                             const AuditEntry* audit = nullptr) = 0;
-  /// By robot, of those whose geometry was ever replaced.
+  /// By robot; only robots whose geometry was ever replaced.
   virtual std::map<Digest, std::uint64_t> geometry_revisions() const = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
   /// In order of labels. A robot with a damaged row is left out and counted in status().message;
@@ -379,7 +379,7 @@ class Store {
   /// \return the newly retired paths, by task.
   virtual std::vector<Retirement> retire_reports(std::span<const Uuid> reports) = 0;
 
-  /// Short texts that a part of the server keeps by name; those whose names begin with `prefix`.
+  /// Short texts that a part of the server keeps by name; the ones whose names begin with `prefix`.
   virtual std::map<std::string, std::string> notes(std::string_view prefix) const = 0;
   /// Writes all of them or none, durable on return; a note without text is removed.
   virtual void put_notes(const std::map<std::string, std::optional<std::string>>& notes) = 0;

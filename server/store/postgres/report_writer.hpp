@@ -42,7 +42,7 @@ class ReportWriter {
                ReportWriterOptions options, std::function<void(Connection&)> connected);
   ReportWriter(const ReportWriter&) = delete;
   ReportWriter& operator=(const ReportWriter&) = delete;
-  /// Writes the queued items. Those that the database does not take within some seconds are
+  /// Writes the queued items. Reports that the database does not take within some seconds are
   /// answered TryAgain.
   ~ReportWriter();
 

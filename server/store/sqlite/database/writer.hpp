@@ -100,7 +100,7 @@ class Writer {
   Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options = {});
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
-  /// Writes what is queued, checkpoints, and closes the connection.
+  /// Writes the queued items, checkpoints, and closes the connection.
   ~Writer();
 
   void submit(std::unique_ptr<WriteItem> item);
