@@ -40,7 +40,7 @@ struct GuidanceWorth {
 /// Advice for the pairs with most attempts, in order of tasks and robots.
 struct GuidanceWorths {
   std::vector<GuidanceWorth> pairs;
-  std::size_t left_out = 0;  ///< pairs beyond those
+  std::size_t left_out = 0;  ///< further pairs
 };
 
 /// Caches the advice from the attempts of each requested (task, robot). The sums are read from the
