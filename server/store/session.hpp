@@ -111,9 +111,9 @@ struct Dialect {
   // For other servers of the same database:
   std::string_view lock_robots = {};  ///< keeps them from changing robots
   std::string_view for_update = {};   ///< of a SELECT: locks the rows
-  std::string_view lock_experience =
-      {};                              ///< the same of table experience, whose keys stay readable
-  std::string_view mark_changed = {};  ///< of an UPDATE: sets when the row was changed
+  /// The same for table experience, whose keys stay readable.
+  std::string_view lock_experience = {};
+  std::string_view mark_changed = {};           ///< of an UPDATE: sets when the row was changed
   std::string_view note_gone_robot = {};        ///< before the robot $1 is deleted
   std::string_view newest_attempts_first = {};  ///< of an ORDER BY
   // For damage; the first three are expressions on the table:

@@ -165,8 +165,8 @@ class Store {
  public:
   virtual ~Store() = default;
 
-  /// Ends every wait for a database that does not answer, from any thread, when the server stops:
-  /// waiting calls and all later ones throw. Does nothing for a file.
+  /// To be called when the server stops, from any thread: ends every wait for a database that does
+  /// not answer; waiting calls and all later ones throw. Does nothing for a file.
   virtual void stop_waiting() noexcept {}
 
   /// Names the store's history: changes when the store is restored, or turns out to be a copy or

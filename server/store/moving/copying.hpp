@@ -52,7 +52,7 @@ class Copying {
   Side& target_;
   const RowsDone rows_done_;
   std::vector<MovedRow> experience_;      // of the source, as its names were read
-  std::vector<MovedRow> removed_robots_;  // of the target, until nothing names them any more
+  std::vector<MovedRow> removed_robots_;  // of the target, until no row refers to them
   std::set<std::int64_t> scenes_;         // that the target has
   std::set<std::int64_t> paths_;          // that the target has, of the pair under way
   std::map<std::string, std::uint64_t> written_;

@@ -19,7 +19,7 @@ struct Salvaged {
 /// to becomes a quarantined row without content until a client sends it again: a robot at its
 /// registration, a path or a scene with a report.
 ///
-/// \param source  may be damaged wherever it is.
+/// \param source  may be damaged anywhere.
 /// \param target  an empty store of today's schema.
 /// \throws Failure(Storage) if the source has no checksums, so that damage cannot be found.
 Salvaged salvage(Database& source, Database& target, const Progress& progress);
