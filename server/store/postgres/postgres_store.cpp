@@ -388,7 +388,7 @@ class PostgresStore : public Store {
                                   "the queue of reports is full, try again"));
   }
 
-  /// On the writer's thread; nobody waits for it.
+  /// On the writer's thread; no caller waits for it.
   void write_later(std::function<void(Connection&)> function) const {
     QueuedItem item;
     item.write = std::move(function);
@@ -402,7 +402,7 @@ class PostgresStore : public Store {
         [noticed = std::move(noticed)](Connection& connection) { set_aside(connection, noticed); });
   }
 
-  /// What the database says, or said last.
+  /// The database's counts, or the last ones it gave.
   void count(StoreStatus& status) const {
     try {
       readers_.read([&](Connection& connection) {

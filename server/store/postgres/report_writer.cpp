@@ -18,8 +18,8 @@ std::string in_doubt(const std::string& why) {
   return "whether it is stored is not certain (" + why + "); a report that comes again tells";
 }
 
-/// What is retired in another store is so here before it is looked at. \return whether there is
-/// any.
+/// Retires the reports that another store retired, before they are looked at. \return whether there
+/// are any.
 bool retire_first(Connection& connection, const std::vector<const PreparedAttempt*>& attempts) {
   std::vector<Uuid> retired;
   for (const PreparedAttempt* const prepared : attempts)

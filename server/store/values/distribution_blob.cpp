@@ -36,7 +36,7 @@ constexpr std::tuple kEnd{
     Field{"cuts", &Distribution::cuts, {.limit = kMaxDof}}, Field{"fit", &Distribution::fit},
     Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
 
-/// What sizes and enumerators do not say.
+/// Rules beyond sizes and enumerators.
 void check_choice(const Distribution& distribution) {
   for (const ComponentScore& score : distribution.component_scores)
     if (score.components < 1 || score.components > int{kMaxComponents} ||

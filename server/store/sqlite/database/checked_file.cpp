@@ -24,7 +24,7 @@ namespace {
 
 using ConstPage = std::span<const std::uint8_t>;
 
-/// What the connections of this process share about one database.
+/// State that the connections of this process share about one database.
 struct SharedRecord {
   std::shared_ptr<PageDamage> damage = std::make_shared<PageDamage>();
   WalFrames wal;
@@ -41,7 +41,7 @@ std::shared_ptr<SharedRecord> record_of(const std::string& database) {
   return record;
 }
 
-/// What this thread is doing.
+/// The current work of this thread.
 thread_local bool copies_wal = false;   // a checkpoint runs
 thread_local bool spoils_next = false;  // it has just read a page that is damaged in the WAL
 thread_local int holes_allowed = 0;
@@ -110,7 +110,7 @@ int write_wal(Below& file, ConstPage bytes, std::int64_t offset) {
   return code;
 }
 
-/// Writes what was gathered. It is given up if that fails: so is the commit that it belongs to.
+/// Writes the gathered bytes. They are dropped if that fails: so is their commit.
 int write_gathered(Below& file) {
   if (file.gathered.empty())
     return SQLITE_OK;

@@ -38,7 +38,7 @@ void require_not_moving(Database& database, const std::filesystem::path& file) {
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   make_for_owner(file);
   make_wal_durable(file);
-  // A file of somebody else is refused before anything is written to it.
+  // A foreign file is refused before anything is written to it.
   std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
   require_not_moving(*database, file);
   configure_writer(*database);
@@ -66,7 +66,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
 
 std::unique_ptr<Database> open_reader(const std::filesystem::path& file) {
   auto database = std::make_unique<Database>(file, Access::ReadOnly);
-  // Readers wait for nobody but a recovery of the WAL.
+  // Readers wait only for a recovery of the WAL.
   database->execute(
       "PRAGMA query_only = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA mmap_size = 0;"
       "PRAGMA busy_timeout = 5000; PRAGMA cell_size_check = ON");

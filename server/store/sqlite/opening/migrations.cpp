@@ -125,8 +125,8 @@ std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
     keep_copy_of(*database, file, version);
   // The size of pages counts for a new file only.
   database->execute("PRAGMA page_size = 4096; PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-  // A rollback journal does not keep what free pages held: a cut in the middle would leave them
-  // torn, with checksums that are wrong.
+  // A rollback journal does not keep the content of free pages: a cut in the middle would leave
+  // them torn, with wrong checksums.
   if (keep == Keep::Copy)
     database->execute("PRAGMA journal_mode = WAL");
   for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
