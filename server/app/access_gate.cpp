@@ -21,7 +21,7 @@ struct KnownLabel {
   std::string why = {};
 };
 
-/// What the store says of a robot that it cannot read has a label, which may be another's.
+/// The store's message about an unreadable robot has a label, which may be another's.
 std::string why_not_now(const Digest& robot, const Error& error) {
   return error.code == ErrorCode::Unavailable
              ? error.message
