@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxReadings = 3;               // of sums that attempts keep overtaking
 constexpr std::size_t kMaxContexts = 10'000;  // clients may name what distributions they like
 
-/// Those that attempts name, each once.
+/// The distributions that attempts name, each once.
 std::vector<Digest> distributions_of(const std::vector<store::KnownAttempt>& attempts) {
   std::set<Digest> distributions;
   for (const store::KnownAttempt& attempt : attempts)
@@ -90,7 +90,7 @@ std::uint64_t AdviceCache::version(const std::string& task, const Digest& robot)
   return found == entries_.end() ? 0 : found->second.version;
 }
 
-/// Those whose attempts were read, in their order.
+/// Keys whose attempts were read, in order.
 std::vector<AdviceCache::Key> AdviceCache::keys_of_most_attempts(std::size_t max,
                                                                  std::size_t& left_out) const {
   std::vector<std::pair<std::uint64_t, Key>> known;

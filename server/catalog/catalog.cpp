@@ -236,7 +236,7 @@ fitting::FitOutcome Catalog::fit(const Digest& id, const fitting::DistributionKe
   throw Failure(ErrorCode::Unavailable, "paths of task '" + key.task + "' are being retired");
 }
 
-/// What another server has stored, if a fit could say no more.
+/// The distribution that another server has stored, if a fit would bring nothing new.
 std::optional<Distribution> Catalog::made_elsewhere(const Digest& id,
                                                     const fitting::DistributionKey& key) {
   const LookUp found = catalog::look_up(id, key, nullptr, parts_.store, parts_.robots);

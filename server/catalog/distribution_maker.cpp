@@ -16,7 +16,7 @@
 namespace kinship::catalog {
 namespace {
 
-/// What says nothing about the experience: the next attempt may find it well again.
+/// An error that is not due to the experience: a later try may succeed.
 bool may_pass(ErrorCode code) {
   return code == ErrorCode::Storage || code == ErrorCode::Unavailable ||
          code == ErrorCode::TooLarge;
