@@ -48,9 +48,9 @@ class Helpers {
       thread.join();
   }
 
-  /// Does a work here and, at the same time, by up to `most` helpers; returns when none of them is
-  /// at it any more.
-  /// \param work  does what is left of something, until nothing is; does not throw.
+  /// Does a work here and, at the same time, by up to `most` helpers; returns when no helper is at
+  /// it any more.
+  /// \param work  does the rest of something, until nothing is left; does not throw.
   void help(int most, const std::function<void()>& work) {
     start(most);
     {
