@@ -20,7 +20,7 @@ std::string_view word_of(Type type) {
   return "untyped";
 }
 
-/// Of a metric or label: [a-z_][a-z0-9_]*, which is stricter than what Prometheus takes.
+/// Of a metric or label: [a-z_][a-z0-9_]*, which is stricter than Prometheus.
 bool is_name(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
   return !name.empty() && is_letter(name.front()) &&
@@ -110,7 +110,7 @@ void Exposition::sample(std::uint64_t value, Labels labels) {
   line("", labels, "", std::to_string(value));
 }
 
-/// Reads each bucket once, so that the total is the sum of what was written, also while others
+/// Reads each bucket once, so that the total is the sum of the written ones, also while others
 /// observe.
 void Exposition::histogram(const Histogram& histogram, Labels labels) {
   if (type_ != Type::Histogram)
