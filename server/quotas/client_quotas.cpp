@@ -26,7 +26,7 @@ milliseconds retry_in(std::chrono::duration<double> time) {
                   milliseconds(std::lround(std::min(1000 * time.count(), longest))));
 }
 
-/// What is too much, in words, and the option that says so.
+/// The name of a quota's amount, and the option that sets it.
 struct Wording {
   std::string_view what, option;
   double unit;  // of the option
@@ -225,7 +225,7 @@ ClientQuotas::Entries::iterator ClientQuotas::make(const std::string& client, Ti
   return entries_.begin();
 }
 
-/// Whether somebody made room: nothing is given away, for its quotas are whole again.
+/// Whether an entry made room: its quotas are whole again, so nothing is given away.
 bool ClientQuotas::forget_idle(TimePoint now) {
   constexpr int kMostLooked = 64;  // from those seen longest ago: a flood costs no more than that
   auto entry = entries_.end();
