@@ -285,7 +285,7 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64
   entry.known = std::move(known);
 }
 
-/// Leaves the processor to others in proportion to what it took, unless somebody waits.
+/// Leaves the processor to others in proportion to its use, unless a request waits.
 void RehearsalScheduler::rest(const Digest& id, double worked_s) {
   const double rest_s = worked_s * (1 / options_.processor_fraction - 1);
   std::unique_lock lock(mutex_);
@@ -300,7 +300,7 @@ void RehearsalScheduler::let_go(Entry& entry, WaiterAnswers& answers) {
   entry.waiters.clear();
 }
 
-/// Forgets what was not asked for longest.
+/// Forgets the least recently used ones.
 void RehearsalScheduler::make_room() {
   while (entries_.size() > options_.max_rehearsals) {
     auto oldest = entries_.end();
