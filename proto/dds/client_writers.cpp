@@ -130,7 +130,7 @@ void ClientWriters::look_again() {
   free_unread(Clock::now());
 }
 
-/// What a writer keeps for readers that come late is for the rights that its client had.
+/// Samples that a writer keeps for late readers are for the rights that its client had.
 void ClientWriters::replace_changed() {
   std::map<std::string, Caller> all;
   {

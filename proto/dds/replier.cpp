@@ -95,7 +95,7 @@ class Replier<Conversation>::Implementation {
 
   using Queue = FairQueue<Waiting>;
 
-  /// \return when the next one may be served of those that wait.
+  /// \return when the next waiting request may be served.
   typename Queue::Time serve_some() {
     constexpr int kInTurn = 4;  // then the other conversations
     if (waiting_.holds_some())
@@ -139,8 +139,8 @@ class Replier<Conversation>::Implementation {
     const auto opening = waiting_.opening_for(sender->client, head);
     if (!opening)
       return waiting_.release(sender->client, head);
-    // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
-    // may not ask at all is told so in its turn, and what he sends is not decoded.
+    // A request sent again costs its client nothing, and a refused one pushes no other out. A
+    // client that may not ask at all is refused in its turn, and its request is not decoded.
     const ReplyChannel::Place place{sender->name, head};
     if (line_->is_being_answered(place))
       return;
@@ -191,7 +191,7 @@ class Replier<Conversation>::Implementation {
     return true;
   }
 
-  /// What decoding throws (no memory) is that request's own.
+  /// An exception of decoding (no memory) concerns that request alone.
   static Decoded decoded(const WireRequest& wire) {
     try {
       return codec::decode(wire);
