@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::seconds kFreshFor{1};
 constexpr std::size_t kMaxEntries = 100'000;  // of clients that were removed, too
 
-/// What tells one content of a file from another; all zeros: there is none.
+/// Tells one content of a file from another; all zeros: there is none.
 using FileMark = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
 
 FileMark mark_of(const std::filesystem::path& file) {

@@ -66,7 +66,7 @@ std::int64_t to_ms(std::chrono::sys_seconds time) {
   return std::chrono::milliseconds(time.time_since_epoch()).count();
 }
 
-/// Sets what follows from the time until which credentials are valid.
+/// Sets the members that follow from the time until which credentials are valid.
 void set_expiry(CredentialList::Row& row, std::chrono::sys_seconds expires,
                 std::chrono::sys_seconds now) {
   row.expires_ms = to_ms(expires);
@@ -124,7 +124,7 @@ std::vector<std::string> names_of(const CredentialList& list, bool CredentialLis
   return names;
 }
 
-/// Files that root writes for somebody else's server could not be read by it.
+/// Files that root writes for another user's server could not be read by it.
 void require_owner(const std::filesystem::path& folder) {
   struct stat status {};
   if (stat(folder.c_str(), &status) == 0 && status.st_uid != geteuid())
