@@ -10,7 +10,7 @@
 namespace kinship::c_library {
 namespace {
 
-/// What a caller wants filled.
+/// The room that a caller wants filled.
 struct Room {
   size_t count, stride;
   kinship_layout layout;
