@@ -1,5 +1,5 @@
 // 05: Follow and replan when it improves. A follower always holds the newest distribution and never
-// blocks who plans.
+// blocks the planner.
 //
 //   05_follow_and_replan MODELS ROUNDS        ends after so many plans
 #include <iostream>
