@@ -61,7 +61,7 @@ FollowStatus status_of(FetchStatus status) {
   }
 }
 
-/// What a follower does after an exchange with the server.
+/// A follower's step after an exchange with the server.
 struct Step {
   Follower::State state;
   std::optional<DistributionPointer> newest;  ///< missing: what is held stays
@@ -147,7 +147,7 @@ class Follower::Implementation {
     changed_.notify_all();
   }
 
-  /// Whether something was announced that is newer than what is held. Under mutex_.
+  /// Whether an announcement is newer than the distribution held. Under mutex_.
   bool has_news() const {
     const DistributionPointer held = newest();
     if (!held)
