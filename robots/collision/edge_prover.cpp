@@ -101,7 +101,7 @@ const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen
   pieces_.clear();
   open_.clear();
   ask_lanes();
-  // In the order in which they come: the longest pieces first, which find early what is in the way.
+  // In the order in which they come: the longest pieces first, which find obstacles early.
   for (std::size_t next = 0; next < pieces_.size(); ++next)
     if (!proofs_[pieces_[next].edge].refutation)
       look_at(pieces_[next]);
@@ -141,7 +141,7 @@ void EdgeProver::ask_parts(std::span<const Part> parts, bool is_last) {
     const auto column = static_cast<Eigen::Index>(part.edge);
     middles_.col(i) = from_.col(column) + (part.from + part.to) / 2 * change_.col(column);
     ++proofs_[part.edge].configurations;
-    // One growth for all lanes: what any of the parts' edges moves in half of its part.
+    // One growth for all lanes: the largest motion of any part's edge in half of its part.
     const Eigen::MatrixXd& motion_m = edge_motions_m_[part.edge];
     const double half = (part.to - part.from) / 2;
     if (i == 0)

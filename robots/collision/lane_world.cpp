@@ -140,7 +140,7 @@ std::uint32_t LaneWorld::write_question(const Eigen::Ref<const Eigen::MatrixXd>&
   std::uint32_t beyond = 0;
   for (int lane = 0; lane < count; ++lane)
     beyond |= write_lane(qs.data() + lane * qs.outerStride(), lane) ? 0 : 1U << lane;
-  // Idle lanes of the narrower sets; what stands in others is what was asked before.
+  // Idle lanes of the narrower sets; the other idle lanes keep the last question.
   for (int lane = count; lane % (kLanes / 2) != 0; ++lane)
     write_lane(qs.data() + (count - 1) * qs.outerStride(), lane);
   question_.count = count;
