@@ -10,7 +10,7 @@ namespace {
 
 using Point = std::complex<double>;
 
-/// The product of two points: what `*` is without its care for infinities.
+/// The product of two points: `*` without its care for infinities.
 Point times(const Point& a, const Point& b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }

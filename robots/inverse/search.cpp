@@ -120,9 +120,9 @@ void Search::find() {
   }
 }
 
-/// The branches of an exact structure are all there are, and so are those of one that is nearly
-/// there if each of them led to a solution. Where limits leave none of an exact one, a singular
-/// pose may have others than the representatives that were tried.
+/// The branches of an exact structure are all there are, and so are the branches of a nearly exact
+/// one if each of them led to a solution. Where limits leave none of an exact one, a singular pose
+/// may have others than the representatives that were tried.
 bool Search::knows_all(const ClosedForm& form) const {
   if (solver_.redundant())
     return false;
