@@ -222,7 +222,7 @@ class Watch {
   const bool is_coloured_, has_status_line_;
   std::atomic<bool> is_there_ = false, has_said_so_ = false;
 
-  std::mutex mutex_;  // guards the streams and what both threads use:
+  std::mutex mutex_;  // guards the streams and the data of both threads:
   StatusLine line_;
   std::string status_;
   RobotNames robot_;

@@ -12,7 +12,7 @@ int main(int count, char** words) try {
     return 2;
   }
   kinship::link::ClientOptions options = kinship::link::options_from_environment();
-  options.has_outbox = false;  // who reports nothing leaves sending to the others
+  options.has_outbox = false;  // without reports, sending is left to others
   kinship::link::Client client(options);
   kinship::FetchRequest request;
   request.task = "sweep";

@@ -384,7 +384,7 @@ class Planning {
     };
   }
 
-  /// The contact at a configuration, or the nearest pair of those too near.
+  /// The contact at a configuration, or the nearest of the pairs too near.
   std::string contact_text(const Eigen::VectorXd& q) {
     const std::vector<collision::NearPair> near = find_near()(q);
     const auto nearest = std::ranges::min_element(near, {}, &collision::NearPair::clearance_m);

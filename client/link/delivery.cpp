@@ -38,7 +38,7 @@ std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds ti
         break;
     }
     const Result<ReportReply> reply = send(batch, deadline);
-    if (!reply)  // what the server said before stands
+    if (!reply)  // earlier answers of the server stand
       return is_answered ? std::nullopt : std::optional(reply.error());
     asked = reply->retry_after;
     for (const Receipt& receipt : reply->receipts)

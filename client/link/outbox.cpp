@@ -185,7 +185,7 @@ HistoryMark Outbox::known_mark() const {
 }
 
 void Outbox::age(std::chrono::milliseconds sending) {
-  sent_.make_folders();  // who rotated them may have been killed in between
+  sent_.make_folders();  // a rotating process may have been killed in between
   sent_.age(sending);
   for (const fs::path& folder :
        {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})

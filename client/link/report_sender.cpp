@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
 constexpr std::chrono::hours kAgeing{1};
 constexpr std::chrono::minutes kBetweenProbes{10};
-constexpr std::chrono::milliseconds kPoll = 50ms;  // for what another process sends
+constexpr std::chrono::milliseconds kPoll = 50ms;  // for reports that another process sends
 
 bool is_final(ReceiptStatus status) {
   return status != ReceiptStatus::TryAgain && status != ReceiptStatus::UnknownRobot;
@@ -140,7 +140,7 @@ void ReportSender::age_now_and_then(bool is_end) {
     return;
   try {
     outbox_.age(std::chrono::duration_cast<std::chrono::milliseconds>(now - aged_.value_or(now)));
-  } catch (const Failure& failure) {  // of the disk: what is sent is kept longer
+  } catch (const Failure& failure) {  // of the disk: sent reports are kept longer
     report_problem(failure.what());
   }
   aged_ = now;

@@ -79,7 +79,7 @@ class World {
 
  private:
   std::shared_ptr<Robot> robot_;
-  std::mutex mutex_;  // guards the world and what asks it
+  std::mutex mutex_;  // guards the world and its users
   collision::CollisionWorld world_;
   collision::EdgeProver prover_;
 };
