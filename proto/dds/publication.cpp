@@ -164,7 +164,7 @@ class Publisher<Publication>::Implementation {
   std::optional<Entity> topic_;
   std::optional<Entity> writer_;          // without security
   std::optional<ClientWriters> clients_;  // with security
-  NewestAnnouncements newest_;            // what a client that comes late is told; with security
+  NewestAnnouncements newest_;            // for late clients; with security
 };
 
 template <typename Publication>
@@ -187,7 +187,7 @@ void Publisher<Publication>::withdraw(const Digest& distribution_id)
     const noexcept requires std::same_as<Publication, codec::AnnouncementPublication> {
   try {
     implementation_->withdraw(distribution_id);
-  } catch (const std::exception&) {  // out of memory: who comes late hears of it once more
+  } catch (const std::exception&) {  // out of memory: late clients hear of it once more
   }
 }
 

@@ -112,8 +112,8 @@ class Replier<Conversation>::Implementation {
     return waiting_.next();
   }
 
-  /// All that the reader holds, before each one that is served: it keeps the newest, whose ever
-  /// they are, so that of many of one client the others' would be pushed out.
+  /// All requests of the reader, before each one that is served: it keeps the newest of all
+  /// clients, so that many of one client would push out the others'.
   void take_requests() {
     constexpr int kMaxLoans = 2 * kHeldShortRequests / static_cast<int>(Loan::kMaxSamples);
     for (int i = 0; i < kMaxLoans; ++i) {
@@ -131,7 +131,7 @@ class Replier<Conversation>::Implementation {
     Sender unknown{.client = {}, .hearing = Hearing::Awaited};
     Sender* sender = line_->sender(writer);
     if (!sender && has_security_)
-      return;  // gone, and nobody can say any more who it was
+      return;  // gone, and its name is lost
     if (!sender) {
       unknown.client = head.client_id.text();
       sender = &unknown;
@@ -153,8 +153,8 @@ class Replier<Conversation>::Implementation {
                   held_until);
   }
 
-  /// A reply to whom no reader is known of would be lost. Whose reader is no part of its own
-  /// participant is held up once, not with each request.
+  /// A reply to a client without a known reader would be lost. A client whose reader is no part of
+  /// its own participant is held up once, not with each request.
   typename Queue::Time hold(Sender& sender, const codec::Head& head) const {
     if (sender.hearing != Hearing::Unknown)
       return Queue::kNow;

@@ -89,7 +89,7 @@ RequestChannel::Outcome RequestChannel::call(const codec::Head& head, const void
 RequestChannel::Outcome RequestChannel::wait_for_reply(const Call& call, const void* request,
                                                        Clock::time_point deadline) {
   int sends = 0;
-  bool has_waited = false;  // what is there before that ends the first wait
+  bool has_waited = false;  // anything there before that ends the first wait
   std::uint64_t servers_seen = servers_seen_;
   Clock::time_point next_send = Clock::now();
   while (true) {

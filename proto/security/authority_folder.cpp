@@ -125,7 +125,7 @@ void AuthorityFolder::name_keys() const {
     return;
   const auto certificates = trusted();
   if (!is_key_of(next_key_file(), *certificates.front())) {
-    std::filesystem::remove(next_key_file());  // nobody's: it never came into the list
+    std::filesystem::remove(next_key_file());  // unused: it never came into the list
     return;
   }
   if (std::filesystem::exists(key_file())) {

@@ -114,7 +114,7 @@ CredentialList::Row server_row(const std::filesystem::path& folder, std::chrono:
   return row;
 }
 
-/// Names of clients, neither revoked nor expired, of whom `property` holds.
+/// Names of clients, neither revoked nor expired, that `property` holds for.
 std::vector<std::string> names_of(const CredentialList& list, bool CredentialList::Row::*property) {
   std::vector<std::string> names;
   for (const CredentialList::Row& row : list.credentials)
@@ -226,7 +226,7 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
       client.days, out, now);
   try {
     write_new_file(record_file(client.name), record_text(record), Readers::Everybody);
-  } catch (...) {  // e.g. added twice at the same time: these credentials are nobody's
+  } catch (...) {  // e.g. added twice at the same time: no client has these credentials
     std::error_code ignored;
     std::filesystem::remove_all(out, ignored);
     throw;
