@@ -18,7 +18,7 @@ constexpr double kMotionRounding_m = 1e-9;
 // into so many, so often, where they tell nothing.
 constexpr double kFirstGrowth_m = 0.04;
 constexpr int kCuts = 4, kLevels = 3;
-constexpr double kFarthest_m = 1e4;  // on one edge: what is farther is no motion of a robot
+constexpr double kFarthest_m = 1e4;  // on one edge: no robot moves farther
 
 }  // namespace
 
@@ -299,7 +299,7 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
   Place &from = places_[piece.from], &to = places_[piece.to];
   const double clearance = clearance_m(pairs_[pair]);
   const auto are_apart = [&] { return motion_m < from.distances[pair].m + to.distances[pair].m; };
-  for (Place* place : {&from, &to})  // what may be too near is refused, however little it moves
+  for (Place* place : {&from, &to})  // refused if it may be too near, however little it moves
     if (!place->distances[pair].is_close && place->distances[pair].m <= clearance &&
         !measure(*place, pair, std::numeric_limits<double>::infinity()))
       return false;

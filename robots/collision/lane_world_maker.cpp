@@ -95,7 +95,7 @@ class LaneWorldMaker {
   }
 
   void add_joints() {
-    constexpr double kFarthest = 1e6;  // rad: what is left of it after full turns is still exact
+    constexpr double kFarthest = 1e6;  // rad: its rest after full turns is still exact
     LaneWorld::Writing& writing = world_.writing_;
     std::ranges::fill(writing.lower, -kFarthest);
     std::ranges::fill(writing.upper, kFarthest);

@@ -75,7 +75,7 @@ class MarkFinder : public tinyxml2::XMLVisitor {
 
  private:
   void find(int line, std::string_view text) {
-    constexpr std::size_t kShown = 40;  // bytes of what stands there
+    constexpr std::size_t kShown = 40;  // bytes of the text there
     if (!mark_.empty())
       return;
     const std::string_view shown = text.substr(0, kShown);

@@ -128,7 +128,7 @@ class Proving {
       if (judge(known.by_what_is_known(proven_.waypoints.leftCols(count),
                                        proven_.waypoints.rightCols(count))))
         return true;
-      if (refuted == 0)  // only what was refuted before, and is no shortcut
+      if (refuted == 0)  // only lines refuted before, which are no shortcuts
         break;
     }
     proven_.waypoints.resize(0, 0);
