@@ -66,7 +66,7 @@ std::optional<Error> refusal_of_names(const Caller& caller, std::string_view tas
 
 bool matches(std::string_view pattern, std::string_view text) noexcept {
   std::size_t at_pattern = 0, at_text = 0;
-  std::size_t star = std::string_view::npos, after_star = 0;  // the last one, and what it took
+  std::size_t star = std::string_view::npos, after_star = 0;  // the last one, its match's end
   while (at_text < text.size()) {
     if (at_pattern < pattern.size() && pattern[at_pattern] == '*') {
       star = at_pattern++;

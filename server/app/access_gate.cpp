@@ -139,7 +139,7 @@ void fetch(service::Service& service, const Caller& caller, const FetchRequest& 
           if (const auto refusal =
                   access::refusal_of_fetch(caller, request.task, robot->second.value()))
             return service.refuse_fetch(refusal->message, done);
-        service.fetch(request, waiter, for_its_robots);  // which says what is not registered
+        service.fetch(request, waiter, for_its_robots);  // which says which robot is not registered
       },
       caller.client);
 }

@@ -51,7 +51,7 @@ auto gate_of(service::Service& service, const Reply& busy) {
 }
 
 /// Answers with the part of the service's answer that begins at a place. Rows of one page can
-/// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
+/// exceed the limit of a message: a listing is then asked for with fewer, a single row cut.
 void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
   service.administer(

@@ -89,7 +89,7 @@ std::string explain(const ServerOptions& options, std::uint16_t port, const Port
   return message + "; end that one, or take another domain (--domain N)";
 }
 
-/// Whom the server knows: the records of its security folder.
+/// The clients that the server knows: the records of its security folder.
 dds::Directory directory_of(const std::filesystem::path& security) {
   const auto clients =
       std::make_shared<security::ClientDirectory>(security::SecurityFolder(security).clients());

@@ -199,7 +199,7 @@ class MetricsListener::Implementation {
   std::string text_;
   std::optional<std::chrono::steady_clock::time_point> made_;
   std::deque<std::weak_ptr<Connection>> connections_;  // the oldest one first
-  MetricsPort port_;                                   // what is above outlives its callbacks
+  MetricsPort port_;                                   // the members above outlive its callbacks
   asio::steady_timer retry_;
   std::thread thread_;  // last: uses all of the above
 };

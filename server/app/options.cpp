@@ -400,7 +400,7 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   add_migrate_store(app, move);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ConfigError& error) {  // says what of it, but not where
+  } catch (const CLI::ConfigError& error) {  // says which option of it, but not where
     const std::string what = error.what();
     err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>() << "': " << what
         << suggestion(what.substr(what.find_last_of(" .") + 1), option_names(app)) << '\n';

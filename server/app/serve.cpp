@@ -150,7 +150,7 @@ void tell_what_is_served(const ServerStatus& status, std::uint32_t domain,
 
 int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
-  std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
+  std::signal(SIGPIPE, SIG_IGN);  // the output may have no reader
 
   tell_insecurity(options);
   hold_termination_signals();

@@ -262,7 +262,7 @@ void Catalog::complete(const Digest& id, const fitting::DistributionKey& key,
   }
   if (made_by == MadeBy::This) {
     ++fits_;
-    options_.on_fit(*reply.reply->distribution);  // whoever is told of it and asks gets it
+    options_.on_fit(*reply.reply->distribution);  // a fetch caused by it gets the distribution
   }
   finish(after);
   if (is_followed && announcement.revision > 0)

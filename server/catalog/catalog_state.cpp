@@ -220,7 +220,7 @@ void CatalogState::expire(TimePoint now, Afterwards& after) {
     refresh(id, leases_.find(id)->key);
     schedule(id, after);
   }
-  after.wake = false;  // whoever calls this asks for the next deadline anyway
+  after.wake = false;  // the caller asks for the next deadline anyway
 }
 
 void CatalogState::add_experience(std::string_view task, Afterwards& after) {
@@ -286,7 +286,7 @@ void CatalogState::resolve(const Digest& id, const LookUp& found, const AdvisedR
   if (pending == nullptr)
     return;
   if (pending->was_evicted || versions_.of(pending->key().task).retirements != version.retirements)
-    look_up_soon(id, *pending, after);  // what was found may not be served any more
+    look_up_soon(id, *pending, after);  // the one found may not be served any more
   else if (found.end)
     end(id, *found.end, version, after);
   else

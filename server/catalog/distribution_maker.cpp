@@ -119,7 +119,7 @@ void DistributionMaker::remember(const Distribution& distribution,
                                  std::shared_ptr<fitting::WarmState> warm_state) const {
   warm_state->revision = distribution.revision;
   if (warm_state->revision == 0)
-    warm_state->mixture.reset();  // no revision could say what it began with
+    warm_state->mixture.reset();  // no revision could name it as its start
   if (distribution.fit && distribution.fit->from_revision == 0)
     warm_state->full.revision = distribution.revision;
   memory_.put(distribution.id, std::move(warm_state));

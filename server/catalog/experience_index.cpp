@@ -87,7 +87,7 @@ void ExperienceIndex::choose(const ExperienceKey& key) {
   try {
     choice = std::make_shared<const fitting::ExperienceChoice>(fitting::choose_experience(
         memory_.read(key.task, key.sources, key.since_ms, stop), key.bytes));
-  } catch (const std::exception&) {  // the store cannot be read: who asks next tries again
+  } catch (const std::exception&) {  // the store cannot be read: the next request tries again
     choice = nullptr;
   }
   if (stop.stop_requested())

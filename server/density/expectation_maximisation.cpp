@@ -48,7 +48,7 @@ class BlockPosterior {
   AlignedNumbers bounds_;  // 3 x stride: upper, lower, at the centre
   AlignedNumbers terms_;   // K x kBlockPoints
   std::vector<int> candidates_;
-  std::vector<std::pair<double, int>> order_;  // of candidates: what they are sorted by
+  std::vector<std::pair<double, int>> order_;  // of candidates: keys of their order
   double best_lower_bound_ = 0;
   int count_ = 0;
   std::vector<double> peaks_;

@@ -62,7 +62,7 @@ class Helpers {
     wake_.notify_all();
     work();
     std::unique_lock lock(mutex_);
-    work_ = nullptr;  // nothing is left: who has not begun need not
+    work_ = nullptr;  // nothing is left: other helpers need not begin
     if (at_work_ == 0)
       return;
     lock.unlock();

@@ -138,7 +138,7 @@ void PosePathMemory::forget_dropped(SourcePaths& known, const store::ExperienceS
 }
 
 std::size_t PosePathMemory::size_of(const TaskPaths& known) {
-  constexpr std::size_t kNode = 64;  // of a map, and of what a pointer shares, about
+  constexpr std::size_t kNode = 64;  // of a map, and of a shared pointer's block, about
   std::size_t bytes = kNode + sizeof(TaskPaths);
   for (const auto& [robot, source] : known.sources) {
     bytes += kNode + sizeof(SourcePaths) + source.paths.capacity() * sizeof(KnownPath);

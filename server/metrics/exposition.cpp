@@ -32,7 +32,7 @@ std::string number(double value) {
     return "NaN";
   if (std::isinf(value))
     return value > 0 ? "+Inf" : "-Inf";
-  // Bounds of buckets as everybody writes them: 0.0001, not 1e-04.
+  // Bounds of buckets as is usual: 0.0001, not 1e-04.
   constexpr double kPlainFrom = 1e-4, kPlainTo = 1e15;
   const double size = std::abs(value);
   const bool is_plain = size == 0 || (size >= kPlainFrom && size < kPlainTo);

@@ -174,9 +174,9 @@ void RehearsalScheduler::work(const Digest& id) {
   try {
     if (is_out_of_date(before.key, before))
       rehearse(id, before.key);
-  } catch (const Stopped&) {  // everybody who waited was answered
+  } catch (const Stopped&) {  // all waiters were answered
   } catch (
-      const std::exception& exception) {  // the store cannot be read: who asks next tries again
+      const std::exception& exception) {  // the store cannot be read: the next request tries again
     options_.log("rehearsal " + id.short_hex() + ": " + exception.what());
   }
   WaiterAnswers answers;

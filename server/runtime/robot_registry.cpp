@@ -255,7 +255,7 @@ std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
           labels.push_back(other.label);
       }
     } while (!page.next_cursor.empty() && !is_over());
-  } catch (const Failure&) {  // the robot is registered; whom it is like can be asked again
+  } catch (const Failure&) {  // the robot is registered; similar ones can be asked for again
   }
   return labels;
 }

@@ -29,7 +29,7 @@ struct Ingest::Batch {
   std::vector<Attempt> attempts;  // until they are handed to the store
   std::vector<catalog::AttemptCost> costs;
   std::vector<Receipt> receipts;
-  std::vector<std::size_t> accepted;    // positions of what the store was given
+  std::vector<std::size_t> accepted;    // positions of the attempts given to the store
   std::vector<std::size_t> path_bytes;  // of each attempt
   std::size_t bytes = 0;
   RetryAfter retry_after{0};
@@ -121,7 +121,7 @@ void Ingest::let_go_of_client(const Batch& batch) {
     clients_.erase(batch.client);
 }
 
-/// After the answer: draining ends when everybody has got one.
+/// After the answer: draining ends when all have got one.
 void Ingest::let_go(const Batch& batch) {
   const std::lock_guard lock(mutex_);
   load_.attempts -= batch.receipts.size();

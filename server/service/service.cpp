@@ -276,7 +276,7 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
     watch->set_answered();
     done(reply);
   };
-  if (options_.on_event)  // the request is copied for those who watch alone
+  if (options_.on_event)  // the request is copied for watchers alone
     answer = [this, request, answer = std::move(answer)](const FetchReply& reply) {
       answer(reply);
       publish_fetch(events_, robots_, request, reply);

@@ -66,7 +66,7 @@ class PostgresStore : public Store {
       return readers_.read(
           [&](Connection& connection) { return history_.is_gone(connection, *doubtful); });
     } catch (const PostgresError&) {
-      return false;  // what the database says is not known now
+      return false;  // the database's answer is not known now
     }
   }
 

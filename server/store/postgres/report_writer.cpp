@@ -184,7 +184,7 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
 
 void ReportWriter::write_alone(const std::function<void(Connection&)>& write) {
   if (!connection_)
-    return;  // what nobody waits for may be lost
+    return;  // a write without a waiter may be lost
   try {
     Transaction transaction(*connection_, Transaction::Kind::Write);
     write(*connection_);

@@ -10,7 +10,7 @@
 namespace kinship::store {
 namespace {
 
-// Written first. What a format brings stands at its fields.
+// Written first. Each addition of a format stands at its fields.
 constexpr int kDistributionFormat = newest_format<Source>();
 
 constexpr std::tuple kBegin{Field{"id", &Distribution::id},

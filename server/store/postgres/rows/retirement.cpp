@@ -129,7 +129,7 @@ std::vector<Retirement> retire_reports(Connection& connection, std::span<const U
   const std::vector<Bytes> uuids = bytes_of(reports);
   wait_for_arrivals(connection, reports);
   std::map<std::string, Retirement> retired;  // by task
-  // Locked before anything is written, in the order of the key as everybody does.
+  // Locked before anything is written, in the order of the key as everywhere.
   const Rows pairs = connection.query(
       "SELECT attempt.task_id, attempt.robot_id, task.name, robot.digest FROM attempt"
       " JOIN task ON task.id = task_id JOIN robot ON robot.id = robot_id"

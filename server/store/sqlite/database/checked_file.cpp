@@ -72,7 +72,7 @@ Below& below(sqlite3_file* file) { return *reinterpret_cast<CheckedFile*>(file)-
 constexpr std::size_t kHeaderBytes = 100;
 constexpr std::size_t kReserveAt = 20;
 
-/// What the header of a database says; nothing if it is none.
+/// Whether a database's header says that its pages bear checksums; nothing if it is no header.
 std::optional<bool> sealed_by_header(ConstPage header) {
   constexpr std::string_view kMagic("SQLite format 3\0", 16);
   if (header.size() < kHeaderBytes || std::memcmp(header.data(), kMagic.data(), kMagic.size()) != 0)

@@ -23,7 +23,7 @@ void configure_writer(Database& database) {
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
       "PRAGMA wal_autocheckpoint = 0; PRAGMA journal_size_limit = 67108864;"
       "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;"
-      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes what it finds
+      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes all it finds
   gather_wal_writes(database.connection());
 }
 

@@ -117,7 +117,7 @@ std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
                                         std::span<const Migration> migrations, Keep keep) {
   auto database = std::make_unique<Database>(file, Access::ReadWrite);
   const std::int64_t version = known_schema(*database, file, migrations);
-  if (!is_sealed(database->connection()))  // what a killed process began is rolled back by now
+  if (!is_sealed(database->connection()))  // a killed process's transaction is rolled back by now
     database = std::make_unique<Database>(file, Access::ReadWrite);
   if (!is_sealed(database->connection()))
     refuse_store(file, "is an empty database of another program");

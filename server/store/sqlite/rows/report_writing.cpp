@@ -94,7 +94,7 @@ void read_paths(Database& database, const PreparedAttempt& prepared, std::uint64
   pair.largest = select_largest(database, pair.key, excess + 1);
 }
 
-/// Reads what decides whether it is acceptable: its robot, and an earlier report with its UUID.
+/// Reads the data that accept or refuse it: its robot, and an earlier report with its UUID.
 ReportReading read_report(Database& database, const PreparedAttempt& prepared) {
   const Attempt& attempt = prepared.attempt;
   ReportReading reading;

@@ -143,7 +143,7 @@ void Restoration::keep_audit_of_old(Database& database) const {
     copy_missing_audit(database, old);
   } catch (const SqliteError& error) {
     if (!error.is_damage())
-      throw;  // a restore is what a damaged store is for: as far as its log can be read
+      throw;  // a damaged store is restored, too: its log as far as it can be read
   }
   whole.commit();
 }
