@@ -9,7 +9,7 @@
 namespace kinship::arguments {
 namespace {
 
-/// What is wrong, as CLI11 wants it of a check; empty: nothing.
+/// The fault, as CLI11 wants it of a check; empty: none.
 template <typename T>
 std::string complaint(const Result<T>& result) {
   return result ? std::string() : result.error().message;

@@ -128,7 +128,7 @@ Result<std::vector<std::string>> parse_robot_names(std::string_view text) {
 
 namespace {
 
-/// Each moment is a distribution of its own: who asks again soon means the same one.
+/// Each moment is a distribution of its own: requests soon after each other mean the same one.
 milliseconds step_of_age(milliseconds age) {
   constexpr std::chrono::hours kDay{24};
   if (age >= 2 * kDay)

@@ -6,7 +6,7 @@
 namespace kinship::c_library {
 namespace {
 
-// Whoever calls from another language has a thread and no place for a text.
+// A caller in another language has a thread and no place for a text.
 thread_local std::string last_error_text;
 
 kinship_code code_of(ErrorCode code) {

@@ -10,7 +10,7 @@
 namespace kinship::c_library {
 namespace {
 
-/// What a caller wants filled.
+/// The room that a caller wants filled.
 struct Room {
   size_t count, stride;
   kinship_layout layout;
@@ -18,7 +18,7 @@ struct Room {
 
 /// \throws Failure(InvalidInput) if the layout is none or the stride too short.
 void check(const Room& room, size_t dof) {
-  constexpr size_t kMaxCount = size_t{1} << 28U;  // what is drawn is held once more in between
+  constexpr size_t kMaxCount = size_t{1} << 28U;  // the samples are held once more in between
   if (room.layout != KINSHIP_ROWS && room.layout != KINSHIP_ARRAYS)
     throw Failure(invalid_input("layout is " + std::to_string(room.layout) + ", must be 0 or 1"));
   const size_t least = room.layout == KINSHIP_ROWS ? dof : room.count;

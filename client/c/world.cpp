@@ -15,7 +15,7 @@ namespace {
 
 static_assert(KINSHIP_CLEARANCE_M == collision::EdgeProofOptions{}.clearance_m);
 
-/// What is held hangs on the tip link.
+/// Held shapes hang on the tip link.
 collision::Surroundings read_surroundings(const kinship_surroundings& given,
                                           const kinematics::Chain& chain) {
   collision::Surroundings surroundings;
@@ -53,7 +53,7 @@ std::string doubts_of(const models::LoadedRobot& robot, const collision::RobotSo
 }
 
 /// \return  dof x count. \param numbers  one configuration after the other.
-/// \throws Failure(InvalidInput) that names what is NULL, not finite, or not of the world's size.
+/// \throws Failure(InvalidInput) that names an array that is NULL, not finite or of a wrong size.
 Eigen::Map<const Eigen::MatrixXd> read_configurations(const kinship_world& world,
                                                       const double* numbers, std::size_t count,
                                                       std::size_t dof, const std::string& name) {

@@ -27,7 +27,7 @@ using tables::Table;
 
 constexpr std::string_view kCompare = "robots compare";
 
-/// Where the robots stand that somebody told, by label.
+/// Placements of robots from the command line, by label.
 using Placements = std::map<std::string, Eigen::Isometry3d>;
 
 struct Placement {
@@ -144,7 +144,7 @@ Transferability compare_pair(link::Client& server, const CompareOptions& options
   return pair;
 }
 
-/// What of the queries a target could not take, and what could not be told at all.
+/// The queries that a target could not take, and the messages of pairs.
 void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out) {
   for (const Transferability& pair : pairs) {
     const std::string names = pair.target_label + " from " + pair.source_label + ": ";

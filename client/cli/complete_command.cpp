@@ -55,7 +55,7 @@ int print_candidates(link::Client& server, const std::string& kind, std::ostream
   const auto error = link::for_each_row(
       server, request,
       [&](const std::string& row) {
-        // Whatever claims to be a server: what stands on a command line is a name, and no program.
+        // Any peer may claim to be a server: a word on a command line is a name, and no program.
         if (const std::string word = candidates.word(row); !check_label(word))
           words += word + '\n';
         return true;

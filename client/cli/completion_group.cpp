@@ -22,7 +22,7 @@ void add_scripts(CLI::App& app, Session& session) {
   });
 }
 
-/// Hidden: whoever waits for it is pressing a key.
+/// Hidden: the shell waits for it at the press of a key.
 void add_candidates(CLI::App& app, Session& session) {
   constexpr double kPatience_s = 0.3;
   const auto kind = std::make_shared<std::string>();

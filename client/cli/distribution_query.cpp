@@ -10,7 +10,7 @@
 namespace kinship::cli {
 namespace {
 
-/// Who names a robot that the server does not know wants to see those that it does.
+/// The commands that help if the server does not know the robot.
 Error with_advice(Error error) {
   if (error.code == ErrorCode::NotFound)
     error.message += " (see: kinship robots list, kinship robots register)";

@@ -10,7 +10,7 @@
 namespace kinship::cli {
 namespace {
 
-/// What names a distribution by what it is for. \return the required options.
+/// The query that a distribution answers. \return the required options.
 std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query) {
   CLI::Option* task = command.add_option("--task", query.task, "Task whose experience is wanted")
                           ->type_name("TASK");

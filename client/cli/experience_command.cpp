@@ -25,7 +25,7 @@ std::string position_text(const Eigen::Isometry3d& T_task_transfer) {
   return text;
 }
 
-/// The labels of the robots that the paths are from; digests of those that have none any more.
+/// The labels of the robots that the paths are from; digests of robots without one.
 std::map<Digest, std::string> labels_of(link::Client& server, const TaskExperience& experience) {
   std::map<Digest, std::string> labels;
   for (const PosePath& path : experience.paths)

@@ -51,7 +51,7 @@ class Import {
     return !end_;
   }
 
-  /// Hands over what is held.
+  /// Hands over the held attempts.
   void deliver() {
     if (attempts_.empty() || end_)
       return;
@@ -120,7 +120,7 @@ class Import {
       deliver();
   }
 
-  /// By what the file called it, or by what the server does.
+  /// By its name in the file, or at the server.
   Result<Digest> find_robot(const std::string& label) {
     if (const auto known = labels_.find(label); known != labels_.end())
       return known->second;

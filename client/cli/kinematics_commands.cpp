@@ -41,7 +41,7 @@ void print_forward(const ForwardAnswer& answer, bool json, std::ostream& out) {
       << pose_text(answer.transfer) << frame;
 }
 
-/// What solutions must not touch, or come near to, as kinship-plan has it.
+/// The world that solutions must not touch, or come near to, as kinship-plan has it.
 struct CheckedWorld {
   CheckedWorld(const DescribedRobot& robot, const geometry::RobotShapes& shapes,
                const collision::Surroundings& surroundings)
@@ -83,7 +83,7 @@ void print_inverse(const InverseAnswer& answer, bool json, std::ostream& out) {
   }
 }
 
-/// What surrounds the robot in the first problem of a file.
+/// The surroundings of the robot in the first problem of a file.
 Result<collision::Surroundings> read_surroundings(const InverseCommandOptions& options) {
   collision::Surroundings surroundings;
   if (options.scene.empty())
@@ -114,7 +114,7 @@ Result<collision::Surroundings> read_surroundings(const InverseCommandOptions& o
   return surroundings;
 }
 
-/// What solutions must not touch; none unless it was asked for, or with an exit code in `code`.
+/// The world not to be touched; none unless it was asked for, or with an exit code in `code`.
 std::unique_ptr<CheckedWorld> make_world(const InverseCommandOptions& options,
                                          const DescribedRobot& robot, std::ostream& err,
                                          int& code) {

@@ -26,7 +26,7 @@ using tables::Table;
 constexpr const char* kLinks = "robots links";
 constexpr const char* kFrames = "robots frames";
 
-/// What of a row the URDF alone says.
+/// The part of a row that the URDF alone gives.
 RobotLink row_of(const std::vector<kinematics::TreeLink>& tree, std::size_t index) {
   const kinematics::TreeLink& source = tree[index];
   RobotLink row;
@@ -139,7 +139,7 @@ std::string limits_text(const RobotLink& row) {
   return " " + number_text(*row.lower, kDigits) + " to " + number_text(*row.upper, kDigits);
 }
 
-/// How a joint moves, and what of that a chain knows.
+/// A joint's motion, with the chain's index and held value.
 std::string motion_text(const RobotLink& row) {
   constexpr int kDigits = 3;
   if (row.joint.empty())
@@ -219,7 +219,7 @@ void print_unchecked(const RobotLinks& links, std::ostream& out) {
   }
 }
 
-/// Base and tip, and what they could be.
+/// Base and tip, and the possible ones.
 void print_ends(const RobotLinks& links, std::ostream& out) {
   out << "chain       " << links.base_link << " -> " << links.tip_link;
   if (links.is_suggested)

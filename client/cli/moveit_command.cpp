@@ -103,7 +103,7 @@ Result<std::vector<std::string>> convert_file(const moveit::ConversionInput& inp
       return *error;
     left_out.insert(made.left_out.begin(), made.left_out.end());
     lines.push_back(json::to_json(made.problem));
-    // What kinship-plan would refuse is refused here, where the message's file can be named.
+    // Faults for kinship-plan are refused here, where the message's file can be named.
     if (const auto problem = json::problem_from_json(lines.back()); !problem)
       return Error{problem.error().code, "'" + input.request.string() + "', problem '" +
                                              made.problem.name + "': " + problem.error().message};

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kPlotDistribution = "distributions plot";
 constexpr std::string_view kPlotTask = "tasks plot";
 
-/// The distribution that a query means, by its id or by what it is for. Empty with an exit code in
+/// The distribution of a query, by its id or by the rest of the query. Empty with an exit code in
 /// `code` if there is none.
 std::optional<Distribution> find_distribution(link::Client& server, const DistributionQuery& query,
                                               bool shows_progress, std::ostream& err, int& code) {
@@ -41,7 +41,7 @@ std::optional<Distribution> find_distribution(link::Client& server, const Distri
   return json::distribution_from_json(rows.front()).value_or_throw();
 }
 
-/// Who asks for the rows of one task, and where that is told.
+/// The rows of one task: the client that asks for them, and the stream for its messages.
 struct TaskRows {
   link::Client& server;
   const std::string& task;

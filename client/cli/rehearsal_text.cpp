@@ -28,7 +28,7 @@ std::string sentence(const Rehearsal& rehearsal) {
   return text + (rehearsal.message.empty() ? "" : ": " + rehearsal.message);
 }
 
-/// How many times the checks of a guide are needed without one; "-" if nobody knows.
+/// How many times the checks of a guide are needed without one; "-" if unknown.
 std::string gain_text(const std::vector<GuideCost>& costs, const GuideCost& cost) {
   constexpr int kDigits = 2;
   const auto none = std::ranges::find(costs, Guide::None, &GuideCost::guide);

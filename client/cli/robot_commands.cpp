@@ -32,7 +32,7 @@ using tables::Table;
 
 constexpr int kJointDigits = 4;
 
-/// Says what is missing among the solids, or cannot be meant.
+/// Warns of missing and implausible solids.
 void warn_of_geometry(const char* command, const kinematics::Chain& chain,
                       const geometry::RobotShapes& shapes, std::ostream& err) {
   for (const std::string& doubt : geometry::find_doubts(chain, shapes))
@@ -100,7 +100,7 @@ std::string geometry_text(const geometry::RobotShapes& geometry, std::size_t unc
          " of links never checked against each other ('kinship robots links' names them)";
 }
 
-/// What a server can filter with for a robot with meshes, and how well that does.
+/// The solids that a server can filter with for a robot with meshes, and their agreement.
 void print_filter(const collision::FittedRobot& fitted, std::ostream& out) {
   const collision::FilterAgreement& agreement = fitted.agreement;
   out << "server      gets " << count_text(fitted.mesh_solids.solids.size(), "solid")
@@ -144,7 +144,7 @@ std::string mimic_text(const kinematics::Chain& chain, const kinematics::MimicJo
   return text + ")";
 }
 
-/// What moves with the chain beside it.
+/// The joints that move with the chain beside it.
 void print_mimics(const kinematics::Chain& chain, std::ostream& out) {
   std::string text;
   for (const kinematics::MimicJoint& mimic : chain.mimics())
@@ -178,7 +178,7 @@ void print_check(const RobotCheck& check, const kinematics::Chain& chain,
   }
 }
 
-/// Of a bare URDF: where nobody says otherwise poses are those of the tip link itself.
+/// Of a bare URDF: by default poses are of the tip link itself.
 void warn_without_transfer(const char* command, const models::RobotArguments& arguments,
                            const RobotDescription& description, std::ostream& err) {
   std::error_code unreadable;

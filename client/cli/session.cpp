@@ -87,7 +87,7 @@ void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
 
 namespace {
 
-/// What an argument names, as completions know it.
+/// The kind of value that an argument takes, for completions.
 std::string kind_of(const CLI::App& group, const std::string& argument) {
   if (argument == "id")
     return group.get_name() == "paths" ? "PATH" : "DISTRIBUTION";

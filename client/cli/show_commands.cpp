@@ -210,7 +210,7 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
   const auto rows = show_rows(server, AdminVerb::ShowRobot, name, kCommand, err, code);
   if (code != kDone)
     return code;
-  constexpr std::size_t kRows = 2;  // what the store knows of it, and how it was described
+  constexpr std::size_t kRows = 2;  // the store's record of it, and its description
   if (rows.size() != kRows) {
     err << kCommand << ": the server sent " << rows.size() << " rows, expected " << kRows << '\n';
     return kFailed;

@@ -117,7 +117,7 @@ void print_suggestion(const SrdfSuggestion& suggestion, std::ostream& out) {
 
 int suggest_srdf(const SuggestSrdfOptions& options, std::ostream& out, std::ostream& err) {
   models::RobotArguments arguments = options.robot;
-  arguments.srdf.clear();  // all pairs are sampled, whatever somebody said of them
+  arguments.srdf.clear();  // all pairs are sampled, whatever a document says
   const auto links = models::complete_ends(arguments);
   if (!links)
     return refuse(kSuggestSrdf, links.error(), err);

@@ -25,7 +25,7 @@
 namespace kinship::cli {
 namespace {
 
-/// What events may call the robot that is watched; all of them if it is empty.
+/// The names that events may use for the watched robot; all robots if it is empty.
 using RobotNames = std::vector<std::string>;
 
 /// An event names a robot by its label, or by the short form of a digest that the server does not
@@ -46,14 +46,14 @@ bool is_wanted(const Event& event, const std::string& task, const RobotNames& ro
          (robot.empty() || std::ranges::find(robot, event.robot) != robot.end());
 }
 
-/// Texts come from whoever talks to the server: a terminal is not to obey them.
+/// Texts come from any client of the server: a terminal is not to obey them.
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }, '?');
   return text;
 }
 
-/// What a kind of event is written in on a terminal.
+/// The colour of a kind of event on a terminal.
 const char* colour_of(EventKind kind) {
   switch (kind) {
     case EventKind::Refusal:
@@ -84,7 +84,7 @@ std::string line_of(const Event& event, bool is_coloured) {
          printable(event.text);
 }
 
-/// What is on the screen, written by the thread of the watcher and by the one that waits.
+/// The screen, written by the thread of the watcher and by the one that waits.
 class Watch {
  public:
   Watch(link::Client& server, const WatchOptions& options, std::ostream& out, std::ostream& err)
@@ -182,7 +182,7 @@ class Watch {
     line_.show(status_);
   }
 
-  /// Robots and tasks whose evidence changed since it was read before; at first, of those wanted.
+  /// Robots and tasks whose evidence changed since the last reading; at first, all wanted ones.
   void read_guidance() {
     std::ostringstream unsaid;
     std::vector<std::string> changed;
@@ -222,7 +222,7 @@ class Watch {
   const bool is_coloured_, has_status_line_;
   std::atomic<bool> is_there_ = false, has_said_so_ = false;
 
-  std::mutex mutex_;  // guards the streams and what both threads use:
+  std::mutex mutex_;  // guards the streams and the data of both threads:
   StatusLine line_;
   std::string status_;
   RobotNames robot_;

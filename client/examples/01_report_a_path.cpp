@@ -1,10 +1,9 @@
-// 01: Report a path. An arm that has planned tells the fleet's server what it found and what that
-// cost.
+// 01: Report a path. An arm that has planned reports its path and its cost to the fleet's server.
 //
 //   01_report_a_path MODELS SEED        MODELS: the folder share/kinship/robots of the installation
 //
-// What is reported is on disk when report() returns and reaches the server sooner or later; who
-// wants to know waits.
+// A report is on disk when report() returns and reaches the server sooner or later; flush() waits
+// for that.
 #include <iostream>
 
 #include "arms.hpp"

@@ -1,5 +1,5 @@
 // 05: Follow and replan when it improves. A follower always holds the newest distribution and never
-// blocks who plans.
+// blocks the planner.
 //
 //   05_follow_and_replan MODELS ROUNDS        ends after so many plans
 #include <iostream>
@@ -12,7 +12,7 @@ int main(int count, char** words) try {
     return 2;
   }
   kinship::link::ClientOptions options = kinship::link::options_from_environment();
-  options.has_outbox = false;  // who reports nothing leaves sending to the others
+  options.has_outbox = false;  // without reports, sending is left to others
   kinship::link::Client client(options);
   kinship::FetchRequest request;
   request.task = "sweep";

@@ -1,6 +1,6 @@
-// 06: Register any URDF, with a tool. What a server has to know of an arm is its URDF's text, where
-// the chain begins and ends, and the frame in the tool that all robots of a task place alike: z out
-// of the palm, y along the closing fingers.
+// 06: Register any URDF, with a tool. A server needs the text of an arm's URDF, the ends of the
+// chain, and the frame in the tool that all robots of a task place alike: z out of the palm, y
+// along the closing fingers.
 //
 //   06_register_any_urdf URDF BASE TIP TOOL_LENGTH_M
 #include <iostream>
@@ -22,8 +22,7 @@ int main(int count, char** words) try {
   // Also, where needed: task_axes of a planar arm, held_joints off the chain, never_colliding pairs
   // of links.
 
-  // What is wrong with a URDF is said here, with link, joint, value and limit, before anybody is
-  // asked.
+  // A fault of a URDF is reported here, with link, joint, value and limit, before any request.
   const auto chain = kinship::kinematics::read_chain(arm).value_or_throw();
   for (const kinship::kinematics::Joint& joint : chain.joints())
     std::cout << joint.name << " from " << joint.lower << " to " << joint.upper << '\n';

@@ -1,6 +1,6 @@
-// 07: Work offline. Nothing needs a server to be there: a report waits on disk, a fetch ends at its
-// deadline, and the planner goes on uniformly. Run it without a server, then with one: what has
-// waited arrives.
+// 07: Work offline. No step needs a server: a report waits on disk, a fetch ends at its deadline,
+// and the planner goes on uniformly. Run it without a server, then with one: the waiting reports
+// arrive.
 //
 //   07_work_offline MODELS
 #include <iostream>
@@ -20,7 +20,7 @@ int main(int count, char** words) try {
   const auto reply = client.register_robot(arm);  // kept on disk for when a server is there
   std::cout << "server: " << (reply ? "there" : reply.error().message) << '\n';
 
-  // Who the robot is follows from its kinematics alone, so nobody has to be asked.
+  // The robot's digest follows from its kinematics alone, without a request.
   const kinship::Digest robot = kinship::kinematics::read_chain(arm).value_or_throw().digest();
   kinship::FetchRequest request;
   request.task = "sweep";

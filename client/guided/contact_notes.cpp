@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNoted = 200;     // more say nothing new
 constexpr std::size_t kThingsTold = 3;  // on one line
-constexpr std::size_t kNamesTold = 4;   // of what touches one of them
+constexpr std::size_t kNamesTold = 4;   // of bodies that touch one of them
 
 std::string millimetres(double length_m) {
   std::ostringstream text;
@@ -24,7 +24,7 @@ std::string millimetres(double length_m) {
 struct Touched {
   std::string text;                            // "touches 'wall'"
   std::size_t configurations = 0;              // in which it is
-  std::map<std::string, std::size_t> by = {};  // what touches it, in how many of them
+  std::map<std::string, std::size_t> by = {};  // bodies that touch it, in how many of them
 };
 
 /// "'l4' or 'l5'", the most frequent first.

@@ -74,7 +74,7 @@ std::string find_fault(const Distribution& distribution, Eigen::Index dof) {
   return "";
 }
 
-/// Guidance by what there is of the two.
+/// Guidance by the distribution, the experience, or both.
 GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience experience,
                            const Rehearsal* rehearsal, const GuidanceOptions& wanted) {
   const Guide guide = wanted.guide.value_or(rehearsal != nullptr ? rehearsal->guide : Guide::All);
@@ -115,7 +115,7 @@ std::string or_else(const std::string& message, const std::string& otherwise) {
   return message.empty() ? otherwise : message;
 }
 
-/// What is said if there is nothing to guide with.
+/// The answer if there is nothing to guide with.
 GuidanceAnswer without_guidance(const FetchReply& reply, const GuidanceOptions& wanted) {
   switch (reply.status) {
     case FetchStatus::Ready:

@@ -53,7 +53,7 @@ Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matri
   return kept.leftCols(count);
 }
 
-/// "roll by 0.2, z by -0.1": what is outside a region, m and rad.
+/// "roll by 0.2, z by -0.1": the excess over a region, m and rad.
 std::string described(const planning::RegionConstraint::Vector6& excess) {
   std::string text;
   for (Eigen::Index i = 0; i < excess.size(); ++i)
@@ -104,7 +104,7 @@ Outcome outcome_of(const planning::PlanSummary& summary) {
   return is_used_up ? Outcome::Timeout : Outcome::Failed;
 }
 
-/// Why no search was begun; empty for what ends a search.
+/// Why no search was begun; empty for reasons that end a search.
 std::optional<NotPlanned> not_planned_by(NoPath reason) {
   switch (reason) {
     case NoPath::StartOutOfReach:
@@ -277,7 +277,7 @@ class Planning {
     result.not_planned = not_planned_by(reason);
   }
 
-  /// Shortens and proves what the search found. Where it is refuted it is searched again.
+  /// Shortens and proves the path of the search. Where it is refuted it is searched again.
   void shorten(const planning::ConfigurationSampler& sampler, planning::BirrtOptions tree,
                planning::PlanSummary& summary, ProblemResult& result) {
     const double step = settings_.resolution;
@@ -334,7 +334,7 @@ class Planning {
     return constraint_ ? waypoints : planning::sparse_vertices(waypoints, step);
   }
 
-  /// Why there is no path, with what only this problem knows.
+  /// Why there is no path, with details that only this problem knows.
   std::string explain(NoPath reason, const std::string& planner_message = {}) {
     const std::string text(describe(reason));
     switch (reason) {
@@ -363,7 +363,7 @@ class Planning {
     }
   }
 
-  /// What keeps the robot from a pose that it has no configuration for.
+  /// Why the robot has no configuration for a pose.
   std::string unreached_text(const Eigen::Isometry3d& T_task_wanted) const {
     const kinematics::Chain& chain = robot_.chain;
     const Eigen::Isometry3d T_base_tip =
@@ -384,7 +384,7 @@ class Planning {
     };
   }
 
-  /// What touches at a configuration, or comes nearest of what is too near.
+  /// The contact at a configuration, or the nearest of the pairs too near.
   std::string contact_text(const Eigen::VectorXd& q) {
     const std::vector<collision::NearPair> near = find_near()(q);
     const auto nearest = std::ranges::min_element(near, {}, &collision::NearPair::clearance_m);

@@ -19,7 +19,7 @@ std::string value_text(double value) {
 }
 
 /// Moves the joints of `q` that are beyond a limit by less than the slack, and says so of each.
-/// \param of  what `q` is, e.g. "goal 2".
+/// \param of  the name of `q`, e.g. "goal 2".
 void move_onto_limits(const kinematics::Chain& chain, double slack, const std::string& of,
                       Eigen::Ref<Eigen::VectorXd> q, std::vector<std::string>& said) {
   for (Eigen::Index i = 0; i < chain.dof(); ++i) {

@@ -40,7 +40,7 @@ Digest digest_of(const files::File& part) {
   }
 }
 
-/// What the server found when it read the backup through.
+/// The server's findings when it read the backup through.
 struct Whole {
   Digest sha256;
   std::uint64_t bytes = 0;
@@ -51,7 +51,7 @@ class Downloader {
   Downloader(Client& server, const BackupDownload& download)
       : server_(server), download_(download), give_up_(Clock::now() + download.patience) {}
 
-  /// \param part  what has arrived so far; empty afterwards if it is not what the server has.
+  /// \param part  the bytes so far; empty afterwards if they are not the server's.
   Result<DownloadedBackup> run(const files::File& part) {
     const Result<Whole> whole = ask([&] { return find_whole(); });
     if (!whole)
@@ -75,7 +75,7 @@ class Downloader {
   }
 
  private:
-  /// Asks again while nobody answers, until that has lasted too long.
+  /// Asks again while no server answers, until that has lasted too long.
   template <typename Ask>
   auto ask(Ask make) -> decltype(make()) {
     while (true) {

@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kReceiptTime = 5s;       // for a batch to be stored, and a robot
 constexpr milliseconds kShortestPause = 100ms;  // between two requests of one fetch
 
-/// What the server is given of the time that is left, so that its "pending" still arrives in time.
+/// The server's share of the time that is left, so that its "pending" still arrives in time.
 milliseconds server_share(milliseconds left) {
   return left - std::min<milliseconds>(200ms, left / 4);
 }
@@ -59,7 +59,7 @@ std::optional<milliseconds> pause_after(const Result<FetchReply>& reply) {
 
 }  // namespace
 
-/// What a client has; the types are not for those who include its header.
+/// The parts of a client; its header does not show their types.
 struct Client::Line {
   explicit Line(const ClientOptions& options)
       : timeout(options.timeout),
@@ -123,7 +123,7 @@ std::optional<std::string> Client::expiry_warning() const {
 
 Result<RegisterReply> Client::register_robot(const RobotDescription& description) {
   if (line_->outbox)
-    // One that cannot be read has no reports; the server says what is wrong with it.
+    // An unreadable robot has no reports; the server names its fault.
     if (const auto chain = kinematics::read_chain(description))
       line_->outbox->keep_robot(chain->digest(), description);
   const Clock::time_point deadline = Clock::now() + line_->timeout;

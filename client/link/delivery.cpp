@@ -20,9 +20,9 @@ using Receipts = std::map<Uuid, Receipt>;
 constexpr std::chrono::milliseconds kPause = 200ms;        // after "try again"
 constexpr std::chrono::milliseconds kLongestWait = 10min;  // of one batch, as the server asks
 
-/// Sends a batch, and again what has no final receipt, until the timeout. Pauses that the server
-/// asks for do not count.
-/// \return what is wrong if there was no reply at all.
+/// Sends a batch, and again the attempts without a final receipt, until the timeout. Pauses that
+/// the server asks for do not count.
+/// \return the error if there was no reply at all.
 std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds timeout,
                                InterruptibleSleep& sleep, const Send& send, Receipts& receipts) {
   Clock::time_point deadline = Clock::now() + timeout;
@@ -38,7 +38,7 @@ std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds ti
         break;
     }
     const Result<ReportReply> reply = send(batch, deadline);
-    if (!reply)  // what the server said before stands
+    if (!reply)  // earlier answers of the server stand
       return is_answered ? std::nullopt : std::optional(reply.error());
     asked = reply->retry_after;
     for (const Receipt& receipt : reply->receipts)

@@ -61,10 +61,10 @@ FollowStatus status_of(FetchStatus status) {
   }
 }
 
-/// What a follower does after an exchange with the server.
+/// A follower's step after an exchange with the server.
 struct Step {
   Follower::State state;
-  std::optional<DistributionPointer> newest;  ///< missing: what is held stays
+  std::optional<DistributionPointer> newest;  ///< missing: the held one stays
   milliseconds pause{0};                      ///< until the next exchange, unless something happens
 };
 
@@ -147,7 +147,7 @@ class Follower::Implementation {
     changed_.notify_all();
   }
 
-  /// Whether something was announced that is newer than what is held. Under mutex_.
+  /// Whether an announcement is newer than the distribution held. Under mutex_.
   bool has_news() const {
     const DistributionPointer held = newest();
     if (!held)
@@ -178,7 +178,7 @@ class Follower::Implementation {
       state_ = std::move(step.state);
       if (step.newest) {
         const std::lock_guard newest_lock(newest_mutex_);
-        newest_.swap(*step.newest);  // what was held is freed outside of the lock
+        newest_.swap(*step.newest);  // the earlier one is freed outside of the lock
       }
       step.newest.reset();
       changed_.notify_all();
@@ -200,7 +200,7 @@ class Follower::Implementation {
     ExperiencePointer held =
         experience.paths.empty() ? nullptr : std::make_shared<const TaskExperience>(experience);
     const std::lock_guard lock(newest_mutex_);
-    experience_.swap(held);  // what was held is freed outside of the lock
+    experience_.swap(held);  // the earlier one is freed outside of the lock
   }
 
   Step judge(const Result<FetchReply>& reply) {
@@ -251,11 +251,11 @@ class Follower::Implementation {
 
   const dds::OwningProcess process_;
   const std::shared_ptr<const dds::Participant> participant_;
-  FetchRequest request_;  // but for what is known of the experience it never changes
+  FetchRequest request_;  // only its knowledge of the experience changes
   const FollowOptions options_;
   milliseconds pause_{0};            // of the thread alone
   mutable std::mutex newest_mutex_;  // guards the two; taken last, held to copy one
-  DistributionPointer newest_;       // shared by all who asked for it
+  DistributionPointer newest_;       // shared with all callers
   ExperiencePointer experience_;     // the same
   mutable std::mutex mutex_;         // guards what follows
   mutable std::condition_variable changed_;

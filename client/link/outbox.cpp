@@ -120,7 +120,7 @@ void Outbox::reject(const Uuid& report_uuid, std::string_view reason) {
 
 void Outbox::keep_robot(const Digest& robot, const RobotDescription& description) {
   RobotDescription kept = description;
-  // A server that does not know the robot yet shall get what is known of its meshes, too.
+  // A server that does not know the robot yet shall get its known meshes, too.
   if (kept.mesh_solids.solids.empty())
     if (const auto before = this->robot(robot); before && before->urdf == description.urdf)
       kept.mesh_solids = before->mesh_solids;
@@ -185,7 +185,7 @@ HistoryMark Outbox::known_mark() const {
 }
 
 void Outbox::age(std::chrono::milliseconds sending) {
-  sent_.make_folders();  // who rotated them may have been killed in between
+  sent_.make_folders();  // a rotating process may have been killed in between
   sent_.age(sending);
   for (const fs::path& folder :
        {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})

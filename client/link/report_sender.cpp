@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
 constexpr std::chrono::hours kAgeing{1};
 constexpr std::chrono::minutes kBetweenProbes{10};
-constexpr std::chrono::milliseconds kPoll = 50ms;  // for what another process sends
+constexpr std::chrono::milliseconds kPoll = 50ms;  // for reports that another process sends
 
 bool is_final(ReceiptStatus status) {
   return status != ReceiptStatus::TryAgain && status != ReceiptStatus::UnknownRobot;
@@ -140,7 +140,7 @@ void ReportSender::age_now_and_then(bool is_end) {
     return;
   try {
     outbox_.age(std::chrono::duration_cast<std::chrono::milliseconds>(now - aged_.value_or(now)));
-  } catch (const Failure& failure) {  // of the disk: what is sent is kept longer
+  } catch (const Failure& failure) {  // of the disk: sent reports are kept longer
     report_problem(failure.what());
   }
   aged_ = now;
@@ -172,7 +172,7 @@ bool ReportSender::send_all_pending() {
 }
 
 /// Tells a server that came, and every server now and then, how far its store is known here, for
-/// the case that it was rolled back: who reports nothing would never hear of it.
+/// the case that it was rolled back: a client without reports would never hear of it.
 /// \return false if it should be tried again.
 bool ReportSender::probe_epoch() {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
@@ -183,7 +183,7 @@ bool ReportSender::probe_epoch() {
   return exchange(probe).has_value();
 }
 
-/// Sends a batch with what is known of the store, and notes what the reply says of it.
+/// Sends a batch with the known mark of the store, and notes the epoch and mark in the reply.
 Result<ReportReply> ReportSender::exchange(ReportRequest& batch) {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
   batch.known_mark = outbox_.known_mark();
@@ -212,7 +212,7 @@ bool ReportSender::deliver(ReportRequest& batch) {
   return gets_on;
 }
 
-/// Leaves those attempts in the batch whose robots the server does not know.
+/// Leaves the attempts in the batch whose robots the server does not know.
 /// \return false if another attempt of the batch should be tried again.
 bool ReportSender::send_batch(ReportRequest& batch) {
   if (batch.attempts.empty())

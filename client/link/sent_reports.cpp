@@ -69,7 +69,7 @@ void SentReports::age(milliseconds sending) const {
     write_whole(outbox_ / kAge, std::to_string(age.count()) + "\n");
 }
 
-/// Ended at any point it leaves what was in sent/ in one of the two folders for seven days more.
+/// Ended at any point it leaves the reports of sent/ in one of the two folders for seven days more.
 void SentReports::rotate() const {
   write_durably(outbox_ / kAge, "0\n");
   std::error_code error;

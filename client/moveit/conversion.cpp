@@ -35,7 +35,7 @@ YamlValue unwrapped(const YamlValue& document, const std::vector<std::string>& m
   return value;
 }
 
-/// A scene says what stands around the robot, or that nothing does.
+/// A scene lists the objects around the robot, or says that there are none.
 YamlValue checked_scene(const YamlValue& document) {
   YamlValue scene = unwrapped(document, {"scene"});
   check_members(scene, "PlanningScene");
@@ -70,7 +70,7 @@ void refuse_difference(const YamlValue& scene) {
         "the whole one, or say false if this is all");
 }
 
-/// What a problem does not ask for, but a path may be judged by.
+/// Members that a problem does not use, but a path may be judged by.
 void note_unread(const YamlValue& request, std::vector<std::string>& left_out) {
   const auto note = [&](const char* member, const std::string& why) {
     const YamlValue value = request[member];

@@ -72,7 +72,7 @@ Eigen::Quaterniond read_rotation(const YamlValue& value) {
   const Eigen::Quaterniond rotation(w, x, y, z);
   if (rotation.norm() == 0)
     return Eigen::Quaterniond::Identity();
-  // Someone who rounds writes six digits; further off, another order was meant.
+  // A rounded quaternion has six digits; further off, another order was meant.
   constexpr double kTolerance = 1e-2;
   if (std::abs(rotation.norm() - 1) > kTolerance)
     value.refuse("is no rotation: the quaternion's norm is " + std::to_string(rotation.norm()));

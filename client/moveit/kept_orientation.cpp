@@ -34,7 +34,7 @@ Eigen::Vector3d read_tolerances(const YamlValue& constraint) {
   return tolerances;
 }
 
-/// Whether the tolerances are those of a rotation vector; else of turns about x, y and z.
+/// Whether the tolerances are of a rotation vector; else of turns about x, y and z.
 bool is_rotation_vector(const YamlValue& constraint) {
   const std::string kind = constraint["parameterization"].text_or("0");
   if (kind != "0" && kind != "1")

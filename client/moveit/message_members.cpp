@@ -18,7 +18,7 @@ struct Member {
   std::string type = {};  ///< a message, with [] a list of it; empty: not looked at here
 };
 
-/// The messages by name, with their members in ROS 1 and 2, and those of benchmark sets.
+/// The messages by name, with their members in ROS 1 and 2, and messages of benchmark sets.
 /// Source: moveit_msgs, shape_msgs, geometry_msgs, sensor_msgs, std_msgs, octomap_msgs.
 // NOLINTNEXTLINE(readability-function-size): a table
 const std::map<std::string, std::vector<Member>, std::less<>>& messages() {

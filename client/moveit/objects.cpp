@@ -168,7 +168,7 @@ NamePair pair_of(const std::string& first, const std::string& second) {
   return std::minmax(first, second);
 }
 
-/// What the matrix says of pairs of its entries.
+/// The matrix's values for pairs of its entries.
 std::map<NamePair, bool> read_matrix(const YamlValue& matrix) {
   const std::vector<YamlValue> entries = matrix["entry_names"].items();
   const std::vector<YamlValue> rows = matrix["entry_values"].items();
@@ -199,7 +199,7 @@ std::map<std::string, bool> read_defaults(const YamlValue& matrix) {
   return defaults;
 }
 
-/// moveit_msgs/AllowedCollisionMatrix: what it says of a pair counts, else both their defaults.
+/// moveit_msgs/AllowedCollisionMatrix: its value for a pair counts, else both their defaults.
 /// Entries of links and objects that are not here are left.
 void read_allowed(const YamlValue& matrix, const kinematics::Chain& chain, const PartNames& names,
                   Conversion& conversion) {
@@ -230,7 +230,7 @@ bool is_padded(const YamlValue& list, const char* member, double neutral) {
       items, [&](const YamlValue& item) { return item[member].number_or(neutral) != neutral; });
 }
 
-/// A state that says by itself what the robot holds: it has joints, and calls itself no difference.
+/// A state that by itself gives the held objects: it has joints, and calls itself no difference.
 bool is_whole_state(const YamlValue& state) {
   const YamlValue difference = state["is_diff"];
   return !difference.is_missing() && !difference.flag() &&

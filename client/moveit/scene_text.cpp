@@ -113,7 +113,7 @@ class SceneText {
       pose["orientation"].push_back(number());
       norm = std::hypot(norm, number_);
     }
-    constexpr double kTolerance = 1e-2;  // of someone who rounds; further off, another order
+    constexpr double kTolerance = 1e-2;  // of rounding; further off, another order
     if (std::abs(norm - 1) > kTolerance)
       refuse("is no rotation: the quaternion's norm is " + std::to_string(norm));
     return pose;

@@ -8,7 +8,7 @@
 namespace kinship::moveit {
 namespace {
 
-/// What `ros2 topic echo` writes instead of what it leaves out.
+/// Written by `ros2 topic echo` for a part that it leaves out.
 constexpr const char* kTruncated = "...";
 
 }  // namespace

@@ -24,7 +24,7 @@ ob::RealVectorStateSpace& sampled_space(ob::StateSpace& space) {
   ob::StateSpace* sampled = &space;
   if (const auto* constrained = dynamic_cast<const ob::ConstrainedStateSpace*>(&space)) {
     if (!dynamic_cast<const ob::ProjectedStateSpace*>(constrained))
-      // The name of a wrapper is that of what it wraps, and hidden from StateSpace.
+      // A wrapper has the name of its wrapped space, hidden from StateSpace.
       refuse(constrained->getName(),
              "draws from its charts and would ignore a guided sampler; use a ProjectedStateSpace "
              "over the same ambient space and constraint");

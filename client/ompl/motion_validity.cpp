@@ -60,7 +60,7 @@ Eigen::MatrixXd StraightMotionValidator::asked(const ob::State& from, const ob::
       qs(i, column) = begin[i] + (end[i] - begin[i]) * share;
   };
   std::copy(end, end + dof, qs.col(0).data());
-  std::vector<std::pair<int, int>> halves;  // first and last of what lies between
+  std::vector<std::pair<int, int>> halves;  // first and last of a range in between
   halves.reserve(static_cast<std::size_t>(qs.cols()));
   if (parts > 1)
     halves.emplace_back(1, parts - 1);

@@ -59,7 +59,7 @@ class LightningRecall : public og::LightningRetrieveRepair {
   }
 
  private:
-  /// Of the ends of a path, the better way round, from those of a query.
+  /// From the ends of a path, the better way round, to the ends of a query.
   double distance(const ob::PlannerData& path, const ob::State* start,
                   const ob::State* goal) const {
     const ob::State* const first = path.getVertex(0).getState();
@@ -69,7 +69,7 @@ class LightningRecall : public og::LightningRetrieveRepair {
   }
 };
 
-/// What either database is for this file.
+/// Either database, as this file uses it.
 class Memory {
  public:
   virtual ~Memory() = default;

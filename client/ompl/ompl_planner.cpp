@@ -29,12 +29,12 @@ namespace {
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
-/// A space of OMPL with what turns its states into configurations.
+/// A space of OMPL with the functions that turn its states into configurations.
 struct PlanningSpace {
   ob::SpaceInformationPtr information;
   std::function<Eigen::VectorXd(const ob::State&)> configuration;
   std::function<void(const Eigen::VectorXd&, ob::State&)> copy_to;
-  /// What was checked between two states: dof x n.
+  /// The checked configurations between two states: dof x n.
   std::function<Eigen::MatrixXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> way;
   std::function<bool(const Eigen::VectorXd&)> holds;  ///< the constraint; empty: there is none
 };

@@ -17,7 +17,7 @@ constexpr std::string_view kHead = R"(<!DOCTYPE html>
  content="default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:">
 <title>)";
 
-/// Vega's modules, each after those it asks for.
+/// Vega's modules, each after the ones it asks for.
 constexpr std::string_view kVegaParts[] = {
     "util",      "time",    "format",     "loader",          "statistics",     "dataflow",
     "scale",     "canvas",  "scenegraph", "expression",      "event-selector", "selection",

@@ -272,7 +272,7 @@ void complete_shares(const CLI::App& app, const RawOptions& raw, PlanOptions& op
     options.sampling.control_fraction = 0;
 }
 
-/// Puts into `options` what depends on several options.
+/// Sets the members of `options` that depend on several options.
 /// \param app    parsed.
 /// \param notes  for people: options that have no effect beside the others.
 /// \throws CLI::ValidationError for options that do not go together.

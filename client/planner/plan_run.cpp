@@ -160,7 +160,7 @@ class Run {
       if (streams_.searches != nullptr)
         write_search(planned.result.name, recorder_, *streams_.searches);
       recorder_ = {};
-      write_result(planned.result, streams_);  // after: what has a result is in the outbox
+      write_result(planned.result, streams_);  // after: an attempt with a result is in the outbox
       progress.add(planned.result, planned.attempted);
     }
     return true;

@@ -39,7 +39,7 @@ ServerLine::ServerLine(const PlanOptions& options, RobotDescription description,
   client.domain = options_.domain;
   client.server = options_.server;
   client.security = options_.security;
-  client.has_outbox = options_.report;  // who only looks delivers nothing
+  client.has_outbox = options_.report;  // a client that only looks delivers nothing
   client.outbox = options_.outbox;
   client.timeout = options_.timeout;
   if (const std::string why = link::why_unknown(options_.server); !why.empty())

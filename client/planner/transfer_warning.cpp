@@ -3,7 +3,7 @@
 namespace kinship::planner {
 namespace {
 
-/// The first pose of the transfer frame that a problem gives, in words; empty if it gives none.
+/// The first pose of the transfer frame that a problem gives, as text; empty if it gives none.
 std::string pose_of(const Problem& problem) {
   if (problem.T_task_start)
     return "start";

@@ -11,8 +11,8 @@
 namespace kinship::plots {
 namespace {
 
-/// The bin of a value; what rounding put beyond an end belongs to the last one. Of a joint that
-/// cannot move it is the one in the middle.
+/// The bin of a value; one rounded beyond an end belongs to the last bin. The middle one for a
+/// joint that cannot move.
 std::size_t bin_of(double value, const Marginal& marginal) {
   if (marginal.lower == marginal.upper)
     return kMarginalBins / 2;

@@ -11,7 +11,7 @@
 namespace kinship::plots {
 namespace {
 
-/// A page of this room: NAME.html with NAME.js, and what all of them share.
+/// A page of this room: NAME.html with NAME.js, and the shared files.
 page::Document document_of(const std::string& name, std::string title, std::string data) {
   const auto text = [](const std::string& file) { return page::text_of(plot_texts(), file); };
   page::Document document;

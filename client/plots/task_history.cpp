@@ -35,7 +35,7 @@ RobotBin bin_of(std::size_t number, const std::array<GatheredMode, 3>& gathered)
   return bin;
 }
 
-/// What one robot did, bin after bin.
+/// The attempts of one robot, bin after bin.
 RobotHistory robot_history(const std::vector<const AttemptSummary*>& attempts,
                            const TaskHistory& history) {
   RobotHistory robot;

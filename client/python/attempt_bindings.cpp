@@ -24,7 +24,7 @@ void set_waypoints(NamedAttempt& self, const std::optional<Array>& waypoints) {
         read_configurations(*waypoints, waypoints->shape(1), "a waypoint").columns);
 }
 
-/// What is around a robot, as other robots can be told of it.
+/// The surroundings of a robot, as other robots can use them.
 RecordedScene recorded(const Scene& scene) {
   if (!scene.meshes.empty() || !scene.clouds.empty())
     throw std::invalid_argument("scene: an attempt takes boxes, cylinders, spheres and capsules");

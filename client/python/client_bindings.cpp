@@ -21,7 +21,7 @@ namespace {
 
 using OutboxState = link::Client::OutboxState;
 
-/// What fetch and follow have in common, as Python says it.
+/// The common arguments of fetch and follow, as Python gives them.
 struct Wish {
   std::string task;
   RobotName robot;

@@ -153,7 +153,7 @@ void bind_provenance(DistributionClass& distribution) {
                              "fit, filters, evidence, as proto/FORMATS.md names them.");
 }
 
-/// What planners draw from: some samples guided, the others uniform.
+/// The samples of planners: some guided, the others uniform.
 class PlanSampler {
  public:
   PlanSampler(planning::ConfigurationSampler sampler, std::uint64_t seed)

@@ -18,7 +18,7 @@ namespace {
 namespace py = pybind11;
 using json::NamedAttempt;
 
-/// What an experience file holds.
+/// The content of an experience file.
 struct Experience {
   std::vector<std::shared_ptr<Robot>> robots;
   std::vector<NamedAttempt> attempts;
@@ -58,7 +58,7 @@ Experience read(const std::filesystem::path& file) {
   return experience;
 }
 
-/// Lists, so that who changes an attempt in them changes it.
+/// Lists, so that a change of an attempt in them stays.
 py::tuple read_experience(const std::filesystem::path& file) {
   Experience experience = read(file);
   return py::make_tuple(std::move(experience.robots), std::move(experience.attempts));

@@ -26,7 +26,7 @@ namespace {
 using SharedGuidance = std::shared_ptr<GuidanceHandle>;
 using AnyGuidance = std::variant<SharedGuidance, std::shared_ptr<SampledDistribution>>;
 
-/// A query that was planned, with what it was planned from.
+/// A planned query, with its inputs.
 struct Plan {
   std::shared_ptr<Robot> robot;
   Problem problem;
@@ -34,7 +34,7 @@ struct Plan {
   guided::PlannedProblem planned;
 };
 
-/// What a planner asks before every check. It runs without the interpreter's lock, which is taken
+/// A planner calls it before every check. It runs without the interpreter's lock, which is taken
 /// now and then to let Python handle signals.
 class InterruptCheck {
  public:
@@ -75,7 +75,7 @@ guided::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& pr
                                : parse_word<SamplingMode>(sampling_mode).value_or_throw()};
 }
 
-/// What kinship-plan warns of: solids of the robot and of the scene that cannot be meant.
+/// The warnings of kinship-plan: implausible solids of the robot and of the scene.
 std::vector<std::string> doubts_of(const Robot& robot, const Plan& made) {
   std::vector<std::string> doubts = geometry::find_doubts(robot.chain(), robot.shapes());
   if (std::string touching = collision::describe_always_touching(robot.planned()->solids);

@@ -35,8 +35,7 @@ Eigen::Vector3d read_triple(const Array& values, const char* name) {
   return Eigen::Map<const Eigen::Vector3d>(values.data());
 }
 
-/// Reads the files that a scene names at once, so that it is the caller who hears of what is wrong
-/// with them.
+/// Reads the files that a scene names at once, so that the caller gets their faults.
 void add_mesh(Scene& scene, const std::string& name, const std::string& file, const Array& pose,
               const Array& scale, const Packages& packages) {
   Scene mesh{.objects = {}};

@@ -15,7 +15,7 @@ void wait_until(const std::function<bool(std::chrono::milliseconds)>& wait) {
       const pybind11::gil_scoped_release unlocked;
       is_there = wait(kSignalInterval);
     }
-    if (!is_there)  // else what was waited for would be lost
+    if (!is_there)  // else the awaited value would be lost
       hear_signals();
   }
 }

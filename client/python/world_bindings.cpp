@@ -18,7 +18,7 @@ namespace {
 
 using AllowedPairs = std::vector<std::pair<std::string, std::string>>;
 
-/// What is known of a path: of its first line that is not free, and of those before it.
+/// The proof of a path: of its first line that is not free, and of the lines before it.
 struct PathProof {
   std::size_t edges = 0;  ///< proven to be free, from the first on
   std::optional<collision::EdgeRefutation> refutation = {};
@@ -33,7 +33,7 @@ class World {
 
   const Robot& robot() const noexcept { return *robot_; }
 
-  /// \param qs  dof x n. \param clearance_m  0: what does not touch is free
+  /// \param qs  dof x n. \param clearance_m  0: free means without contact
   std::vector<bool> free(const Eigen::MatrixXd& qs, double clearance_m) {
     constexpr Eigen::Index kTogether = 16;  // cost little more than one
     const std::scoped_lock lock(mutex_);
@@ -61,7 +61,7 @@ class World {
   }
 
   /// \param waypoints  dof x n. \return of the first line between two that is not proven to be
-  /// free, and of those before it.
+  ///                   free, and of the lines before it.
   PathProof prove(const Eigen::MatrixXd& waypoints, double clearance_m) {
     const std::scoped_lock lock(mutex_);
     const Eigen::Index count = waypoints.cols() - 1;
@@ -79,7 +79,7 @@ class World {
 
  private:
   std::shared_ptr<Robot> robot_;
-  std::mutex mutex_;  // guards the world and what asks it
+  std::mutex mutex_;  // guards the world and its users
   collision::CollisionWorld world_;
   collision::EdgeProver prover_;
 };

@@ -11,7 +11,7 @@
 namespace kinship::dds {
 namespace {
 
-/// What the dynamic linker needs of a loaded library, as far as it says which functions it calls.
+/// The dynamic linker's data of a loaded library, as far as they tell which functions it calls.
 struct CalledFunctions {
   std::uintptr_t base = 0;
   const ElfW(Sym) * symbols = nullptr;
@@ -44,7 +44,7 @@ CalledFunctions called_by(const link_map& library) {
   return found;
 }
 
-/// What is called by that name; null if nothing is.
+/// The function called by that name; null if there is none.
 const void* callee(const CalledFunctions& library, std::string_view name) {
   constexpr unsigned kSymbolShift = sizeof(void*) == 8 ? 32 : 8;
   if (!library.symbols || !library.names || !library.slots || !library.has_addends)
@@ -71,7 +71,7 @@ bool is_in_front_of_cyclone(const char* name, const void* function) {
   const void* const called = callee(called_by(*static_cast<const link_map*>(map)), name);
   if (called == function || called == nullptr)
     return called != nullptr;
-  // In a library that is bound when a function is first called: what will be found then.
+  // In a library that is bound when a function is first called: the function to be found then.
   Dl_info place{};
   const bool is_bound = dladdr(called, &place) == 0 || place.dli_fbase != cyclone.dli_fbase ||
                         called == dlsym(RTLD_NEXT, name);

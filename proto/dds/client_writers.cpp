@@ -111,7 +111,7 @@ bool ClientWriters::notice_readers() {
 
 void ClientWriters::let_in(const std::string& name) {
   const auto caller = directory_ ? directory_(name) : Result<Caller>(Error{});
-  if (!caller) {  // whom nobody knows hears nothing; its record may come, or be readable again
+  if (!caller) {  // an unknown client hears nothing; its record may come, or be readable again
     if (unknown_.size() < kMaxUnknown)
       unknown_.insert(name);
     return;
@@ -130,7 +130,7 @@ void ClientWriters::look_again() {
   free_unread(Clock::now());
 }
 
-/// What a writer keeps for readers that come late is for the rights that its client had.
+/// Samples that a writer keeps for late readers are for the rights that its client had.
 void ClientWriters::replace_changed() {
   std::map<std::string, Caller> all;
   {

@@ -22,8 +22,8 @@ std::atomic<int>& guards() {
   return count;
 }
 
-/// Whether Cyclone DDS may hear of it: it says what security it has, or is one of those by which
-/// participants find and trust each other, which have no topic of ours.
+/// Whether Cyclone DDS may hear of it: it states its security, or is a built-in endpoint by which
+/// participants find and trust each other, which has no topic of ours.
 bool is_admitted(const ddsi_guid& endpoint, const ddsi_plist_t& announced) {
   if (guards() == 0 ||
       (endpoint.entityid.u & NN_ENTITYID_SOURCE_MASK) == NN_ENTITYID_SOURCE_BUILTIN)

@@ -28,7 +28,7 @@ Entity MatchedReaders::make_writer(const Entity& publisher, Handle topic, const 
           static_cast<MatchedReaders*>(self)->come(reader);
       });
   Entity writer(dds_create_writer(publisher.get(), topic, qos, listener.get()), what);
-  // Of those that it matched while it was made the listener could be told nothing.
+  // The listener may have missed readers that matched while the writer was made.
   std::array<std::uint64_t, 256> readers{};
   const dds_return_t count =
       dds_get_matched_subscriptions(writer.get(), readers.data(), readers.size());

@@ -145,7 +145,7 @@ class Walk {
     return swapped_ ? __builtin_bswap32(value) : value;
   }
 
-  /// Of a number; 0 for what is none.
+  /// Of a number; 0 for other types.
   static std::size_t size_of(dds_stream_typecode type) {
     switch (type) {
       case DDS_OP_VAL_BLN:

@@ -114,7 +114,7 @@ class Participant::Domain {
 
 namespace {
 
-/// \throws Failure(InvalidInput) for those with which nobody can join.
+/// \throws Failure(InvalidInput) for credentials that cannot join.
 std::optional<security::Credentials> credentials_of(const ParticipantOptions& options) {
   if (options.security.empty())
     return std::nullopt;
@@ -130,7 +130,7 @@ std::optional<security::Credentials> credentials_of(const ParticipantOptions& op
   return credentials;
 }
 
-/// \throws Failure(InvalidInput) if nobody would ask it.
+/// \throws Failure(InvalidInput) if it would not be asked.
 std::unique_ptr<EndpointGuard> guard_of(const ParticipantOptions& options) {
   if (options.security.empty())
     return nullptr;

@@ -34,7 +34,7 @@ class NewestAnnouncements {
     const std::lock_guard lock(mutex_);
     newest_.insert_or_assign(announcement.distribution_id, Kept{announcement, ++last_number_});
   }
-  /// \return what was announced last.
+  /// \return the last announcement.
   std::optional<Announcement> forget(const Digest& distribution_id) {
     const std::lock_guard lock(mutex_);
     const auto forgotten = newest_.extract(distribution_id);
@@ -132,10 +132,10 @@ class Publisher<Publication>::Implementation {
     return caller && (!may_hear_ || may_hear_(*caller, value));
   }
 
-  /// Tells a client what is newest of a distribution. Others may do so at the same time: who has
-  /// written looks whether that is still so, and writes again if not. So what is out of date is
-  /// never written last, and no lock is held across a call of Cyclone DDS. \param announcement  of
-  /// the distribution; what is withdrawn, if it is.
+  /// Brings a client up to date on a distribution. Other threads may do so at the same time: each
+  /// checks after its write whether that is still the newest, and writes again if not. So no
+  /// outdated value is written last, and no lock is held across a call of Cyclone DDS.
+  /// \param announcement  of the distribution; the withdrawn one, if it is.
   template <typename Kept>
   void bring_up_to_date(const std::string& name, const Entity& writer, Kept announcement) const {
     const Digest id = announcement.distribution_id;
@@ -164,7 +164,7 @@ class Publisher<Publication>::Implementation {
   std::optional<Entity> topic_;
   std::optional<Entity> writer_;          // without security
   std::optional<ClientWriters> clients_;  // with security
-  NewestAnnouncements newest_;            // what a client that comes late is told; with security
+  NewestAnnouncements newest_;            // for late clients; with security
 };
 
 template <typename Publication>
@@ -187,7 +187,7 @@ void Publisher<Publication>::withdraw(const Digest& distribution_id)
     const noexcept requires std::same_as<Publication, codec::AnnouncementPublication> {
   try {
     implementation_->withdraw(distribution_id);
-  } catch (const std::exception&) {  // out of memory: who comes late hears of it once more
+  } catch (const std::exception&) {  // out of memory: late clients hear of it once more
   }
 }
 

@@ -95,7 +95,7 @@ class Replier<Conversation>::Implementation {
 
   using Queue = FairQueue<Waiting>;
 
-  /// \return when the next one may be served of those that wait.
+  /// \return when the next waiting request may be served.
   typename Queue::Time serve_some() {
     constexpr int kInTurn = 4;  // then the other conversations
     if (waiting_.holds_some())
@@ -112,8 +112,8 @@ class Replier<Conversation>::Implementation {
     return waiting_.next();
   }
 
-  /// All that the reader holds, before each one that is served: it keeps the newest, whose ever
-  /// they are, so that of many of one client the others' would be pushed out.
+  /// All requests of the reader, before each one that is served: it keeps the newest of all
+  /// clients, so that many of one client would push out the others'.
   void take_requests() {
     constexpr int kMaxLoans = 2 * kHeldShortRequests / static_cast<int>(Loan::kMaxSamples);
     for (int i = 0; i < kMaxLoans; ++i) {
@@ -131,7 +131,7 @@ class Replier<Conversation>::Implementation {
     Sender unknown{.client = {}, .hearing = Hearing::Awaited};
     Sender* sender = line_->sender(writer);
     if (!sender && has_security_)
-      return;  // gone, and nobody can say any more who it was
+      return;  // gone, and its name is lost
     if (!sender) {
       unknown.client = head.client_id.text();
       sender = &unknown;
@@ -139,8 +139,8 @@ class Replier<Conversation>::Implementation {
     const auto opening = waiting_.opening_for(sender->client, head);
     if (!opening)
       return waiting_.release(sender->client, head);
-    // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
-    // may not ask at all is told so in its turn, and what he sends is not decoded.
+    // A request sent again costs its client nothing, and a refused one pushes no other out. A
+    // client that may not ask at all is refused in its turn, and its request is not decoded.
     const ReplyChannel::Place place{sender->name, head};
     if (line_->is_being_answered(place))
       return;
@@ -153,8 +153,8 @@ class Replier<Conversation>::Implementation {
                   held_until);
   }
 
-  /// A reply to whom no reader is known of would be lost. Whose reader is no part of its own
-  /// participant is held up once, not with each request.
+  /// A reply to a client without a known reader would be lost. A client whose reader is no part of
+  /// its own participant is held up once, not with each request.
   typename Queue::Time hold(Sender& sender, const codec::Head& head) const {
     if (sender.hearing != Hearing::Unknown)
       return Queue::kNow;
@@ -191,7 +191,7 @@ class Replier<Conversation>::Implementation {
     return true;
   }
 
-  /// What decoding throws (no memory) is that request's own.
+  /// An exception of decoding (no memory) concerns that request alone.
   static Decoded decoded(const WireRequest& wire) {
     try {
       return codec::decode(wire);

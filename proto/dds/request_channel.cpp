@@ -89,7 +89,7 @@ RequestChannel::Outcome RequestChannel::call(const codec::Head& head, const void
 RequestChannel::Outcome RequestChannel::wait_for_reply(const Call& call, const void* request,
                                                        Clock::time_point deadline) {
   int sends = 0;
-  bool has_waited = false;  // what is there before that ends the first wait
+  bool has_waited = false;  // anything there before that ends the first wait
   std::uint64_t servers_seen = servers_seen_;
   Clock::time_point next_send = Clock::now();
   while (true) {
@@ -167,8 +167,8 @@ bool RequestChannel::notice_servers() {
   if (status.current_count_change != 0 || status.total_count_change != 0) {
     if (status.total_count_change > 0) {
       ++servers_seen_;
-      // Sends a heartbeat. Cyclone DDS drops what comes from a writer of which it had none, and
-      // asks for it again, in vain if that comes before the write that it is about has returned.
+      // Sends a heartbeat. Cyclone DDS drops samples of a writer of which it had none, and asks for
+      // them again, in vain if that comes before their write has returned.
       dds_assert_liveliness(writer_.get());
     }
     wake_all();  // reading the status took it from the other callers

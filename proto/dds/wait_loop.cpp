@@ -70,7 +70,7 @@ class WaitLoop::Implementation {
   }
 
  private:
-  /// Notes who has samples, and whose guard was set.
+  /// Notes which readers have samples, and which guards were set.
   void wait(dds_duration_t time) {
     std::array<dds_attach_t, 16> ready{};
     const std::int32_t count =

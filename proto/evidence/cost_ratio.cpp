@@ -52,7 +52,7 @@ std::vector<LogCost> log_costs(std::span<const JudgedAttempt> recent) {
   return costs;
 }
 
-/// Brings what lies far from all others to the edge. \return the median.
+/// Brings costs far from all others to the edge. \return the median.
 double bound(std::vector<LogCost>& costs) {
   std::vector<double> values;
   for (const LogCost& cost : costs)

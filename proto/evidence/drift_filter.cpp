@@ -12,7 +12,7 @@ constexpr double kPriorFreedom = 4;        // attempts that it is worth
 constexpr double kLevelVariance = 4;       // in units of the spread
 constexpr double kMaxLevelVariance = 100;  // after a long gap
 constexpr double kMaxRatioVariance = 4;
-constexpr double kBound = 3;  // standard deviations that one attempt may lie from what was foretold
+constexpr double kBound = 3;  // standard deviations of one attempt from the forecast, at most
 
 double upper_tail(double deviates) { return std::erfc(deviates / std::numbers::sqrt2) / 2; }
 

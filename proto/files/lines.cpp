@@ -48,7 +48,7 @@ void for_each_line(std::istream& stream, const std::string& name,
     ++number;
     try {
       return read_line(*stream.rdbuf(), max_bytes);
-    } catch (const std::exception& error) {  // of the stream's buffer: what the system said
+    } catch (const std::exception& error) {  // of the stream's buffer: the system's message
       throw Failure(ErrorCode::Storage, "cannot read '" + name + "' at line " +
                                             std::to_string(number) + ": " + error.what());
     }

@@ -11,7 +11,7 @@
 namespace kinship::json {
 namespace {
 
-/// What identifies a distribution and what it was made of.
+/// A distribution's identity and origin.
 constexpr std::tuple kProvenance{
     Field{"id", &Distribution::id},
     Field{"revision", &Distribution::revision},

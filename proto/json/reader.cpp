@@ -26,7 +26,7 @@ std::string to_text(double value) {
   return {digits.data(), end.ptr};
 }
 
-/// Linear scan that bounds what the parser may allocate and how deep it may nest.
+/// Linear scan that bounds the parser's memory and nesting.
 void check_structure(std::string_view text, const std::string& what) {
   if (text.size() > kMaxDocumentBytes)
     throw_too_large(what, text.size(), kMaxDocumentBytes, "bytes");

@@ -75,7 +75,7 @@ Mesh read_mesh(const Reader& file, const std::optional<Reader>& scale) {
   return mesh;
 }
 
-/// Calls read(element) for each element of an optional list and collects what it returns.
+/// Calls read(element) for each element of an optional list and collects the results.
 template <typename Read>
 void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read read) {
   const auto objects = reader.find(key);

@@ -5,7 +5,7 @@
 namespace kinship::manual::script {
 namespace {
 
-/// What puts candidates for a value into COMPREPLY.
+/// The command that puts candidates for a value into COMPREPLY.
 std::string bash_action(const ValueUsage& value) {
   switch (value.kind) {
     case ValueKind::Words: {
@@ -60,7 +60,7 @@ _)sh" << name
       << "_nothing() { COMPREPLY=(); }\n";
 }
 
-/// `case` of what the value of each option is completed with.
+/// `case` with the completion of each option's value.
 void write_values(const CommandUsage& program, const std::string& name, std::ostream& out) {
   out << "  case \"$path $previous\" in\n";
   for (const CommandUsage* const command : with_all_below(program))

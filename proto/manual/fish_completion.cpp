@@ -17,7 +17,7 @@ std::string with_spaces(const std::string& patterns) {
   return spaced;
 }
 
-/// What `complete` is to offer for a value.
+/// The candidates that `complete` is to offer for a value.
 std::string fish_action(const ValueUsage& value, const std::string& name) {
   switch (value.kind) {
     case ValueKind::Words: {

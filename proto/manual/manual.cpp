@@ -23,7 +23,7 @@ std::string others_than(const std::string& program) {
   return list;
 }
 
-/// What is printed instead of running, as CLI11 does it for --version.
+/// Prints a text instead of running, as CLI11 does it for --version.
 [[noreturn]] void print(std::string text) {
   text.erase(text.find_last_not_of('\n') + 1);
   throw CLI::CallForVersion(std::move(text), 0);

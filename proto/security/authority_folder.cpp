@@ -66,7 +66,7 @@ std::vector<Certificate> AuthorityFolder::trusted() const {
 }
 
 Key AuthorityFolder::key_of(x509_st& certificate) const {
-  // By what they are for, not by their names: so a change that was interrupted is no trouble.
+  // By their use, not by their names: so an interrupted change is no trouble.
   const std::array<std::filesystem::path, 4> files = {key_, key_file(), previous_key_file(),
                                                       next_key_file()};
   for (const std::filesystem::path& file : files) {
@@ -111,21 +111,21 @@ void AuthorityFolder::add_second(std::chrono::sys_seconds now) {
   const Authority previous = authority(0);
   const Authority next = make_new_authority(now);
   write_new_file(next_key_file(), to_pem(*next.key), Readers::Owner);
-  // Never the other way round: with the previous key vouched for, who has it could sign anybody any
-  // permissions long after it was retired.
+  // Never the other way round: with the previous key vouched for, its holder could sign any client
+  // any permissions long after it was retired.
   replace_file(crossed_file(), to_pem(*cross(next, previous, now)), Readers::Everybody);
   replace_file(list_file(), to_pem(*next.certificate) + to_pem(*previous.certificate),
                Readers::Everybody);
   name_keys();
 }
 
-/// Gives keys the names of what they are for, also after a change that was interrupted.
+/// Names keys by their use, also after an interrupted change.
 void AuthorityFolder::name_keys() const {
   if (!std::filesystem::exists(next_key_file()))
     return;
   const auto certificates = trusted();
   if (!is_key_of(next_key_file(), *certificates.front())) {
-    std::filesystem::remove(next_key_file());  // nobody's: it never came into the list
+    std::filesystem::remove(next_key_file());  // unused: it never came into the list
     return;
   }
   if (std::filesystem::exists(key_file())) {

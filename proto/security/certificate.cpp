@@ -164,7 +164,7 @@ std::vector<Certificate> certificates_from_pem(std::string_view pem, std::string
 
 Key key_from_pem(std::string_view pem, std::string_view what) {
   const Bio bio = bio_of(pem);
-  // Nobody is asked for a password: an empty one is offered.
+  // No password is asked for: an empty one is offered.
   const auto no_password = [](char*, int, int, void*) { return 0; };
   Key key(PEM_read_bio_PrivateKey(bio.get(), nullptr, no_password, nullptr));
   ERR_clear_error();

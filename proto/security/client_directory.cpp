@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::seconds kFreshFor{1};
 constexpr std::size_t kMaxEntries = 100'000;  // of clients that were removed, too
 
-/// What tells one content of a file from another; all zeros: there is none.
+/// Tells one content of a file from another; all zeros: there is none.
 using FileMark = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
 
 FileMark mark_of(const std::filesystem::path& file) {
@@ -62,8 +62,8 @@ Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
   if (found != entries_.end() && now - found->second->checked < kFreshFor)
     return found->second->record;
   const std::filesystem::path file = folder_ / (name + ".toml");
-  const FileMark mark = mark_of(file);  // before it is read: what changes meanwhile is read again
-  if (mark == FileMark()) {             // not kept: whoever has a certificate can ask for any name
+  const FileMark mark = mark_of(file);  // before it is read: changes meanwhile are read again
+  if (mark == FileMark()) {             // not kept: a certified client can ask for any name
     if (found != entries_.end())
       entries_.erase(found);
     return read(file, name);

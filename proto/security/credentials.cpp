@@ -42,7 +42,7 @@ void require_key(const std::filesystem::path& key) {
                       " is not there); they are made by: kinshipd secure add NAME --out FOLDER");
 }
 
-/// Others who can read a key can be whom it is for.
+/// Other users that can read a key can act as its owner.
 void require_private(const std::filesystem::path& key) {
   constexpr mode_t kOthers = 077;
   struct stat status {};

@@ -20,7 +20,7 @@ constexpr mode_t kOwnerOnlyFolder = 0700;
   throw Failure(code, file.string() + ": " + what + ": " + std::generic_category().message(error));
 }
 
-/// Does it, and tells what fails as every function of this file does.
+/// Runs it, and reports its failure as every function of this file does.
 template <typename Use>
 auto told(Use use) {
   try {

@@ -66,7 +66,7 @@ std::int64_t to_ms(std::chrono::sys_seconds time) {
   return std::chrono::milliseconds(time.time_since_epoch()).count();
 }
 
-/// Sets what follows from the time until which credentials are valid.
+/// Sets the members that follow from the time until which credentials are valid.
 void set_expiry(CredentialList::Row& row, std::chrono::sys_seconds expires,
                 std::chrono::sys_seconds now) {
   row.expires_ms = to_ms(expires);
@@ -114,7 +114,7 @@ CredentialList::Row server_row(const std::filesystem::path& folder, std::chrono:
   return row;
 }
 
-/// Names of clients, neither revoked nor expired, of whom `property` holds.
+/// Names of clients, neither revoked nor expired, that `property` holds for.
 std::vector<std::string> names_of(const CredentialList& list, bool CredentialList::Row::*property) {
   std::vector<std::string> names;
   for (const CredentialList::Row& row : list.credentials)
@@ -124,7 +124,7 @@ std::vector<std::string> names_of(const CredentialList& list, bool CredentialLis
   return names;
 }
 
-/// Files that root writes for somebody else's server could not be read by it.
+/// Files that root writes for another user's server could not be read by it.
 void require_owner(const std::filesystem::path& folder) {
   struct stat status {};
   if (stat(folder.c_str(), &status) == 0 && status.st_uid != geteuid())
@@ -226,7 +226,7 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
       client.days, out, now);
   try {
     write_new_file(record_file(client.name), record_text(record), Readers::Everybody);
-  } catch (...) {  // e.g. added twice at the same time: these credentials are nobody's
+  } catch (...) {  // e.g. added twice at the same time: no client has these credentials
     std::error_code ignored;
     std::filesystem::remove_all(out, ignored);
     throw;

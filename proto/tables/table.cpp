@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kGap = 2;          // between columns
 constexpr std::size_t kLeastCut = 6;     // of a column that is cut
-constexpr std::string_view kCut = "..";  // for what was cut
+constexpr std::string_view kCut = "..";  // for a part that was cut
 
 bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789.+-eE%") == std::string::npos &&

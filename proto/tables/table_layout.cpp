@@ -8,7 +8,7 @@
 namespace kinship::tables {
 namespace {
 
-/// Where a stream keeps its layout: width + 1, so that 0 is a stream of which nobody said anything.
+/// Where a stream keeps its layout: width + 1, so that 0 is a stream without one.
 int place_of_width() {
   static const int place = std::ios_base::xalloc();
   return place;

@@ -18,8 +18,7 @@ Mixture::Mixture(Eigen::VectorXd weights, Eigen::MatrixXd means,
   if (!weights_.allFinite() || !means_.allFinite() || weights_.minCoeff() < 0 ||
       std::abs(weights_.sum() - 1) > kSumTolerance)
     throw std::invalid_argument("Mixture: weights must be >= 0 with sum 1, means finite");
-  constexpr double kRounding =
-      1e-12;  // below it left alone: what was written reads back bit by bit
+  constexpr double kRounding = 1e-12;  // below it left alone: a written value reads back bit by bit
   if (std::abs(weights_.sum() - 1) > kRounding)
     weights_ /= weights_.sum();
   constexpr double kSymmetryTolerance = 1e-9;

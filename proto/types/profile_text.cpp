@@ -71,8 +71,8 @@ std::string fault_of(const Field<Of, T>& option) {
   }
 }
 
-/// Changes what "name=value" says.
-/// \return what is wrong with it.
+/// Makes the change "name=value".
+/// \return its fault.
 std::optional<std::string> change(Profile& profile, std::string_view word) {
   const std::size_t sign = word.find('=');
   const std::string_view name = word.substr(0, sign);

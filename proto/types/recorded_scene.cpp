@@ -91,7 +91,7 @@ std::int64_t rounded(double number) {
   return std::llround(number * kPerUnit);
 }
 
-/// The same of what may be infinite, or too large to be counted in such units.
+/// The same for a bound that may be infinite, or too large to be counted in such units.
 std::int64_t rounded_bound(double bound) {
   constexpr double kLargest = 9e9;
   if (std::abs(bound) <= kLargest)

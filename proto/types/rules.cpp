@@ -10,7 +10,7 @@
 namespace kinship {
 
 void Rules::breaks(ErrorCode code, const std::string& message) {
-  if (!broken_)  // it may quote what came from outside
+  if (!broken_)  // it may quote text from outside
     broken_ = Error{code, cut_text(message, kMaxMessageBytes)};
 }
 

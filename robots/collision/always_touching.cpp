@@ -16,7 +16,7 @@ struct NamedPairs {
   int missed = 0;
 };
 
-/// Of `named` those that always touch. Which never can any more is not looked at further: most
+/// The ones of `named` that always touch. One that no longer can is not looked at further: most
 /// pairs miss the first samples.
 template <typename Name>
 std::set<Name> touching_everywhere(const kinematics::Chain& chain, const std::vector<Body>& bodies,

@@ -11,7 +11,7 @@ namespace kinship::collision {
 namespace {
 
 void require_finite(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-  const auto is_finite = [](const auto& values) {  // of what is not, no number
+  const auto is_finite = [](const auto& values) {  // else NaN
     return (values - values).sum() == 0;
   };
   const bool in_one_piece = qs.outerStride() == qs.rows();

@@ -44,7 +44,7 @@ Eigen::Vector3d farthest(const Core& core, const Eigen::Vector3d& direction) {
   return point;
 }
 
-/// Points of the difference of two cores, at most four, that span what is nearest to the origin.
+/// Points of the difference of two cores, at most four, that span its part nearest to the origin.
 struct Simplex {
   std::array<Eigen::Vector3d, 4> points;
   int count = 0;

@@ -18,7 +18,7 @@ constexpr double kMotionRounding_m = 1e-9;
 // into so many, so often, where they tell nothing.
 constexpr double kFirstGrowth_m = 0.04;
 constexpr int kCuts = 4, kLevels = 3;
-constexpr double kFarthest_m = 1e4;  // on one edge: what is farther is no motion of a robot
+constexpr double kFarthest_m = 1e4;  // on one edge: no robot moves farther
 
 }  // namespace
 
@@ -101,7 +101,7 @@ const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen
   pieces_.clear();
   open_.clear();
   ask_lanes();
-  // In the order in which they come: the longest pieces first, which find early what is in the way.
+  // In the order in which they come: the longest pieces first, which find obstacles early.
   for (std::size_t next = 0; next < pieces_.size(); ++next)
     if (!proofs_[pieces_[next].edge].refutation)
       look_at(pieces_[next]);
@@ -141,7 +141,7 @@ void EdgeProver::ask_parts(std::span<const Part> parts, bool is_last) {
     const auto column = static_cast<Eigen::Index>(part.edge);
     middles_.col(i) = from_.col(column) + (part.from + part.to) / 2 * change_.col(column);
     ++proofs_[part.edge].configurations;
-    // One growth for all lanes: what any of the parts' edges moves in half of its part.
+    // One growth for all lanes: the largest motion of any part's edge in half of its part.
     const Eigen::MatrixXd& motion_m = edge_motions_m_[part.edge];
     const double half = (part.to - part.from) / 2;
     if (i == 0)
@@ -299,7 +299,7 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
   Place &from = places_[piece.from], &to = places_[piece.to];
   const double clearance = clearance_m(pairs_[pair]);
   const auto are_apart = [&] { return motion_m < from.distances[pair].m + to.distances[pair].m; };
-  for (Place* place : {&from, &to})  // what may be too near is refused, however little it moves
+  for (Place* place : {&from, &to})  // refused if it may be too near, however little it moves
     if (!place->distances[pair].is_close && place->distances[pair].m <= clearance &&
         !measure(*place, pair, std::numeric_limits<double>::infinity()))
       return false;

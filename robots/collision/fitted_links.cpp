@@ -131,7 +131,7 @@ Result<FittedRobot> fit_robot(const kinematics::Chain& chain, const geometry::Ro
     return fitted;
   const geometry::RobotShapes solids = geometry::with_solids(shapes, fitted.mesh_solids, chain);
   fitted.agreement = choose_filtered_pairs(chain, shapes, solids);
-  // What every checker knows of itself, or the description says, need not be said again.
+  // Pairs that every checker knows by itself, or the description has, need not be added again.
   const LinkPairs known = unchecked_links(link_bodies(chain, solids), chain, solids);
   const auto name = [&](int link) { return chain.links()[static_cast<std::size_t>(link)].name; };
   for (const auto& pair : fitted.agreement.unfiltered)

@@ -87,7 +87,7 @@ LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                 const Eigen::Ref<const Eigen::MatrixXd>& motion_m,
                                 const LaneRoom& room, bool is_ahead) {
   constexpr double kOfFloats = 1 + 1e-6;
-  const auto moves = [&](int joint, std::size_t body) {  // as what the joint moves sees it
+  const auto moves = [&](int joint, std::size_t body) {  // as the joint's bodies see it
     return motion_m(joint + 1, static_cast<Eigen::Index>(index_of_body_[body]));
   };
   const auto grown = [](double by_m) { return static_cast<float>(by_m * kOfFloats); };
@@ -140,7 +140,7 @@ std::uint32_t LaneWorld::write_question(const Eigen::Ref<const Eigen::MatrixXd>&
   std::uint32_t beyond = 0;
   for (int lane = 0; lane < count; ++lane)
     beyond |= write_lane(qs.data() + lane * qs.outerStride(), lane) ? 0 : 1U << lane;
-  // Idle lanes of the narrower sets; what stands in others is what was asked before.
+  // Idle lanes of the narrower sets; the other idle lanes keep the last question.
   for (int lane = count; lane % (kLanes / 2) != 0; ++lane)
     write_lane(qs.data() + (count - 1) * qs.outerStride(), lane);
   question_.count = count;
@@ -156,7 +156,7 @@ LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const 
   const float* const growth = (is_grown ? growth_ : ungrown_).data();
   question_.growth = growth;
   question_.other_growth = growth + bodies_.size();
-  question_.is_ahead = is_ahead && beyond == 0;  // else an unknown one might hide what comes behind
+  question_.is_ahead = is_ahead && beyond == 0;  // else an unknown one might hide later ones
   const LaneScene scene{static_cast<int>(joints_.size()),
                         static_cast<int>(bodies_.size()),
                         slack_,

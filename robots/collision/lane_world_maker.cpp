@@ -9,7 +9,7 @@
 #include "robots/collision/lane_world.hpp"
 #include "robots/kinematics/axis_turns.hpp"
 
-/// How a LaneWorld is made of a robot and what stands around it.
+/// Makes a LaneWorld of a robot and its surroundings.
 namespace kinship::collision {
 namespace {
 
@@ -23,7 +23,7 @@ void write(const Eigen::Matrix3d& matrix, float (&rows)[9]) {
     rows[i] = static_cast<float>(matrix(i / 3, i % 3));
 }
 
-/// \param T  of the shape in the frame of what moves it.
+/// \param T  of the shape in the frame that moves it.
 LaneForm lane_form(const Shape& shape, const Eigen::Isometry3d& T) {
   LaneForm form{};
   write(T.linear(), form.axes);
@@ -95,7 +95,7 @@ class LaneWorldMaker {
   }
 
   void add_joints() {
-    constexpr double kFarthest = 1e6;  // rad: what is left of it after full turns is still exact
+    constexpr double kFarthest = 1e6;  // rad: its rest after full turns is still exact
     LaneWorld::Writing& writing = world_.writing_;
     std::ranges::fill(writing.lower, -kFarthest);
     std::ranges::fill(writing.upper, kFarthest);
@@ -119,8 +119,8 @@ class LaneWorldMaker {
     const Eigen::Isometry3d T_joint_turned = turned_to(joint.axis);
     Eigen::Isometry3d T = (lane.before < 0 ? T_scene_base_ : T_turned_moving_[before]) *
                           joint.T_previous_joint * T_joint_turned;
-    // What a rotation turns about the z axes before and after it is added to the joints' angles; of
-    // a mimic joint not, since the frame before it is that of others too.
+    // The turns of a rotation about the z axes before and after it are added to the joints' angles;
+    // of a mimic joint not, since the frame before it is shared with others.
     lane.is_tilt = index > 0 && index < chain_.dof() && !slides && !world_.joints_.back().slides;
     if (lane.is_tilt)
       keep_tilt(j, T);
@@ -141,7 +141,7 @@ class LaneWorldMaker {
     reaches_m_.push_back(reach_m);
   }
 
-  /// Leaves of a joint's pose in the frame before it what turns about the x axis; the rest is moved
+  /// Leaves of a joint's pose in the frame before it the turn about the x axis; the rest is moved
   /// to both joints' angles.
   void keep_tilt(std::size_t joint, Eigen::Isometry3d& T) {
     const kinematics::AxisTurns turns = kinematics::axis_turns(T.linear());
@@ -177,7 +177,7 @@ class LaneWorldMaker {
     });
   }
 
-  /// What rounding may add up to: of floats, some an operation, joint after joint.
+  /// The bound of rounding errors: of floats, some an operation, joint after joint.
   void find_slack() {
     constexpr double kOfAJoint = 5e-7, kAtLeast_m = 1e-6;
     double extent_m = first_joint_.norm();
@@ -229,7 +229,7 @@ class LaneWorldMaker {
     return static_cast<int>(first);
   }
 
-  /// Those that move and are in a pair, the last joints' first: they collide most.
+  /// Bodies that move and are in a pair, the last joints' first: they collide most.
   void add_moving() {
     std::map<std::pair<int, std::size_t>, std::size_t> order;  // joint from the end, body
     for (const auto& [first, second] : pairs_)

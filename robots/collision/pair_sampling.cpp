@@ -11,8 +11,8 @@
 namespace kinship::collision {
 namespace {
 
-// So many configurations tell which pairs touch often: those are asked one by one from then on, for
-// lanes that know that something touches do not know what else does.
+// So many configurations tell which pairs touch often: these are asked one by one from then on, for
+// lanes that find one contact do not find the others.
 constexpr std::uint64_t kFirst = 128;
 constexpr double kOften = 0.02;
 
@@ -145,7 +145,7 @@ class Sampling {
     return bodies;
   }
 
-  /// What the lanes leave in doubt FCL answers.
+  /// FCL answers where the lanes leave a doubt.
   void ask_together(LaneWorld& lanes, const Eigen::MatrixXd& qs) {
     const std::uint32_t maybe = seldom_.empty() ? 0 : lanes.ask(qs).maybe;
     for (Eigen::Index lane = 0; lane < qs.cols(); ++lane) {

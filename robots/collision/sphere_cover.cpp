@@ -15,7 +15,7 @@ constexpr double kRounding_m = 1e-9;  // of rounding
 std::array<int, 3> cells_of(const Eigen::Vector3d& size, int most) {
   std::array<int, 3> cells = {1, 1, 1};
   for (;;) {
-    // The longest cell is halved first: it is what makes the spheres big.
+    // The longest cell is halved first: it makes the spheres big.
     Eigen::Index axis = 0;
     Eigen::Vector3d(size.x() / cells[0], size.y() / cells[1], size.z() / cells[2]).maxCoeff(&axis);
     std::array<int, 3> more = cells;
@@ -60,7 +60,7 @@ std::vector<CoverSphere> cover_cylinder(double radius_m, double length_m, int mo
   return spheres;
 }
 
-/// Spheres from one end of the axis to the other, so close that they hold what lies between.
+/// Spheres from one end of the axis to the other, so close that they hold the space in between.
 std::vector<CoverSphere> cover_capsule(double radius_m, double length_m, int most) {
   if (most == 1)
     return {{Eigen::Vector3d::Zero(), length_m / 2 + radius_m + kRounding_m, radius_m}};

@@ -60,7 +60,7 @@ Candidate fit_capsule(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   turned.colwise() -= center;
   const Eigen::ArrayXd squared_m2 = turned.topRows<2>().colwise().squaredNorm();
   const double radius_m = std::max(std::sqrt(squared_m2.maxCoeff()), kMinFitted_m / 2) + kSlack_m;
-  // A point at height z is inside if the end of the axis reaches z less what the sphere covers.
+  // A point at height z is inside if the end of the axis reaches z less covered_m.
   const Eigen::ArrayXd covered_m = (radius_m * radius_m - squared_m2).sqrt();
   const Eigen::ArrayXd z = turned.row(2).transpose();
   double top = (z - covered_m).maxCoeff(), bottom = (z + covered_m).minCoeff();

@@ -15,8 +15,8 @@ namespace {
 // A link that moves and sticks out farther than the whole chain reaches is drawn in another unit: a
 // mesh in mm that is read as m is a thousand times too large. Three, because a tool may be long.
 constexpr double kMaxMovingExtent = 3;
-// What stands still may be a table, a cell's floor or its walls, so it gets more room; a base of a
-// tenth of the reach in mm has a hundred times the reach.
+// A link that stands still may be a table, a cell's floor or its walls, so it gets more room; a
+// base of a tenth of the reach in mm has a hundred times the reach.
 constexpr double kMaxStandingExtent = 50;
 // The other way round: a link of an arm that reaches 1 m is not smaller than 1 mm.
 constexpr double kMinExtent = 1e-3;
@@ -107,7 +107,7 @@ std::vector<std::string> visual_only(const kinematics::Chain& chain, const Robot
   return names;
 }
 
-/// What is wrong with a link's size; empty if it may be meant.
+/// The doubt about a link's size; empty if it may be meant.
 std::string size_doubt(const LinkExtent& extent, double reach_m) {
   const double length_m = extent.size_m.maxCoeff();
   const double scale_m = std::max(reach_m, kShortestReach_m);
@@ -124,7 +124,7 @@ std::string size_doubt(const LinkExtent& extent, double reach_m) {
   return "";
 }
 
-/// What of a scene or of a hand is looked at.
+/// An object of a scene or of a hand, to be looked at.
 struct Placed {
   std::string name;
   Extents box;                   // in its own frame

@@ -92,7 +92,7 @@ bool has_geometry(const Elements& elements) {
   });
 }
 
-/// Notes whether a link is only drawn, or has what is drawn for its solids.
+/// Notes whether a link is only drawn, or has its visuals for its solids.
 void note_visuals(const urdf::Link& link, int index, LinksRead& read) {
   if (!has_geometry(link.collision_array) && has_geometry(link.visual_array))
     read.visual_only.push_back(index);

@@ -15,7 +15,7 @@ namespace {
 constexpr Eigen::Index kTrialTriangles = 300;  // of a piece, by which cuts are compared
 constexpr std::array<double, 5> kCuts = {0.2, 0.35, 0.5, 0.65, 0.8};  // of a solid's extent
 
-/// Triangles: what of them lies on one side of the plane normal . p = offset is triangles again.
+/// Triangles, cut by the plane normal . p = offset into triangles on either side.
 class Pieces {
  public:
   Pieces(Eigen::Vector3d normal, double offset_m) : normal_(std::move(normal)), offset_(offset_m) {}
@@ -86,7 +86,7 @@ double quick_volume_m3(const Eigen::Matrix3Xd& corners) {
   return volume_m3(fit_quickly(corners).shape);
 }
 
-/// Those of a solid and of the mesh, if they differ.
+/// The axes of a solid and of the mesh, if they differ.
 std::vector<Eigen::Matrix3d> axes_of(const FittedShape& shape) {
   std::vector<Eigen::Matrix3d> axes = {shape.T_points_shape.linear()};
   constexpr double kAlike = 1e-6;

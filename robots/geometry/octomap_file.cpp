@@ -14,7 +14,7 @@ namespace kinship::geometry {
 namespace {
 
 constexpr int kLevels = 16;
-constexpr double kInset = 1e-6;  // of an edge: what ends at a cube's face does not touch the next
+constexpr double kInset = 1e-6;  // of an edge: a body at a cube's face does not touch the next cube
 constexpr std::size_t kMaxCubes = 1'000'000;  // eight corners each
 constexpr double kMinEdge_m = 1e-4, kMaxEdge_m = 100;
 

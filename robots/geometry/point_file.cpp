@@ -27,7 +27,7 @@ std::vector<std::string> words_of(std::string_view line) {
   return words;
 }
 
-/// Collects points, but not those that a sensor did not see.
+/// Collects points, without ones that a sensor did not see.
 class Points {
  public:
   void add(const Eigen::Vector3d& point) {
@@ -75,7 +75,7 @@ Points read_lines(std::string_view text, const std::array<std::size_t, 3>& colum
   return points;
 }
 
-/// What the head of a PCD file says of its points.
+/// The header of a PCD file, as far as it is about points.
 /// Source: the Point Cloud Library, The PCD file format (version 0.7).
 struct PcdHeader {
   std::array<std::size_t, 3> columns{};  // of x, y and z, counted in numbers
@@ -130,7 +130,7 @@ void place_fields(const Members& members, PcdHeader& header) {
     refuse("header: FIELDS must name x, y and z once each");
 }
 
-/// \param text  what follows the header is left.
+/// \param text  the part behind the header is left.
 PcdHeader read_header(std::string_view& text) {
   constexpr std::size_t kMaxHeaderLines = 100, kMaxHeaderLine = 4096;
   PcdHeader header;

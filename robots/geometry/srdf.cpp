@@ -22,12 +22,12 @@ Result<std::string> read_link(const tinyxml2::XMLElement& element, const char* a
   return std::string(name);
 }
 
-/// The links of a robot, and those that a document names beside them.
+/// The links of a robot, and others that a document names beside them.
 class KnownLinks {
  public:
   explicit KnownLinks(const kinematics::Chain& chain) : chain_(chain) {}
 
-  /// Whether the robot has both; notes those that it does not have.
+  /// Whether the robot has both; notes missing ones.
   bool have(const std::string& first, const std::string& second, int line) {
     const bool has_first = has(first, line);
     return (first == second || has(second, line)) && has_first;

@@ -95,7 +95,7 @@ class StlText {
       word.remove_prefix(1);
     float value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    // What is too small for a float is nothing; what is too large is refused.
+    // A number too small for a float is zero; one too large is refused.
     if (error == std::errc::invalid_argument || end != word.data() + word.size() ||
         (error == std::errc::result_out_of_range && !is_tiny(word)))
       refuse(word.find(',') == std::string_view::npos

@@ -73,7 +73,7 @@ TightShape round_along(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
     const double length_m = std::max(2 * z.abs().maxCoeff(), kMinFitted_m) + 2 * kTightSlack_m;
     return sized(CylinderShape{radius_m, length_m}, placed(axes, center));
   }
-  // A point at height z is inside if the end of the axis reaches z less what the sphere covers.
+  // A point at height z is inside if the end of the axis reaches z less covered_m.
   const Eigen::ArrayXd covered_m = (radius_m * radius_m - squared_m2).max(0.0).sqrt();
   double top = (z - covered_m).maxCoeff(), bottom = (z + covered_m).minCoeff();
   if (top < bottom)
@@ -149,8 +149,7 @@ void turn(const Eigen::Matrix3Xd& points, Choice& choice) {
   }
 }
 
-/// The points farthest in each of many directions: what decides how large a solid has to be,
-/// nearly.
+/// The points farthest in each of many directions: they nearly decide how large a solid has to be.
 Eigen::Matrix3Xd extreme_points(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int directions) {
   if (points.cols() <= directions)
     return points;

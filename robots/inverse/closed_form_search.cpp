@@ -25,7 +25,7 @@ constexpr double kBetter = 1.15;  // less than that is chance, and the first cho
 
 using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
 
-/// Random configurations within the limits and what poses they reach.
+/// Random configurations within the limits and the poses that they reach.
 struct Samples {
   std::vector<Configuration> configurations;
   std::vector<Eigen::Isometry3d> poses;

@@ -16,7 +16,7 @@ constexpr double kDampingShare = 0.05;  // of the squared error
 constexpr double kSmallestDamping = 1e-7;
 constexpr double kLargestStep = 1.0;   // joint units per iteration
 constexpr double kSteeringGain = 0.5;  // share of the way to mid-range per iteration
-constexpr double kDone = 1e-20;        // squared error: far below what verification asks for
+constexpr double kDone = 1e-20;        // squared error: far below the verification's
 
 /// 2 sin(angle / 2) times the axis of a rotation.
 Eigen::Vector3d rotation_error(const Eigen::Matrix3d& R) {
@@ -170,7 +170,7 @@ double Descent::run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int
     TaskError wanted = error;
     for (Eigen::Index j = 0; j < q.size(); ++j) {
       system.noalias() += jacobian.col(j) * jacobian.col(j).transpose();
-      wanted -= pull[j] * jacobian.col(j);  // the pull may use only what the task leaves free
+      wanted -= pull[j] * jacobian.col(j);  // the pull may use only freedom beside the task
     }
     const TaskError y = system.llt().solve(wanted);
     for (Eigen::Index j = 0; j < q.size(); ++j)

@@ -20,7 +20,7 @@ constexpr std::uint64_t kPoseSeed = 0x73697872;
 
 using Invariants = Eigen::Matrix<double, LaneElimination::kInvariants, 1>;
 
-/// As the kernel orders them: what a turn about z leaves alone, then pairs of x and y.
+/// As the kernel orders them: invariants of a turn about z, then pairs of x and y.
 Invariants invariants_of(const Eigen::Isometry3d& T) {
   const Eigen::Vector3d l = T.linear().col(2), p = T.translation();
   const Eigen::Vector3d moment = p.cross(l);

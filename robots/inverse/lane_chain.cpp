@@ -39,8 +39,8 @@ AngleTurns turns_of(const Eigen::Matrix3d& R) {
   AngleTurns turns{0, std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)), 0};
   if (std::hypot(R(0, 2), R(1, 2)) > kParallelAxes)
     turns.first_z = std::atan2(R(0, 2), -R(1, 2));
-  // What is left, not what the third row says: for nearly parallel axes only the sum of the two
-  // turns about z is well known.
+  // The rest, not the third row: for nearly parallel axes only the sum of the two turns about z is
+  // well known.
   const Eigen::Matrix3d left = (Eigen::AngleAxisd(turns.first_z, Eigen::Vector3d::UnitZ()) *
                                 Eigen::AngleAxisd(turns.x, Eigen::Vector3d::UnitX()))
                                    .toRotationMatrix()

@@ -10,7 +10,7 @@ namespace {
 
 using Point = std::complex<double>;
 
-/// The product of two points: what `*` is without its care for infinities.
+/// The product of two points: `*` without its care for infinities.
 Point times(const Point& a, const Point& b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
@@ -74,7 +74,7 @@ PlanarBranches PlanarForm::solve(const PlanarTask& task, const Displacement& T) 
   }
   const Point transfer = times(turn, transfer_) + shift;
   const Point wanted = in_plane(T.p);
-  Point end = transfer;  // what the first two free joints have to bring to `goal`
+  Point end = transfer;  // to be brought to `goal` by the first two free joints
   Point goal = wanted;
   Turn left;
   if (turn_matters_) {

@@ -20,7 +20,7 @@ constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the seco
 constexpr int kPatientIterations = 40;         // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
 constexpr int kHoldingStarts = 32;
-constexpr int kCornerStarts = 512;  // the same where joints do what others do, and end at limits
+constexpr int kCornerStarts = 512;  // the same where joints move like others, and end at limits
 constexpr int kFewestStarts = 32;
 constexpr int kStartsPerSolution = 4;
 constexpr int kMaxStarts = 4000;
@@ -35,7 +35,7 @@ constexpr double kSettled = 1e-9;     // squared step of a lane that converges s
 constexpr int kFewestLocks = 8;       // random values of the locked joints
 constexpr int kIdleLocks = 24;        // in a row without a new solution
 constexpr int kPolishSteps = 8;
-constexpr double kPolished = 1e-9;    // m and rad: what singular poses exceed takes a polish
+constexpr double kPolished = 1e-9;    // m and rad: singular poses, which exceed it, take a polish
 constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
 constexpr double kNear = 0.1;         // task error worth more patience
 constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
@@ -103,7 +103,7 @@ void Search::find() {
   descend({kFirstStarts, kIterations, steer, kFirstStarts});
   if (enough())
     return;
-  if (found_.empty() && !outside_limits_) {  // what stands in the way?
+  if (found_.empty() && !outside_limits_) {  // are limits in the way?
     descend({kDiagnosticStarts, kIterations, LaneLimits::Ignore, kDiagnosticStarts, true});
     if (found_.empty() && least_squared_error_ > kNear * kNear)
       return;
@@ -120,9 +120,9 @@ void Search::find() {
   }
 }
 
-/// The branches of an exact structure are all there are, and so are those of one that is nearly
-/// there if each of them led to a solution. Where limits leave none of an exact one, a singular
-/// pose may have others than the representatives that were tried.
+/// The branches of an exact structure are all there are, and so are the branches of a nearly exact
+/// one if each of them led to a solution. Where limits leave none of an exact one, a singular pose
+/// may have others than the representatives that were tried.
 bool Search::knows_all(const ClosedForm& form) const {
   if (solver_.redundant())
     return false;
@@ -165,7 +165,7 @@ bool Search::append_eliminated(const LaneElimination& arm) {
       q[static_cast<std::size_t>(j)] = branches.q[j][b] - solver_.lanes().joints[j].offset;
       finite = finite && std::isfinite(branches.q[j][b]);
     }
-    if (finite)  // also beyond the limits: what is no branch must not count as one there
+    if (finite)  // also beyond the limits: only a branch may count as one there
       propose(q.data());
     else
       ++lost_;

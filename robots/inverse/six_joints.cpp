@@ -99,7 +99,7 @@ void solve_wrist(const SixJointTask& task, PointRule rule, SixJointBranches& bra
         !allowed(task.windows[1], turns[1], branches) ||
         !allowed(task.windows[2], turns[2], branches))
       continue;
-    // What is left for the wrist to do, seen where the first three axes stand at 0.
+    // The wrist's part of the pose, seen where the first three axes stand at 0.
     const auto seen = [&](const Eigen::Vector3d& v) {
       return turned(axes[2].direction, turns[2].back(),
                     turned(axes[1].direction, turns[1].back(),
@@ -124,7 +124,7 @@ void solve_wrist(const SixJointTask& task, PointRule rule, SixJointBranches& bra
 }
 
 /// The three parallel joints of a chain whose other joints are set.
-/// \param rest  what is left for them: a displacement in their plane.
+/// \param rest  their part of the pose: a displacement in their plane.
 /// \return whether they can do it, within limits or not.
 bool solve_parallel(const SixJointTask& task, const Displacement& rest, std::array<double, 6> q,
                     SixJointBranches& branches) {
@@ -151,7 +151,7 @@ bool solve_parallel(const SixJointTask& task, const Displacement& rest, std::arr
   return pairs.count > 0;
 }
 
-/// What of a pose with three parallel axes is solved before them.
+/// The part of a pose's solution that comes before three parallel axes.
 struct BeforeParallel {
   double q1, q5;
   Displacement left;    ///< of the pose, without joint 1
@@ -177,8 +177,8 @@ void solve_last(const SixJointTask& task, const BeforeParallel& before,
   }
 }
 
-/// The parallel axes' direction keeps what it has of axis 5's point and direction: that gives q1,
-/// then q5. What they do to it as seen from axis 6 gives q6, the rest is a planar arm.
+/// Turns of the parallel axes keep the components of axis 6's point and direction along them: that
+/// gives q1, then q5. Their direction as seen from axis 6 gives q6, the rest is a planar arm.
 void solve_three_parallel(const SixJointTask& task, SixJointBranches& branches) {
   const std::array<Axis, 6>& axes = task.axes;
   const Eigen::Vector3d& h = axes[1].direction;

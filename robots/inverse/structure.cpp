@@ -150,7 +150,7 @@ std::array<double, kMaxLocked> lock_values(int trial) {
   return {0.37 + 1.31 * trial, -1.13 + 0.83 * trial};
 }
 
-/// The free axes once the axes before them have been locked, and what moved each of them.
+/// The free axes once the axes before them have been locked, and the displacement of each of them.
 struct Carried {
   SixAxes axes;
   std::array<Displacement, kFreeJoints> by;
@@ -244,7 +244,7 @@ void lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const do
     std::copy(axes.begin(), axes.end(), task.axes.begin());
     return;
   }
-  // Either the axes behind the locks are carried along, or those before them are carried back,
+  // Either the axes behind the locks are carried along, or the axes before them are carried back,
   // whichever are fewer.
   if (locks.front() >= static_cast<int>(axes.size()) - 1 - locks.back()) {
     Displacement by;

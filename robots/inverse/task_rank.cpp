@@ -13,15 +13,15 @@ namespace {
 
 constexpr int kRankTrials = 8;  // a singular one among them does no harm
 
-/// Singular value, lengths in units of the arm's: what is below it is lost in the damping of a
-/// step, whose root is 3e-4, and a quarter of a turn that is written as 1.57 is off by 8e-4.
+/// Singular value, lengths in units of the arm's: a smaller one is lost in the damping of a step,
+/// whose root is 3e-4, and a quarter of a turn that is written as 1.57 is off by 8e-4.
 constexpr double kUnseen = 1e-3;
 
 Eigen::Index axis_count(const kinematics::Chain& chain) {
   return std::ranges::count(chain.task_axes().matters, true);
 }
 
-/// What the joints do to the transfer frame at random configurations, lengths in units of the
+/// Motions of the transfer frame by the joints at random configurations, lengths in units of the
 /// arm's.
 class Directions {
  public:

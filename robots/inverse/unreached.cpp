@@ -76,7 +76,7 @@ double excess(const std::vector<JointBeyond>& beyond) {
   return sum;
 }
 
-/// Takes what leaves fewer joints beyond their limits, or as many by less.
+/// Takes `other` if it has fewer joints beyond their limits, or as many by less.
 void take_better(std::vector<JointBeyond> other, std::vector<JointBeyond>& best) {
   if (other.empty())
     return;
@@ -136,7 +136,7 @@ double find_distance_m(const Chain& placed, const Eigen::Isometry3d& T_base_tran
   return least;
 }
 
-/// Towards the place, and with what that leaves free towards the orientation.
+/// Towards the place, and with the freedom left by that towards the orientation.
 /// Source: Nakamura, Hanafusa, Yoshikawa, Task-priority based redundancy control of robot
 /// manipulators, International Journal of Robotics Research 6 (1987), eq. 11.
 Eigen::VectorXd place_then_turn(const kinematics::Jacobian& J, const TaskError& error) {
@@ -199,7 +199,7 @@ TaskAxes axes_of_bits(unsigned bits) {
   return axes;
 }
 
-/// The most axes of those asked for with which the pose is reached; yaw is the first to go.
+/// The most of the requested axes with which the pose is reached; yaw is the first to go.
 /// \param kept    must be among them.
 /// \param fewest  no fewer.
 std::optional<TaskAxes> find_axes(const Chain& chain, const Eigen::Isometry3d& T_base_tip,

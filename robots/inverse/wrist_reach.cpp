@@ -71,7 +71,7 @@ std::optional<WristReach> WristReach::of(const kinematics::Chain& chain) {
   reach.p_base_shoulder_ = arm.scale_m * points.point(0);
   reach.p_transfer_wrist_ =
       arm.scale_m * arm.T_base_transfer.inverse()(points.point(arm.axes.size() - 1));
-  // What the tolerance of a pose may add, and rounding.
+  // Room for the tolerance of a pose and for rounding.
   const double slack_m = 4 * kPoseTolerance * (1 + reach.p_transfer_wrist_.norm());
   reach.reach_m_ = arm.scale_m * points.total_length() + slack_m;
   if (!(reach.reach_m_ > 0) || !reach.p_transfer_wrist_.allFinite())

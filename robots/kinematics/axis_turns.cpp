@@ -10,7 +10,7 @@ AxisTurns axis_turns(const Eigen::Matrix3d& R) {
   AxisTurns turns{};
   if (std::hypot(R(0, 2), R(1, 2)) > kParallel)
     turns.before = std::atan2(R(0, 2), -R(1, 2));
-  // Of what is left, not of R: where the tilt is small, both turns together are exact.
+  // Of the rest, not of R: where the tilt is small, both turns together are exact.
   const Eigen::Matrix3d rest =
       Eigen::AngleAxisd(-turns.before, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R;
   turns.tilt_sine = -rest(1, 2);

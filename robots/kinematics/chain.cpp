@@ -57,7 +57,7 @@ std::pair<double, double> limits_of(const MimicJoint& mimic, const Joint& source
       {mimic.multiplier * lower + mimic.offset, mimic.multiplier * upper + mimic.offset});
 }
 
-/// \param index  of the moving joint; those of the chain are without fault.
+/// \param index  of the moving joint; the chain's joints are without fault.
 std::optional<std::string> find_fault(const MimicJoint& mimic, const std::vector<Joint>& joints,
                                       int index) {
   const std::string name = "joint '" + mimic.joint.name + "'";
@@ -73,7 +73,7 @@ std::optional<std::string> find_fault(const MimicJoint& mimic, const std::vector
   for (const double limit : {lower, upper})
     if (!(std::abs(limit) <= kMaxPlacement_m))
       return follows + " at " + number_text(limit) + ", more than " + number_text(kMaxPlacement_m);
-  // A configuration is the same after a full turn, so what follows has to be.
+  // A configuration is the same after a full turn, so its followers have to be.
   if (source.type == JointType::Continuous && (mimic.joint.type == JointType::Prismatic ||
                                                mimic.multiplier != std::round(mimic.multiplier)))
     return follows + ", which is continuous, times " + number_text(mimic.multiplier) +

@@ -161,8 +161,8 @@ std::size_t rank_of_tool(const std::string& name) {
   return rank;
 }
 
-/// The links fixed to an arm's last joint, outermost first, but those with a tool's name before,
-/// and those with a sensor's behind.
+/// The links fixed to an arm's last joint, outermost first, but links with a tool's name before,
+/// and links with a sensor's behind.
 std::vector<std::string> tips_at(const std::vector<TreeLink>& tree, const Branches& branches,
                                  std::size_t end) {
   std::vector<std::size_t> fixed = branches.fixed_to(end);

@@ -28,7 +28,7 @@ std::string words(const urdf::Joint& joint) { return "joint '" + joint.name + "'
 
 bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
 
-/// A joint with one value: what a chain is made of, and what can be held.
+/// A joint with one value: one that a chain consists of, and that can be held.
 bool has_one_value(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
          joint.type == urdf::Joint::PRISMATIC;
@@ -92,7 +92,7 @@ Joint read_joint(const urdf::Joint& source) {
   return joint;
 }
 
-/// With the link that is nearest to a misspelt one, or some of those that there are.
+/// With the link that is nearest to a misspelt one, or some of the existing ones.
 Failure unknown_link(const std::string& what, const std::string& name,
                      const urdf::ModelInterface& model) {
   constexpr std::size_t kShown = 6;
@@ -154,14 +154,14 @@ std::string no_leader_text(const urdf::Joint& joint) {
   return "mimics joint '" + joint.mimic->joint_name + "', which is not in the URDF";
 }
 
-/// What gives a joint off the chain its value: nothing, or a joint of the chain that it follows.
+/// The value of a joint off the chain: constant, or by a joint of the chain that it follows.
 struct JointValue {
   double value = 0;         ///< where it stands; of one that follows, its offset
   std::string source = {};  ///< the joint that it follows
   double multiplier = 0;
 };
 
-/// Where the joints off the chain stand, and what they follow.
+/// Where the joints off the chain stand, and which joints they follow.
 class HeldJoints {
  public:
   HeldJoints(const urdf::ModelInterface& model, const std::map<std::string, double>& held,
@@ -228,7 +228,7 @@ class HeldJoints {
     return value;
   }
 
-  /// What the joint that it mimics makes of a joint; 0 if that one does not move, or there is none.
+  /// The value by the joint that one mimics; 0 if that joint does not move, or there is none.
   JointValue mimicked_value(const urdf::Joint& joint, std::vector<std::string>& followers) const {
     if (lacks_leader(model_, joint))
       throw refused(words(joint) + " " + no_leader_text(joint) + "; hold it where it stands");
@@ -251,7 +251,7 @@ class HeldJoints {
     return value;
   }
 
-  /// \param followers  so many that the last one is among those before it.
+  /// \param followers  with the last one among the ones before it.
   static std::string loop_text(const std::vector<std::string>& followers) {
     auto at = std::find(std::next(followers.rbegin()), followers.rend(), followers.back()).base();
     std::string text = "joint '" + followers.back() + "'";

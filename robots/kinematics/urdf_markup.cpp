@@ -140,7 +140,7 @@ class Scanner {
   int links_ = 0;
 };
 
-/// What stands between an attribute's quotes.
+/// The text between an attribute's quotes.
 std::string normalized_value(std::string_view value) {
   std::string text(value);
   std::ranges::replace_if(text, is_space, ' ');

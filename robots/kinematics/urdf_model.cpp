@@ -21,8 +21,8 @@ constexpr std::size_t kMaxComplaintBytes = 400;
 // Where this thread collects urdfdom's messages; null: it does not.
 thread_local std::string* collected_errors = nullptr;
 
-/// Takes the messages of console_bridge, which is one per process, and sorts them by thread:
-/// to a collector if the thread has one, else to whoever took them before.
+/// Takes the messages of console_bridge, which is one per process, and sorts them by thread: to a
+/// collector if the thread has one, else to the handler before it.
 class MessagesByThread : public console_bridge::OutputHandler {
  public:
   MessagesByThread() : previous_(console_bridge::getOutputHandler()) {

@@ -12,7 +12,7 @@
 namespace kinship::models {
 namespace {
 
-/// Takes the links that need no solid from those whose solids are missed.
+/// Takes the links that need no solid from the links whose solids are missed.
 std::optional<Error> excuse(const std::vector<std::string>& links, const kinematics::Chain& chain,
                             geometry::RobotShapes& shapes) {
   for (const std::string& link : links) {

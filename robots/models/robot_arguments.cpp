@@ -42,7 +42,7 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
-/// \throws Failure with what is wrong.
+/// \throws Failure with the fault.
 RobotDescription read_urdf_file(const std::filesystem::path& file) {
   RobotDescription description;
   description.urdf = read_text(file, kMaxUrdfBytes);
@@ -52,7 +52,7 @@ RobotDescription read_urdf_file(const std::filesystem::path& file) {
   return description;
 }
 
-/// \throws Failure with what is wrong.
+/// \throws Failure with the fault.
 void add_held_joint(std::string_view text, RobotDescription& description) {
   const std::size_t equals = text.rfind('=');
   const auto value =
@@ -63,7 +63,7 @@ void add_held_joint(std::string_view text, RobotDescription& description) {
   description.held_joints[std::string(text.substr(0, equals))] = *value;
 }
 
-/// \throws Failure with what is wrong.
+/// \throws Failure with the fault.
 void replace_frame_and_axes(const RobotArguments& arguments, RobotDescription& description) {
   if (!arguments.transfer.empty()) {
     const auto pose = parse_pose(arguments.transfer);
@@ -89,7 +89,7 @@ std::string stranger_warning(const std::filesystem::path& srdf,
          " left out";
 }
 
-/// \throws Failure with what is wrong.
+/// \throws Failure with the fault.
 void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
                std::vector<std::string>& warnings) {
   const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
@@ -115,7 +115,7 @@ void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
                       " never-colliding pairs exceed " + std::to_string(kMaxCollisionPairs));
 }
 
-/// \throws Failure with what is wrong.
+/// \throws Failure with the fault.
 RobotDescription put_together(const RobotArguments& arguments, std::vector<std::string>& warnings) {
   std::error_code unreadable;  // is for read_urdf_file to tell
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);

@@ -15,7 +15,7 @@
 namespace kinship::models {
 namespace {
 
-/// The names of a link and of those above it.
+/// The names of a link and of the links above it.
 std::vector<std::string> ancestry(const std::vector<kinematics::TreeLink>& tree,
                                   const std::string& name) {
   std::vector<std::string> names;
@@ -49,7 +49,7 @@ void fill_in(const LinksOfFile& links, RobotArguments& arguments) {
                          : "--tip '" + arguments.tip_link + "': no arm ends there, give --base");
 }
 
-/// \throws Failure with what is wrong.
+/// \throws Failure with the fault.
 LinksOfFile read_links(RobotArguments& arguments) {
   std::error_code unreadable;
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);

@@ -47,8 +47,8 @@ std::size_t find_xacro(std::string_view value) {
   return first;
 }
 
-/// The first mark of xacro in a document. What stands in foreign elements, as those of plugins, is
-/// not the model's: only an element of xacro's counts there.
+/// The first mark of xacro in a document. The content of foreign elements, as of plugins, is not
+/// the model's: only an element of xacro's counts there.
 class MarkFinder : public tinyxml2::XMLVisitor {
  public:
   bool VisitEnter(const tinyxml2::XMLElement& element,
@@ -75,7 +75,7 @@ class MarkFinder : public tinyxml2::XMLVisitor {
 
  private:
   void find(int line, std::string_view text) {
-    constexpr std::size_t kShown = 40;  // bytes of what stands there
+    constexpr std::size_t kShown = 40;  // bytes of the text there
     if (!mark_.empty())
       return;
     const std::string_view shown = text.substr(0, kShown);

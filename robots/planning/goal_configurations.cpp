@@ -28,7 +28,7 @@ NoPath reason_of(const GoalConfigurations& goals, inverse::NoSolution why_none) 
   return goals.within_bounds == 0 ? NoPath::GoalOutsideBounds : NoPath::GoalsCollide;
 }
 
-/// Moves those of the first `count` configurations that are free to the front. \return how many.
+/// Moves the free ones of the first `count` configurations to the front. \return how many.
 Eigen::Index keep_free(const IsFree& is_free, Eigen::Index count, Eigen::MatrixXd& configurations) {
   Eigen::Index kept = 0;
   for (Eigen::Index first = 0; first < count;) {
@@ -79,7 +79,7 @@ GoalConfigurations goal_configurations(const kinematics::Chain& chain,
     goals.configurations.conservativeResize(Eigen::NoChange, kept);
     if (kept > 0)
       return goals;
-    // Who gives fewer than were asked for has no others.
+    // A solver that gives fewer than were asked for has no others.
     if (found < options.max_configurations || searches == kMaxSearches) {
       goals.reason = reason_of(goals, solutions.reason);
       return goals;

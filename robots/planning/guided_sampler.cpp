@@ -17,7 +17,7 @@ double trust(const kinematics::Chain& chain, const TrackQuery& query, const Mixt
   return ratio * ratio < kLeast ? 0 : ratio * ratio;
 }
 
-/// What a guide makes of the guided samples, each 0 to 1, and how often it retreats. Chosen on
+/// A guide's shares of the guided samples, each 0 to 1, and the number of its retreats. Chosen on
 /// tuning instances of the studies (docs/decisions/planning.md).
 struct Parts {
   std::size_t retreats = 0;

@@ -22,7 +22,7 @@ std::uint64_t refuted_among(const Lines& lines) {
       std::ranges::count_if(lines, [](const auto& line) { return !line.has_value(); }));
 }
 
-/// Lines and what was said of them.
+/// Lines and the answers for them.
 class KnownLines {
  public:
   struct Line {
@@ -38,7 +38,7 @@ class KnownLines {
     return at == lines_.end() ? nullptr : &*at;
   }
 
-  /// What is known to be refuted is; all else counts as free.
+  /// A line that is known to be refuted is; all others count as free.
   Lines by_what_is_known(const Eigen::Ref<const Eigen::MatrixXd>& from,
                          const Eigen::Ref<const Eigen::MatrixXd>& to) const {
     Lines said(static_cast<std::size_t>(from.cols()), 0.0);
@@ -114,7 +114,7 @@ class Proving {
     return refuted_among(lines) == 0;
   }
 
-  /// Shortens without what is refuted, until all is proven. \return whether it came to that; not if
+  /// Shortens without refuted lines, until all is proven. \return whether it came to that; not if
   /// the path itself is refuted.
   bool shorten_what_holds(const Eigen::MatrixXd& waypoints) {
     KnownLines known;
@@ -128,14 +128,14 @@ class Proving {
       if (judge(known.by_what_is_known(proven_.waypoints.leftCols(count),
                                        proven_.waypoints.rightCols(count))))
         return true;
-      if (refuted == 0)  // only what was refuted before, and is no shortcut
+      if (refuted == 0)  // only lines refuted before, which are no shortcuts
         break;
     }
     proven_.waypoints.resize(0, 0);
     return false;
   }
 
-  /// Adds all but the first waypoint, or what is planned instead. \return whether all is proven.
+  /// Adds all but the first waypoint, or a replacement. \return whether all is proven.
   bool prove(const Eigen::MatrixXd& waypoints, double step, int times,
              std::vector<Eigen::VectorXd>& path) {
     const Lines said = lines(waypoints);

@@ -19,8 +19,8 @@ using Vector6 = RegionConstraint::Vector6;
 
 constexpr double kMarginOfWidth = 0.05, kMaxMargin = 0.02;  // m or rad
 
-/// Angles without a bound on one side are bounded by half a turn there; those that may go round
-/// by nothing.
+/// Angles without a bound on one side are bounded by half a turn there; angles that may go round by
+/// nothing.
 Eigen::Matrix<double, 2, 6> with_angles_in_a_turn(Eigen::Matrix<double, 2, 6> bounds) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 3; i < 6; ++i) {

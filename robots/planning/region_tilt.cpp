@@ -102,7 +102,7 @@ void RegionTilt::improve(const Sweep& along, const Excess& outside, Eigen::Vecto
     b = sine * a + cosine * y;
     a = cosine * a - sine * y;
   }
-  // (J J^T + damping)^-1 times what is to be taken back: two rows, or one and an empty one.
+  // (J J^T + damping)^-1 times the excess to be taken back: two rows, or one and an empty one.
   const Eigen::Array2d wanted =
       is_outside * (outside.beyond + (outside.beyond > 0).select(margin_, -margin_));
   squares += kSquaredDamping;

@@ -24,7 +24,7 @@ void check_roadmap_options(const RoadmapOptions& options) {
     refuse("connections", options.connections);
 }
 
-/// What roadmap and trees of a query share.
+/// Data that roadmap and trees of a query share.
 template <typename Steering>
 struct RoadmapQuery {
   const ConfigurationSampler& sampler;

@@ -46,8 +46,8 @@ void SamplesAhead::draw(std::uint64_t ordinal, Eigen::VectorXd& q) {
   sampler_.draw(generator_, guided_fraction(ordinal), q);
 }
 
-/// A query that the mixture has not solved soon may need what it does not cover, and without any
-/// uniform samples no patience would find that.
+/// A query that the mixture has not solved soon may need configurations that it does not cover, and
+/// without any uniform samples no patience would find them.
 double SamplesAhead::guided_fraction(std::uint64_t ordinal) const {
   constexpr std::uint64_t kPatience = 300;  // samples
   constexpr double kLateFraction = 0.9;

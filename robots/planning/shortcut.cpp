@@ -29,7 +29,7 @@ class ShorterPath {
   double length(Eigen::Index from, Eigen::Index to) const { return length_[to] - length_[from]; }
   Eigen::MatrixXd waypoints() const { return waypoints_.leftCols(size_); }
 
-  /// Replaces what lies between two configurations by a way between them.
+  /// Replaces the waypoints between two configurations by a way between them.
   template <typename Way>
   void replace(Eigen::Index from, Eigen::Index to, const Way& way) {
     const Eigen::Index end = from + way.parts(), tail = size_ - to;

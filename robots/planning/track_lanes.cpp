@@ -47,7 +47,7 @@ class Lanes {
   }
 
  private:
-  /// Lanes beyond the tracks do what the last one does.
+  /// Lanes beyond the tracks repeat the last one.
   const PoseTrack& of(int lane) const {
     return tracks_[std::min(static_cast<std::size_t>(lane), tracks_.size() - 1)];
   }

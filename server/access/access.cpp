@@ -46,7 +46,7 @@ std::optional<Error> refusal_by_place(const Caller& caller, std::string_view act
                  "kinshipd --security has certificates tell who may do it");
 }
 
-/// Robots and administrators only: whoever reads or operates has nothing to report.
+/// Robots and administrators only: a reader or operator has nothing to report.
 std::optional<Error> refusal_of_robots_act(const Caller& caller, std::string_view act) {
   if (caller.role == AccessRole::Robot || caller.role == AccessRole::Admin)
     return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<Error> refusal_of_names(const Caller& caller, std::string_view tas
 
 bool matches(std::string_view pattern, std::string_view text) noexcept {
   std::size_t at_pattern = 0, at_text = 0;
-  std::size_t star = std::string_view::npos, after_star = 0;  // the last one, and what it took
+  std::size_t star = std::string_view::npos, after_star = 0;  // the last one, its match's end
   while (at_text < text.size()) {
     if (at_pattern < pattern.size() && pattern[at_pattern] == '*') {
       star = at_pattern++;
@@ -105,7 +105,7 @@ std::optional<Error> refusal_of(const Caller& caller, AdminVerb verb) {
     return refused(caller, rule.act, "needs role " + std::string(to_text(rule.least)));
   if (rule.is(VerbRule::OfAll) && is_narrowed(caller))
     return refused(caller, rule.act, "that is about all tasks and robots, " + scope_of(caller));
-  // All of a robot's paths go, or those of all robots.
+  // Removing a robot reaches into all tasks, resetting a task to all robots.
   if ((verb == AdminVerb::RemoveRobot && !caller.tasks.empty()) ||
       (verb == AdminVerb::ResetTask && !caller.robots.empty()))
     return refused(caller, rule.act, "that reaches beyond what it is for: " + scope_of(caller));
@@ -164,7 +164,7 @@ bool may_hear(const Caller& caller, const Event& event) {
     return false;
   if (!is_narrowed(caller))
     return true;
-  // What names neither may have names of others in its words.
+  // An event without a task or robot may name others in its text.
   const bool names_enough = (caller.tasks.empty() || !event.task.empty()) &&
                             (caller.robots.empty() || !event.robot.empty());
   return names_enough && may_see(caller, event.task, event.robot);

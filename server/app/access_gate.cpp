@@ -21,7 +21,7 @@ struct KnownLabel {
   std::string why = {};
 };
 
-/// What the store says of a robot that it cannot read has a label, which may be another's.
+/// The store's message about an unreadable robot has a label, which may be another's.
 std::string why_not_now(const Digest& robot, const Error& error) {
   return error.code == ErrorCode::Unavailable
              ? error.message
@@ -139,7 +139,7 @@ void fetch(service::Service& service, const Caller& caller, const FetchRequest& 
           if (const auto refusal =
                   access::refusal_of_fetch(caller, request.task, robot->second.value()))
             return service.refuse_fetch(refusal->message, done);
-        service.fetch(request, waiter, for_its_robots);  // which says what is not registered
+        service.fetch(request, waiter, for_its_robots);  // which says which robot is not registered
       },
       caller.client);
 }

@@ -29,7 +29,7 @@ std::string origin(const CLI::App& app, const CLI::Option& option,
   const std::string variable = option.get_envname();
   // NOLINTNEXTLINE(concurrency-mt-unsafe): before any thread
   const char* const value = variable.empty() ? nullptr : std::getenv(variable.c_str());
-  // What the file says goes before the environment, so the two are told apart by their values.
+  // The file precedes the environment, so the two are told apart by their values.
   const bool has_file = file != nullptr && file->count() > 0;
   if (value != nullptr && (!has_file || option.as<std::string>() == value))
     return variable;

@@ -19,7 +19,7 @@ using codec::FetchConversation;
 using codec::RegisterConversation;
 using codec::ReportConversation;
 
-/// Begins with whom quotas count (catalog::client_of). One of those may have several clients.
+/// Begins with the name that quotas count (catalog::client_of), which several clients may share.
 template <typename Conversation>
 std::string request_key_of(const dds::Answer<Conversation>& answer) {
   return answer.caller().client + ' ' + answer.head().client_id.text() + ' ' +
@@ -42,7 +42,7 @@ Reply with_status(Reply reply, decltype(Reply::status) status) {
   return reply;
 }
 
-/// Who may not ask for more now is told so before the request is read.
+/// A client beyond its quota is refused before its request is read.
 template <typename Reply>
 auto gate_of(service::Service& service, const Reply& busy) {
   return [&service, busy](const Caller& caller, const codec::RequestSize& size) {
@@ -51,7 +51,7 @@ auto gate_of(service::Service& service, const Reply& busy) {
 }
 
 /// Answers with the part of the service's answer that begins at a place. Rows of one page can
-/// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
+/// exceed the limit of a message: a listing is then asked for with fewer, a single row cut.
 void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
   service.administer(

@@ -31,7 +31,7 @@ std::string address_of(const std::string& network_interface) {
   return {};
 }
 
-/// What the kinshipd of this domain says of itself; nothing if none answers.
+/// The status of the kinshipd of this domain; nothing if none answers.
 std::optional<ServerStatus> ask_server(const ServerOptions& options, const std::string& address) {
   try {
     const dds::Participant participant({.domain = options.domain,
@@ -58,8 +58,8 @@ std::string describe(const PortHolder& holder) {
   return "'" + holder.program + "' (process " + std::to_string(holder.process) + ")";
 }
 
-/// Which domains to take instead: where this one's ports are given to whoever asks for any, those
-/// below.
+/// Which domains to take instead: below the ports that the system hands out, if this one's are
+/// among them.
 std::string advise(std::uint16_t port) {
   std::ifstream stream("/proc/sys/net/ipv4/ip_local_port_range");
   std::uint32_t first = 0, last = 0;
@@ -89,7 +89,7 @@ std::string explain(const ServerOptions& options, std::uint16_t port, const Port
   return message + "; end that one, or take another domain (--domain N)";
 }
 
-/// Whom the server knows: the records of its security folder.
+/// The clients that the server knows: the records of its security folder.
 dds::Directory directory_of(const std::filesystem::path& security) {
   const auto clients =
       std::make_shared<security::ClientDirectory>(security::SecurityFolder(security).clients());

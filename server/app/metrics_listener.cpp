@@ -34,7 +34,7 @@ Reply text_reply(http::status status, std::string text,
   return reply;
 }
 
-/// What a request that is none is told; nothing if there is nobody to tell.
+/// The answer to an invalid request; nothing if no peer is left to read it.
 std::optional<Reply> reply_to(const beast::error_code& error) {
   if (error == http::error::header_limit || error == http::error::buffer_overflow)
     return text_reply(http::status::request_header_fields_too_large, "the header is too large\n");
@@ -199,7 +199,7 @@ class MetricsListener::Implementation {
   std::string text_;
   std::optional<std::chrono::steady_clock::time_point> made_;
   std::deque<std::weak_ptr<Connection>> connections_;  // the oldest one first
-  MetricsPort port_;                                   // what is above outlives its callbacks
+  MetricsPort port_;                                   // the members above outlive its callbacks
   asio::steady_timer retry_;
   std::thread thread_;  // last: uses all of the above
 };

@@ -120,7 +120,7 @@ int migrate(const OfflineOptions& options, std::ostream& out) {
   return kDone;
 }
 
-/// Why a verb does not do its work on a PostgreSQL database, and what does it there.
+/// Why a verb does not work on a PostgreSQL database, and which tool does its work there.
 std::string alternative_to(OfflineVerb verb) {
   switch (verb) {
     case OfflineVerb::Check:

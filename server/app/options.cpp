@@ -48,7 +48,7 @@ Examples:
   kinshipd migrate-store --from fleet.db --to 'postgresql://kinship@db1/fleet'    each row, resumable
   kinshipd secure init DIR                       certificates for the fleet; kinshipd secure --help)";
 
-/// What the help of a verb ends with, before its example.
+/// The end of a verb's help, before its example.
 constexpr const char* kVerbFooter =
     R"(No server may have the store open. Exit codes: 0 done, 1 failed or damage found, 2 wrong usage,
 3 no such file.
@@ -60,7 +60,7 @@ std::size_t default_workers() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
-/// Takes numbers from 0 to `highest`; CLI::Range lets what is no number pass.
+/// Takes numbers from 0 to `highest`; CLI::Range lets other texts pass.
 CLI::Validator is_number_up_to(int highest) {
   const std::string range = std::to_string(highest);
   return {[highest, range](std::string& text) {
@@ -103,7 +103,7 @@ void add_upstream_options(CLI::App& app, ServerOptions& options) {
       ->needs("--upstream");
 }
 
-/// What the store may take of its disk.
+/// The store's use of its disk.
 void add_disk_options(CLI::App& app, ServerOptions& options) {
   constexpr std::uint64_t kMaxMegabytes = std::uint64_t{1} << 30U;  // 1 PB
   app.add_option("--free-space-watermark-mb", options.free_space_watermark_mb,
@@ -123,7 +123,7 @@ void add_disk_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
 }
 
-/// What is kept of what the fleet reports and of what is made of it.
+/// Retention of the fleet's experience and of its distributions.
 void add_retention_options(CLI::App& app, ServerOptions& options) {
   constexpr std::uint64_t kMaxPaths = 1'000'000'000;
   constexpr std::uint64_t kMaxMegabytes = std::uint64_t{1} << 24U;
@@ -147,7 +147,7 @@ void add_retention_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
 }
 
-/// What one client may take; more is answered busy, with a time.
+/// Quotas of one client; requests beyond them are answered busy, with a time.
 void add_client_options(CLI::App& app, ClientQuotaOptions& client) {
   constexpr int kMaxPerSecond = 1'000'000, kMaxPerDay = 1'000'000'000, kMaxAtATime = 1'000'000;
   const auto add = [&app](const char* name, auto& value, const char* description, int highest) {
@@ -177,7 +177,7 @@ void add_client_options(CLI::App& app, ClientQuotaOptions& client) {
       "MB of paths of one client that are stored, a day; 0: no limit", kMaxPerDay);
 }
 
-/// What is served, where, and to whom.
+/// The store that is served, the network and the access to it.
 void add_place_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--store", options.store,
                  "SQLite file, made with its folder if there is none; or a PostgreSQL database, "
@@ -207,7 +207,7 @@ void add_place_options(CLI::App& app, ServerOptions& options) {
                "and register; what changes or removes is for this machine alone");
 }
 
-/// What serving needs, each also in a file that --config names.
+/// Options for serving, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
   constexpr int kMaxScrubMbPerS = 1000;
@@ -303,7 +303,7 @@ void suggest_words(const CLI::App& app, const std::vector<std::string>& words, s
       err << word << near << '\n';
 }
 
-/// What is wrong with where the store is said to be; empty: nothing.
+/// The fault of the store's place; empty: none.
 std::string store_fault(const CLI::App& app, const std::filesystem::path& store) {
   const bool is_offline = !app.get_subcommands().empty();
   const bool store_given = app.count("--store") > 0;
@@ -316,7 +316,7 @@ std::string store_fault(const CLI::App& app, const std::filesystem::path& store)
              : "neither XDG_STATE_HOME nor HOME is set; say where with --store FILE";
 }
 
-/// What options say of a store that cannot be: a file promises nothing of a database's, and a
+/// The fault of options that do not fit the store: a file promises nothing of a database's, and a
 /// memory is not above itself.
 std::string store_option_fault(const ServerOptions& options) {
   if (is_database_url(options.store.string()))
@@ -365,7 +365,7 @@ std::filesystem::path default_store() {
 
 namespace {
 
-/// Why nobody serves with these options; empty if somebody may.
+/// The reason not to serve with these options; empty: none.
 std::string serving_fault(const ServerOptions& options) {
   if (std::string fault = store_option_fault(options); !fault.empty())
     return fault;
@@ -400,7 +400,7 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   add_migrate_store(app, move);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ConfigError& error) {  // says what of it, but not where
+  } catch (const CLI::ConfigError& error) {  // says which option of it, but not where
     const std::string what = error.what();
     err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>() << "': " << what
         << suggestion(what.substr(what.find_last_of(" .") + 1), option_names(app)) << '\n';

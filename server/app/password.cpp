@@ -8,7 +8,7 @@
 namespace kinship::app {
 namespace {
 
-/// Takes out what stands between the first colon of a part and its last '@'.
+/// Erases from the first colon of a part to its last '@'.
 bool erase_password(std::string& url, std::size_t begin, std::size_t end) {
   const std::size_t at = url.find_last_of('@', end);
   if (at == std::string::npos || at < begin)
@@ -63,7 +63,7 @@ std::string without_password(const std::string& text) {
     return text;
   const std::size_t begin = scheme + kSeparator.size();
   std::string url = text;
-  // Who is who ends at a slash; a password with one that should be written %2F goes, too.
+  // User and host end at a slash; a password with a slash, which should be written %2F, goes, too.
   if (!erase_password(url, begin, url.find('/', begin)))
     erase_password(url, begin, url.find('?', begin));
   const std::size_t query = url.find('?', begin);

@@ -15,7 +15,7 @@ namespace {
 
 using metrics::Exposition;
 
-/// Of /proc/self/stat, proc(5): fields 3 to 24, those behind the program's name.
+/// Of /proc/self/stat, proc(5): fields 3 to 24, which follow the program's name.
 std::optional<std::array<double, 22>> read_stat() {
   std::ifstream stream("/proc/self/stat");
   std::string text;

@@ -24,7 +24,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// What a client is narrowed to, in one cell.
+/// The tasks and robots that a client is narrowed to, in one cell.
 std::string narrowing(const CredentialList::Row& row) {
   std::string text;
   if (!row.tasks.empty())

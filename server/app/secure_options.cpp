@@ -18,7 +18,7 @@ Examples:
   kinshipd secure add arm_7 --security /var/lib/kinship/security --role robot --out arm_7
   kinshipd secure list --security /var/lib/kinship/security)";
 
-/// As CLI::IsMember, for completions, but says what may have been meant.
+/// As CLI::IsMember, for completions, but suggests the nearest name.
 CLI::Validator is_role() {
   std::string names;
   for (const std::string& name : security::role_names())
@@ -30,7 +30,7 @@ CLI::Validator is_role() {
           "{" + names + "}"};
 }
 
-/// One verb below `secure`, and what it fills.
+/// One verb below `secure`, and the options that it fills.
 class SecureCommand {
  public:
   SecureCommand(CLI::App& secure, std::optional<SecureOptions>& chosen, const char* name,

@@ -111,7 +111,7 @@ void tell_insecurity(const ServerOptions& options) {
 using Events = dds::Publisher<codec::EventPublication>;
 using Announcements = dds::Publisher<codec::AnnouncementPublication>;
 
-/// What the service tells goes to these, which outlive it.
+/// The service's events and announcements go to these, which outlive it.
 void publish_with(service::ServiceOptions& settings, const Events& events,
                   const Announcements& announcements) {
   settings.on_event = [&events](const Event& event) { events.publish(event); };
@@ -121,7 +121,7 @@ void publish_with(service::ServiceOptions& settings, const Events& events,
   settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
 }
 
-/// Of a robot it has the digest, which says nothing to who does not know the robot.
+/// Its robot is a digest, which says nothing to a client that does not know the robot.
 bool may_hear_announcement(const Caller& caller, const Announcement& announcement) {
   return access::may_see(caller, announcement.task, "");
 }
@@ -150,12 +150,12 @@ void tell_what_is_served(const ServerStatus& status, std::uint32_t domain,
 
 int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
-  std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
+  std::signal(SIGPIPE, SIG_IGN);  // the output may have no reader
 
   tell_insecurity(options);
   hold_termination_signals();
 
-  // Before the store: who cannot join the domain, or has no port, leaves no file behind.
+  // Before the store: a server that cannot join the domain, or has no port, leaves no file behind.
   const dds::Participant participant = join_domain(options);
   std::optional<MetricsPort> metrics_port;
   if (!options.metrics.empty())

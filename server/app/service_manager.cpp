@@ -17,7 +17,7 @@ namespace {
 
 /// A whole number above zero in the environment; none if it is missing or something else.
 std::optional<std::int64_t> number_of(const char* name) {
-  const char* const text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody sets any
+  const char* const text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): none is set
   if (text == nullptr)
     return std::nullopt;
   std::int64_t number = 0;

@@ -11,9 +11,9 @@ namespace kinship::catalog {
 namespace {
 
 constexpr int kMaxReadings = 3;               // of sums that attempts keep overtaking
-constexpr std::size_t kMaxContexts = 10'000;  // clients may name what distributions they like
+constexpr std::size_t kMaxContexts = 10'000;  // clients may name any distributions
 
-/// Those that attempts name, each once.
+/// The distributions that attempts name, each once.
 std::vector<Digest> distributions_of(const std::vector<store::KnownAttempt>& attempts) {
   std::set<Digest> distributions;
   for (const store::KnownAttempt& attempt : attempts)
@@ -76,7 +76,7 @@ Advice AdviceCache::advise(const std::string& task, const Digest& robot, const C
   if (totals)
     return catalog::advise(*totals, std::move(judged), profile_share);
   if (begins && !later_([this, key] { read_totals(key); }))
-    end_reading(key, nullptr, true);  // whoever asks next has it tried again
+    end_reading(key, nullptr, true);  // the next request tries again
   Advice advice;
   advice.recommended_share = profile_share;
   advice.guided_share = profile_share;
@@ -90,7 +90,7 @@ std::uint64_t AdviceCache::version(const std::string& task, const Digest& robot)
   return found == entries_.end() ? 0 : found->second.version;
 }
 
-/// Those whose attempts were read, in their order.
+/// Keys whose attempts were read, in order.
 std::vector<AdviceCache::Key> AdviceCache::keys_of_most_attempts(std::size_t max,
                                                                  std::size_t& left_out) const {
   std::vector<std::pair<std::uint64_t, Key>> known;
@@ -159,7 +159,7 @@ void AdviceCache::read_again(const std::string& task, const Digest& robot) {
     const auto found = entries_.find(key);
     if (found == entries_.end())
       return;
-    found->second.is_overtaken = true;  // for who reads them just now
+    found->second.is_overtaken = true;  // for a reading under way
     if (found->second.state != State::Read)
       return;
   }
@@ -208,7 +208,7 @@ void AdviceCache::read_totals(const Key& key) {
     std::optional<store::AttemptTotals> totals;
     try {
       totals = read_(key.second, key.first);
-    } catch (const std::exception&) {  // whoever asks next has it tried again
+    } catch (const std::exception&) {  // the next request tries again
     }
     if (totals)
       find_contexts(key, distributions_of(totals->recent));

@@ -17,7 +17,7 @@
 
 namespace kinship::catalog {
 
-/// What a report says about the cost of planning.
+/// The cost of planning in a report.
 struct AttemptCost {
   std::string task;
   Digest robot;
@@ -30,35 +30,35 @@ struct AttemptCost {
 
 AttemptCost cost_of(const Attempt& attempt);
 
-/// What the attempts of a robot and task say about guidance by the context last asked for.
+/// The advice from the attempts of a robot and task, for the context last requested.
 struct GuidanceWorth {
   std::string task;
   Digest robot;
   Advice advice;
 };
 
-/// Of the pairs with most attempts, in the order of their tasks and robots.
+/// Advice for the pairs with most attempts, in order of tasks and robots.
 struct GuidanceWorths {
   std::vector<GuidanceWorth> pairs;
-  std::size_t left_out = 0;  ///< pairs beyond those
+  std::size_t left_out = 0;  ///< further pairs
 };
 
-/// Knows what the attempts of each (task, robot) that somebody asked for recommend. The sums are
-/// read from the store once, in the background, and then kept up with what is committed. May be
-/// shared between threads; asking never waits for the store.
+/// Caches the advice from the attempts of each requested (task, robot). The sums are read from the
+/// store once, in the background, and then updated with each committed attempt. May be shared
+/// between threads; advise() never waits for the store.
 ///
-/// Attempts that are committed while the sums are read have them read again, a few times; an
-/// attempt of that moment may in the end count twice or not at all, until the next start.
+/// If attempts are committed while the sums are read, the sums are read again, a few times; after
+/// that an attempt of that moment may count twice or not at all, until the next start.
 ///
-/// Distributions that attempts name are looked up in the background, once; until then they are of
-/// an unknown context.
+/// Distributions of attempts are looked up in the background, once; until then their context is
+/// unknown.
 class AdviceCache {
  public:
   /// Reads the sums from the store; may throw.
   using Read = std::function<store::AttemptTotals(const Digest& robot, const std::string& task)>;
-  /// What made a distribution; nothing if nobody knows it. May throw.
+  /// The context of a distribution; nothing if it is unknown. May throw.
   using FindContext = std::function<std::optional<Context>(const Digest& distribution_id)>;
-  /// Has a function called soon on another thread. \return false if there is no room for it.
+  /// Queues a function for another thread. \return false if there is no room for it.
   using Later = std::function<bool(std::function<void()>)>;
 
   AdviceCache(Read read, FindContext find_context, Later later)
@@ -66,26 +66,26 @@ class AdviceCache {
   AdviceCache(const AdviceCache&) = delete;
   AdviceCache& operator=(const AdviceCache&) = delete;
 
-  /// The advice of now (advice_rule.hpp) for guidance of a context. The first time, and as long as
-  /// the store has not answered: `profile_share`, and the sums are read.
+  /// The current advice (advice_rule.hpp) for guidance of a context. Until the store has answered:
+  /// `profile_share`; the first call has the sums read.
   Advice advise(const std::string& task, const Digest& robot, const Context& context,
                 double profile_share);
 
-  /// Grows whenever advise() may say something else than before; 0: nothing is known yet.
+  /// Grows whenever the result of advise() may change; 0: the sums are not read yet.
   std::uint64_t version(const std::string& task, const Digest& robot) const;
 
-  /// What is advised now, of at most `max` of the (task, robot) that somebody asked for. Holds the
-  /// lock for one pair at a time; not for the path of a fetch.
+  /// The current advice for at most `max` requested (task, robot) pairs. Holds the lock for one
+  /// pair at a time; too slow for a fetch.
   GuidanceWorths worths(std::size_t max) const;
 
-  /// An attempt was committed, Stored or Recorded.
+  /// Adds a committed attempt, Stored or Recorded.
   void add(const AttemptCost& cost);
 
-  /// Somebody else committed attempts: the sums are read anew, in the background, if they are
+  /// Another server committed attempts: the sums are read again, in the background, if they are
   /// known.
   void read_again(const std::string& task, const Digest& robot);
 
-  /// A robot was removed: nothing is known of it until somebody asks for it again.
+  /// Forgets a removed robot, until the next request for it.
   void forget(const Digest& robot);
 
  private:

@@ -10,7 +10,7 @@
 namespace kinship::catalog {
 namespace {
 
-// Probabilities that guidance is cheaper. That of none is the higher for what the prior adds to it.
+// Probabilities that guidance is cheaper. kNoShare is the higher for the prior's part in it.
 constexpr double kNoShare = 0.4, kFullShare = 0.7;
 constexpr double kQuantile90 = 1.6449;  // two-sided, of the normal distribution
 

@@ -236,7 +236,7 @@ fitting::FitOutcome Catalog::fit(const Digest& id, const fitting::DistributionKe
   throw Failure(ErrorCode::Unavailable, "paths of task '" + key.task + "' are being retired");
 }
 
-/// What another server has stored, if a fit could say no more.
+/// The distribution that another server has stored, if a fit would bring nothing new.
 std::optional<Distribution> Catalog::made_elsewhere(const Digest& id,
                                                     const fitting::DistributionKey& key) {
   const LookUp found = catalog::look_up(id, key, nullptr, parts_.store, parts_.robots);
@@ -262,7 +262,7 @@ void Catalog::complete(const Digest& id, const fitting::DistributionKey& key,
   }
   if (made_by == MadeBy::This) {
     ++fits_;
-    options_.on_fit(*reply.reply->distribution);  // whoever is told of it and asks gets it
+    options_.on_fit(*reply.reply->distribution);  // a fetch caused by it gets the distribution
   }
   finish(after);
   if (is_followed && announcement.revision > 0)

@@ -23,31 +23,31 @@
 
 namespace kinship::catalog {
 
-/// How much of what is bounded there is in a catalog.
+/// Current use of a catalog's bounded resources.
 struct CatalogUse {
-  std::size_t waiters = 0;           ///< fetches that wait
+  std::size_t waiters = 0;           ///< waiting fetches
   std::size_t holds = 0;             ///< on leases
   std::size_t in_memory = 0;         ///< distributions
   std::size_t memory_bytes = 0;      ///< of distributions in memory, about
   std::uint64_t dropped = 0;         ///< distributions from memory for want of room, so far
-  std::size_t fit_memory_bytes = 0;  ///< that fits left behind for the next ones, about
+  std::size_t fit_memory_bytes = 0;  ///< of states kept by fits for the next ones, about
 };
 
 /// Answers fetches: from memory, from the store, or by a fit, of which there is at most one per
-/// distribution at a time. A distribution that fell behind its task's experience is served as it
-/// is and fitted again behind (freshness.hpp): when it is fetched, or, while somebody holds a lease
-/// on it, by itself. One whose paths were retired is not served. May be shared between threads; no
-/// lock is held across the store, a fit, an answer or a call of an option.
+/// distribution at a time. A distribution behind its task's experience is still served and fitted
+/// again in the background (freshness.hpp): when it is fetched, or, while a client holds a lease on
+/// it, by itself. A distribution whose paths were retired is not served. May be shared between
+/// threads; no lock is held across the store, a fit, an answer or a call of an option.
 class Catalog {
  public:
   using TimePoint = CatalogState::TimePoint;
   using Fit = DistributionMaker::Fit;
 
-  /// What the catalog works with; all of it outlives the catalog's last job.
+  /// References; they outlive the catalog's last job.
   struct Parts {
     store::Store& store;
     runtime::RobotRegistry& robots;
-    runtime::WorkerPool& short_task_pool;  ///< asks the store
+    runtime::WorkerPool& short_task_pool;  ///< looks up in the store
     runtime::WorkerPool& fitters;          ///< transfers and fits
     const runtime::Clock& clock;
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
@@ -59,72 +59,74 @@ class Catalog {
     AdviceSource advice;
     /// Called on a worker after each fit, ready or failed.
     std::function<void(const Distribution&)> on_fit = [](const Distribution&) {};
-    /// Called on a worker after each fit that made nothing, but may later: Busy, or Refused if it
-    /// would need more memory than there may be.
+    /// Called on a worker after each fit that made nothing but may succeed later: Busy, or Refused
+    /// if it would exceed the memory limit.
     std::function<void(const Digest& id, FetchStatus status, const std::string& message)>
         on_trouble = [](const Digest&, FetchStatus, const std::string&) {};
-    /// A client was told that it has as many leases, waiting fetches or fits as one may have.
-    /// Called from any thread, under the lock: must not call the catalog.
+    /// Called when a client is refused for its number of leases, waiting fetches or fits, from any
+    /// thread, under the lock: must not call the catalog.
     std::function<void(const std::string& client, ClientBound bound, const std::string& message)>
         on_over_quota = [](const std::string&, ClientBound, const std::string&) {};
     /// Called on a worker after each fit of a distribution under a lease that was stored.
     std::function<void(const Announcement&)> announce = [](const Announcement&) {};
-    /// Nobody holds a lease on a distribution any more. Called from any thread.
+    /// Called when the last lease on a distribution has ended. From any thread.
     std::function<void(const Digest& id)> on_unfollowed = [](const Digest&) {};
-    /// next_deadline() is earlier than it was. Called from any thread.
+    /// Called when next_deadline() is earlier than before. From any thread.
     std::function<void()> wake = [] {};
   };
 
   Catalog(const Parts& parts, Options options);
 
   /// `done` is called once, on this thread, a worker, or in expire() or stop(); it must not block.
-  /// \param waiter  the name of the request (client_of). Sent again, its earlier `done` is
-  /// forgotten.
+  /// \param waiter  the name of the request (client_of). If it is sent again, its earlier `done` is
+  ///                dropped.
   void fetch(const FetchRequest& request, const std::string& waiter, FetchDone done);
 
-  /// When expire() has something to do next; empty: not before the next fetch or report.
+  /// When expire() is to be called next; empty: not before the next fetch or report.
   std::optional<TimePoint> next_deadline() const;
 
-  /// Tells those Pending whose deadline has passed; their fit goes on. Looks up what is due: after
-  /// there was no room for a look-up, and where followed distributions may have fallen behind.
+  /// Answers Pending to fetches whose deadline has passed; their fit goes on. Makes the due
+  /// look-ups: those that had no room before, and those of followed distributions that may be
+  /// behind.
   void expire(TimePoint now);
 
-  /// There are new paths of a task.
+  /// To be called when a task has new paths.
   void new_experience(std::string_view task);
 
-  /// Paths of a task were retired, durably. What was made of them is not served after this call
-  /// unless it was compared with the store and found to be something else; what is followed is
-  /// fitted again.
+  /// To be called when paths of a task were retired, durably. A distribution of the task is not
+  /// served after this call until a look-up has shown that it was not made of them; followed ones
+  /// are fitted again.
   void forget(std::string_view task);
 
-  /// A distribution was evicted from the store. It is not served after this call, unless a fit
-  /// under way is stored later; what such a fit made earlier answers those who wait for it only.
+  /// To be called when a distribution was evicted from the store. It is not served after this call,
+  /// unless a fit under way is stored later; the result of a fit stored before answers only its
+  /// waiters.
   void evict(const Digest& id);
 
-  /// A robot was removed from the store. Nothing that was made for it is served after this call,
-  /// also what the store had no room for; whoever follows it is told when it is looked up.
+  /// To be called when a robot was removed from the store. No distribution for it is served after
+  /// this call, even one that could not be stored; the leases on it end at their next look-up.
   void forget_robot(const Digest& robot);
 
-  /// Answers everybody Busy, now and from now on; fits under way end before their next path.
+  /// Answers all fetches Busy, waiting and later ones; fits under way end before their next path.
   void stop();
 
   std::uint64_t fetches() const noexcept { return fetches_; }  ///< since construction
   std::uint64_t fetches_from_memory() const noexcept { return fetches_from_memory_; }
-  /// Those that waited, or that there was no room for; never fewer than before.
+  /// Fetches that waited or were refused for want of room; never decreases.
   std::uint64_t fetches_not_from_memory() const noexcept { return fetches_not_from_memory_; }
   std::uint64_t fits() const noexcept { return fits_; }
   std::size_t followed() const;  ///< distributions under a lease
   CatalogUse use() const;
-  /// What each client has of it, of those that have something.
+  /// The use of each client that has any.
   std::map<std::string, ClientHolds> holds_of_clients() const;
-  /// Why the last fit of a distribution made nothing, in words; empty: it did.
+  /// The reason why the last fit of a distribution made nothing; empty: it made one.
   std::string trouble_of(const Digest& id) const;
 
  private:
   using Afterwards = CatalogState::Afterwards;
   enum class MadeBy { This, Another };  // server
 
-  /// Changes the state under the lock, then does what follows from that.
+  /// Changes the state under the lock, then finishes the consequences without it.
   template <typename Change>
   void change(Change change);
   void finish(const Afterwards& after) const;

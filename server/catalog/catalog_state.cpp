@@ -12,7 +12,7 @@ namespace {
 using Stage = PendingFit::Stage;
 
 constexpr std::chrono::milliseconds kLookUpRetry(50);  // after there was no room for one
-/// Reports that come one by one are not each a reason to ask the store about what is followed.
+/// Not every single report causes a look-up of the followed distributions.
 constexpr std::chrono::milliseconds kLookUpSpacing(1000);
 constexpr std::chrono::hours kBetweenNotes(1);  // of the uses of a distribution, to the store
 
@@ -43,7 +43,7 @@ AdvisedReply CatalogState::fetch(const Digest& id, const fitting::DistributionKe
   return known;
 }
 
-/// Takes or extends a lease; what memory knows about the distribution need not be asked for.
+/// Takes or extends a lease; a comparison in memory saves a look-up.
 /// \return false if the client has as many leases as one may have.
 bool CatalogState::follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
                           const std::string& client) {
@@ -74,7 +74,7 @@ std::map<std::string, ClientHolds> CatalogState::holds_of_clients() const {
   return holds;
 }
 
-/// What memory holds, if that is an answer. Has it fitted again behind if it is time for that.
+/// The reply in memory, if it is an answer. Has it fitted again in the background if that is due.
 AdvisedReply CatalogState::find(const Digest& id, const fitting::DistributionKey& key,
                                 std::uint64_t generation, Afterwards& after) {
   if (stopping_)
@@ -168,7 +168,7 @@ bool CatalogState::request_fit(const Digest& id, PendingFit& pending, Priority p
   return true;
 }
 
-/// Keeps a reply, and what it was found to be, for fetches and for the lease.
+/// Keeps a reply, and its comparison with the experience, for fetches and for the lease.
 void CatalogState::remember(const Digest& id, const AdvisedReply& reply,
                             const ExperienceVersion& version, bool behind) {
   memory_.put(id, {.reply = reply, .version = version, .behind = behind});
@@ -176,8 +176,8 @@ void CatalogState::remember(const Digest& id, const AdvisedReply& reply,
     lease->compared = comparison_of(*reply.reply->distribution, version, behind);
 }
 
-/// When a followed distribution is to be looked up next: a function of what is known about it, so
-/// that nothing that arrives while it is looked up or fitted can be missed.
+/// When a followed distribution is to be looked up next: a function of its known state, so that no
+/// arrival during a look-up or fit can be missed.
 void CatalogState::schedule(const Digest& id, Afterwards& after) {
   const Leases::Lease* const lease = leases_.find(id);
   if (lease == nullptr)
@@ -220,7 +220,7 @@ void CatalogState::expire(TimePoint now, Afterwards& after) {
     refresh(id, leases_.find(id)->key);
     schedule(id, after);
   }
-  after.wake = false;  // whoever calls this asks for the next deadline anyway
+  after.wake = false;  // the caller asks for the next deadline anyway
 }
 
 void CatalogState::add_experience(std::string_view task, Afterwards& after) {
@@ -233,7 +233,7 @@ void CatalogState::retire_experience(std::string_view task, Afterwards& after) {
   look_up_again(task, after);
 }
 
-/// For those who wait for experience, and for those who follow.
+/// For fetches that wait for experience, and for followers.
 void CatalogState::look_up_again(std::string_view task, Afterwards& after) {
   for (auto& [id, pending] : pending_)
     if (pending.stage == Stage::Idle && pending.key().task == task)
@@ -286,7 +286,7 @@ void CatalogState::resolve(const Digest& id, const LookUp& found, const AdvisedR
   if (pending == nullptr)
     return;
   if (pending->was_evicted || versions_.of(pending->key().task).retirements != version.retirements)
-    look_up_soon(id, *pending, after);  // what was found may not be served any more
+    look_up_soon(id, *pending, after);  // the one found may not be served any more
   else if (found.end)
     end(id, *found.end, version, after);
   else
@@ -309,7 +309,7 @@ void CatalogState::resolve_pending(const Digest& id, PendingFit& pending, const 
   pending.answer_without_deadline(
       trouble == nullptr ? shared_pending() : shared(reply_in(*trouble)), after.answers);
 
-  // A fit helps those whose generation has arrived; the others wait for reports.
+  // A fit helps waiters whose generation has arrived; the others wait for reports.
   const std::uint64_t generation = generation_of(pending.key().robot, found.experience);
   const bool urgent = (!known.reply && pending.is_wanted) ||
                       std::any_of(pending.waiters().begin(), pending.waiters().end(),

@@ -20,22 +20,22 @@
 
 namespace kinship::catalog {
 
-/// What a catalog knows and has begun: replies in memory, leases, pending fits, versions of the
-/// experience. It decides who is answered and what is to be looked up or fitted; Catalog does it,
-/// and guards this. Not shared between threads.
+/// The state of a catalog: replies in memory, leases, pending fits, versions of the experience. It
+/// decides which fetches are answered and which distributions are looked up or fitted; Catalog acts
+/// on it and guards it. Not shared between threads.
 class CatalogState {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
   using Priority = runtime::WorkerPool::Priority;
 
-  /// How work is begun. None of them waits or calls back.
+  /// Functions that begin work. None of them waits or calls back.
   struct Work {
-    /// False if there is no room for it. `client` is who wants it, empty: nobody in particular.
+    /// False if there is no room for it. `client` asked for it; empty: no particular client.
     std::function<bool(const Digest& id, const std::string& client)> look_up;
     std::function<bool(const Digest& id, Priority priority, const std::string& client)> fit;
-    /// The reply to who cannot be served now.
+    /// The reply to a fetch that cannot be served now.
     std::function<FetchReply(const std::string& message)> busy;
-    /// A client was told that it has as many of something as one may have.
+    /// Called when a client is refused for its number of leases, waiters or fits.
     std::function<void(const std::string& client, ClientBound bound, const std::string& message)>
         over_quota = [](const std::string&, ClientBound, const std::string&) {};
   };
@@ -44,24 +44,25 @@ class CatalogState {
     DistributionCache::Limits memory;
     std::size_t max_waiters = 4096;
     std::size_t max_leases = 16'384;  ///< holds on leases, of all clients
-    // Of one client, 0: no limit. A robot needs one of each for what it plans at a time.
+    // Of one client, 0: no limit. A robot needs one of each per distribution in use.
     std::size_t client_waiters = 256;
     std::size_t client_leases = 256;
-    std::size_t client_fits = 64;  ///< looked up or fitted because it asked first
+    std::size_t client_fits = 64;  ///< looked up or fitted at its request first
   };
 
-  /// What is to be done once no lock is held.
+  /// Consequences of a change, to be done without the lock.
   struct Afterwards {
     Answers answers;
     std::vector<Digest> unfollowed;
-    std::vector<Digest> used;  ///< the store is to be told
-    bool wake = false;         ///< next_deadline() is earlier than it was
+    std::vector<Digest> used;  ///< to be noted in the store
+    bool wake = false;         ///< next_deadline() is earlier than before
   };
 
   /// \param clock  outlives it.
   CatalogState(const runtime::Clock& clock, const Limits& limits, Work work);
 
-  /// What memory holds, if that is an answer; else the waiter joins a pending fit or is answered.
+  /// The reply in memory, if it answers the request; else the waiter joins a pending fit or is
+  /// answered.
   /// \param follow_until  takes a lease, or extends it.
   AdvisedReply fetch(const Digest& id, const fitting::DistributionKey& key, Waiter waiter,
                      std::optional<TimePoint> follow_until, Afterwards& after);
@@ -76,44 +77,45 @@ class CatalogState {
   void add_experience(std::string_view task, Afterwards& after);
   void retire_experience(std::string_view task, Afterwards& after);
   void evict(const Digest& id, Afterwards& after);
-  /// Evicts all that is known or under way for a robot. \return what that was, without order.
+  /// Evicts all distributions known or under way for a robot. \return their ids, in no order; some
+  /// twice.
   std::vector<Digest> forget_robot(const Digest& robot, Afterwards& after);
   void stop(Afterwards& after);
 
-  // For the jobs. Each leaves things as they are if the pending fit is gone: the server stops.
+  // For the jobs. Each does nothing if the pending fit is gone: the server stops.
 
-  /// What a look-up begins with.
+  /// The input of a look-up.
   struct LookUpInput {
     fitting::DistributionKey key;
     SharedReply in_memory;
     ExperienceVersion version;
   };
   std::optional<LookUpInput> begin_look_up(const Digest& id);
-  /// A look-up found this, at that version.
+  /// Takes the result of a look-up, at that version.
   void resolve(const Digest& id, const LookUp& found, const AdvisedReply& known,
                const ExperienceVersion& version, Afterwards& after);
-  /// Empty if another job has begun it.
+  /// Begins a fit. Empty if another job has begun it.
   std::optional<fitting::DistributionKey> begin_fit(const Digest& id);
   ExperienceVersion version_of(std::string_view task) const { return versions_.of(task); }
-  /// A fit is stored: what is evicted or retired from now on concerns it.
+  /// A fit is being stored: evictions and retirements from now on concern it.
   void set_stored(const Digest& id, std::string_view task, ExperienceVersion& version);
-  /// A fit is complete. \return whether somebody follows it and is to be told.
+  /// A fit is complete. \return whether a client follows it, so that it is to be announced.
   bool complete(const Digest& id, std::string_view task, const AdvisedReply& reply,
                 const ExperienceVersion& version, Afterwards& after);
-  /// \param version  at which there was found to be nothing to fit; empty if that is not known.
+  /// \param version  at which nothing was found to fit; empty if not known.
   void end(const Digest& id, const FetchReply& reply,
            const std::optional<ExperienceVersion>& version, Afterwards& after);
 
-  /// A fit made nothing, for a reason that may pass: who waits is told, and it is tried again after
-  /// a while. What was served before is served on.
+  /// A fit made nothing, for a reason that may pass: its waiters are answered, and it is tried
+  /// again after a while. The earlier distribution is still served.
   void fail(const Digest& id, FetchStatus status, const std::string& message, Afterwards& after);
-  /// Why the last fit made nothing; empty: it did.
+  /// The reason why the last fit made nothing; empty: it made one.
   std::string trouble_of(const Digest& id) const;
 
   const DistributionCache& memory() const { return memory_; }
   std::size_t waiters() const { return pending_.waiters(); }
   std::size_t holds() const { return leases_.holds(); }
-  /// What each client has, of those that have something.
+  /// The use of each client that has any.
   std::map<std::string, ClientHolds> holds_of_clients() const;
   std::size_t followed() const { return leases_.count(clock_.now()); }
 

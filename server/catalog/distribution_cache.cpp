@@ -5,7 +5,7 @@
 namespace kinship::catalog {
 namespace {
 
-/// About what a reply occupies: the numbers of its mixture, its sources, and a page for the rest.
+/// About the memory of a reply: the numbers of its mixture, its sources, and a page for the rest.
 std::size_t size_of(const FetchReply& reply) {
   constexpr std::size_t kPage = 4096;
   if (!reply.distribution)

@@ -14,8 +14,8 @@
 
 namespace kinship::catalog {
 
-/// The replies that were asked for last, bounded by number and size; the one not used for longest
-/// goes first. Not shared between threads.
+/// The replies requested last, bounded by number and size; the least recently used one is dropped
+/// first. Not shared between threads.
 class DistributionCache {
  public:
   struct Limits {
@@ -25,16 +25,16 @@ class DistributionCache {
 
   struct Entry {
     AdvisedReply reply;  ///< Ready or Failed, with its distribution
-    /// Of the task when the distribution was last compared with its experience, and whether it was
-    /// found to be behind.
+    /// Version of the task when the distribution was last compared with its experience, and whether
+    /// it was behind.
     ExperienceVersion version = {};
     bool behind = false;
-    std::chrono::steady_clock::time_point noted = {};  ///< when the store was told of a use
+    std::chrono::steady_clock::time_point noted = {};  ///< when a use was last noted in the store
   };
 
   explicit DistributionCache(const Limits& limits) : limits_(limits) {}
 
-  /// Replaces the entry of this id. One that is larger than the limit is kept alone.
+  /// Replaces the entry of this id. An entry larger than the limit is kept alone.
   void put(const Digest& id, Entry entry);
 
   /// The entry, now the last one used; null if there is none. Valid until the next put.
@@ -42,10 +42,10 @@ class DistributionCache {
 
   void erase(const Digest& id) { replies_.erase(id); }
 
-  /// The ids of what is in memory for a robot.
+  /// The ids of the distributions in memory for a robot.
   std::vector<Digest> of_robot(const Digest& robot) const;
 
-  /// The same distribution with other advice; nothing if the entry holds another reply by now.
+  /// Gives a distribution other advice; does nothing if the entry holds another reply by now.
   void replace(const Digest& id, const SharedReply& before, const AdvisedReply& after);
 
   std::size_t size() const noexcept { return replies_.size(); }

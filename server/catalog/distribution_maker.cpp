@@ -16,7 +16,7 @@
 namespace kinship::catalog {
 namespace {
 
-/// What says nothing about the experience: the next attempt may find it well again.
+/// An error that is not due to the experience: a later try may succeed.
 bool may_pass(ErrorCode code) {
   return code == ErrorCode::Storage || code == ErrorCode::Unavailable ||
          code == ErrorCode::TooLarge;
@@ -119,7 +119,7 @@ void DistributionMaker::remember(const Distribution& distribution,
                                  std::shared_ptr<fitting::WarmState> warm_state) const {
   warm_state->revision = distribution.revision;
   if (warm_state->revision == 0)
-    warm_state->mixture.reset();  // no revision could say what it began with
+    warm_state->mixture.reset();  // no revision could name it as its start
   if (distribution.fit && distribution.fit->from_revision == 0)
     warm_state->full.revision = distribution.revision;
   memory_.put(distribution.id, std::move(warm_state));

@@ -30,27 +30,27 @@ class DistributionMaker {
 
   /// A fit that threw becomes a failure with its reason, so that it is not tried for ever.
   /// \throws Failure(Storage), Failure(Unavailable) for want of memory or threads, which may pass;
-  ///         Failure(TooLarge) if it would need more memory than there may be. These say nothing
-  ///         about the experience and take the place of no distribution.
+  ///         Failure(TooLarge) if it would exceed the memory limit. These tell nothing about the
+  ///         experience and replace no distribution.
   fitting::FitOutcome make(const fitting::DistributionKey& key, const std::stop_token& stop) const;
 
-  /// Whether its paths were retired while it was made. \throws Failure(Storage)
+  /// Whether paths of a distribution were retired while it was made. \throws Failure(Storage)
   bool is_outdated(const Distribution& distribution) const;
 
-  /// Stores it, gives it its revision and remembers what it left for the next fit. If the store
-  /// cannot take it, it is of use all the same while this server runs: with revision 0, and the
-  /// reason says so; the next fit is a full one then.
-  /// \param right    of the store's servers to fit it. \throws Failure(Unavailable) if another one
+  /// Stores a distribution, gives it its revision and keeps its state for the next fit. If the
+  /// store cannot take it, this server still serves it, with revision 0 and the reason; then the
+  /// next fit is a full one.
+  /// \param right    the store's right to fit it. \throws Failure(Unavailable) if another server
   ///                 has it since.
-  /// \param outcome  with a distribution. One with a date takes the place of others of its task and
-  ///                 robot with dates that were not fitted for kDatedAge: who asks for the last
-  ///                 two weeks each day means another one each day.
+  /// \param outcome  with a distribution. One with a date evicts others of its task and robot with
+  ///                 dates that were not fitted for kDatedAge: daily requests for the last two
+  ///                 weeks each name another distribution.
   Distribution keep(fitting::FitOutcome outcome, const store::FitRight& right) const;
   static constexpr std::chrono::hours kDatedAge{7 * 24};
 
   /// The next fit of this distribution begins anew.
   void forget(const Digest& id) const { memory_.erase(id); }
-  std::size_t memory_bytes() const { return memory_.bytes(); }  ///< what fits left behind, about
+  std::size_t memory_bytes() const { return memory_.bytes(); }  ///< of states kept by fits, about
 
  private:
   void evict_old_dated(const Distribution& kept) const;

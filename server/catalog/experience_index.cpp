@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxQueuedChoices = 256;
 
-/// About what a choice keeps in memory, shared with others or not.
+/// About the memory of a choice, shared with others or not.
 std::size_t size_of(const SharedChoice& choice) {
   std::size_t bytes = 0;
   if (choice)
@@ -87,7 +87,7 @@ void ExperienceIndex::choose(const ExperienceKey& key) {
   try {
     choice = std::make_shared<const fitting::ExperienceChoice>(fitting::choose_experience(
         memory_.read(key.task, key.sources, key.since_ms, stop), key.bytes));
-  } catch (const std::exception&) {  // the store cannot be read: who asks next tries again
+  } catch (const std::exception&) {  // the store cannot be read: the next request tries again
     choice = nullptr;
   }
   if (stop.stop_requested())
@@ -96,7 +96,7 @@ void ExperienceIndex::choose(const ExperienceKey& key) {
     done(answer);
 }
 
-/// Keeps the choice. Who asked before it was begun gets it, who asked later waits for another.
+/// Keeps the choice. It answers requests from before it was begun, later ones wait for another.
 ExperienceIndex::ChoiceAnswers ExperienceIndex::complete(const ExperienceKey& key,
                                                          const SharedChoice& choice,
                                                          std::uint64_t chosen_at) {
@@ -115,7 +115,7 @@ ExperienceIndex::ChoiceAnswers ExperienceIndex::complete(const ExperienceKey& ke
   return answers;
 }
 
-/// Answers for those who asked at that state of the experience or before.
+/// Answers the requests made at that state of the experience or before.
 void ExperienceIndex::let_go(Entry& entry, std::uint64_t chosen_at, const SharedChoice& choice,
                              ChoiceAnswers& answers) {
   const auto later =

@@ -23,7 +23,7 @@
 
 namespace kinship::catalog {
 
-/// What an experience is a function of, besides the store: not the robot that asks.
+/// The parameters that an experience depends on, besides the store; the requesting robot is none.
 struct ExperienceKey {
   std::string task;
   std::vector<Digest> sources;  ///< ascending; empty: all
@@ -33,16 +33,16 @@ struct ExperienceKey {
   auto operator<=>(const ExperienceKey&) const = default;
 };
 
-/// In memory and on its way to one or many.
+/// A choice, shared by the index and the replies being sent.
 using SharedChoice = std::shared_ptr<const fitting::ExperienceChoice>;
 
-/// The experience of tasks, chosen on a thread of its own, one choice at a time, so that nobody
+/// The experience of tasks, chosen on a thread of its own, one choice at a time, so that it never
 /// waits for a fit; kept until the experience changes. May be shared between threads; no lock is
 /// held across the store or an answer.
 class ExperienceIndex {
  public:
   struct Limits {
-    /// In memory. All of them together take no more bytes than paths may, but the newest stays.
+    /// Choices in memory. Together they take no more than paths.bytes, but the newest stays.
     std::size_t max_choices = 64;
     fitting::PosePathMemory::Limits paths = {};
     std::size_t max_waiters = 4096;
@@ -58,10 +58,11 @@ class ExperienceIndex {
   ExperienceIndex(const ExperienceIndex&) = delete;
   ExperienceIndex& operator=(const ExperienceIndex&) = delete;
 
-  /// What is in memory and up to date; null: nothing is.
+  /// The choice in memory, if up to date; else null.
   SharedChoice find(const ExperienceKey& key);
-  /// `done` is called on this thread if it is in memory, else on its own or in stop(); it
-  /// must not block. What it gets has all that was reported and lacks all that was retired before.
+  /// `done` is called on this thread if the choice is in memory, else on the index's own or in
+  /// stop(); it must not block. Its choice reflects all reports and retirements made before the
+  /// call.
   void ask(const ExperienceKey& key, Done done);
 
   void new_experience(std::string_view task);  ///< there are new paths
@@ -69,8 +70,8 @@ class ExperienceIndex {
 
   std::size_t bytes_of_paths() const noexcept { return memory_.bytes(); }  ///< in memory, about
 
-  /// Answers everybody with nothing, now and from now on, and ends the thread. Not to be called
-  /// from a `done`. A second call returns at once.
+  /// Answers all waiters, and later ones, with nothing, and ends the thread. Not to be called from
+  /// a `done`. A second call returns at once.
   void stop();
 
  private:

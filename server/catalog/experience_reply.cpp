@@ -36,9 +36,9 @@ void send(const FetchReply& reply, const SharedChoice& choice, std::uint64_t kno
 }  // namespace
 
 std::size_t room_for_experience(const FetchReply& reply) {
-  // Upper bounds of what a message has for the members of a distribution, with its texts.
+  // Upper bounds of the bytes in a message of a distribution's members, with its texts.
   constexpr std::size_t kTexts = 16 * 1024, kSource = 384, kRecent = 32, kSelected = 32;
-  // Eight costs of 40 bytes, a message of up to 2048, and what is around them.
+  // Eight costs of 40 bytes, a message of up to 2048, and the rest.
   constexpr std::size_t kRehearsal = 2560;
   std::size_t used = kTexts + (reply.rehearsal ? kRehearsal : 0);
   if (reply.distribution) {

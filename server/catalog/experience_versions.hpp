@@ -7,8 +7,8 @@
 
 namespace kinship::catalog {
 
-/// How often the experience of a task changed since the server began: what was compared with it at
-/// other version may be outdated. Cheaper than asking the store.
+/// Number of changes of a task's experience since the server began: a comparison at another version
+/// may be outdated. Cheaper than asking the store.
 struct ExperienceVersion {
   std::uint64_t changes = 0;      ///< of any kind
   std::uint64_t retirements = 0;  ///< paths were taken out

@@ -8,20 +8,20 @@
 
 namespace kinship::catalog {
 
-/// Pending, NoExperience, UnknownRobot, Busy or Refused, and why.
+/// Pending, NoExperience, UnknownRobot, Busy or Refused, with the reason.
 FetchReply without_distribution(FetchStatus status, const std::string& message);
 
-/// NoExperience, and of what.
+/// NoExperience, with the task and selection.
 FetchReply no_experience(const fitting::DistributionKey& key);
 
 SharedReply shared(FetchReply reply);
 SharedReply shared_pending();
 
-/// Ready or Failed, as the distribution says.
+/// Ready or Failed, by the distribution's state.
 SharedReply with_distribution(Distribution distribution);
 
-/// `done`, called with a distribution whose profile is called what its caller calls it: texts of
-/// equal values have one distribution between them.
+/// `done` with the profile text of the request in the distribution: profile texts of equal values
+/// share one distribution.
 FetchDone with_profile_text_of(const FetchRequest& request, FetchDone done);
 
 }  // namespace kinship::catalog

@@ -11,17 +11,17 @@
 
 namespace kinship::catalog {
 
-/// Why the last fit of a distribution made nothing, although its experience is as it was: no
-/// memory, no thread, a store that cannot be read. It may go well later.
+/// The reason why the last fit of a distribution made nothing with unchanged experience: no memory,
+/// no thread, a store that cannot be read. It may succeed later.
 struct FitTrouble {
-  FetchStatus status = FetchStatus::Busy;  ///< for who asks: Busy, or Refused with what to change
+  FetchStatus status = FetchStatus::Busy;  ///< of the reply: Busy, or Refused with what to change
   std::string message;
   int failures = 0;  ///< in a row
   std::chrono::steady_clock::time_point next_try;
 };
 
-/// Such fits, by distribution: each is tried again after a while that doubles with every failure. A
-/// bounded number; the one that is due first is forgotten first. Not shared between threads.
+/// Failed fits, by distribution: each is tried again after a pause that doubles with every failure.
+/// Their number is bounded; the one due first is forgotten first. Not shared between threads.
 class FitTroubles {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -32,12 +32,12 @@ class FitTroubles {
 
   const FitTrouble& add(const Digest& id, TimePoint now, FetchStatus status,
                         const std::string& message);
-  /// The fit went well, or is to be tried at once.
+  /// The fit succeeded, or is to be tried at once.
   void erase(const Digest& id) { troubles_.erase(id); }
 
-  /// Null: it may be tried now.
+  /// Null: the fit may be tried now.
   const FitTrouble* find(const Digest& id, TimePoint now) const;
-  /// The last one, whether it may be tried again or not; null: there was none.
+  /// The last trouble, whether the fit may be tried again or not; null: none.
   const FitTrouble* last(const Digest& id) const;
 
  private:

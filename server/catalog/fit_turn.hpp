@@ -8,19 +8,18 @@
 
 namespace kinship::catalog {
 
-/// The right to fit a distribution among all servers of a store, for as long as this lives.
+/// Holds the right to fit a distribution among all servers of a store, while it lives.
 class FitTurn {
  public:
-  /// How long it is waited for.
+  /// Limits of the wait.
   struct Patience {
     std::chrono::milliseconds longest{60'000};
-    std::chrono::milliseconds between_looks{100};  // nobody tells that another server has ended
+    std::chrono::milliseconds between_looks{100};  // the end of another server is not notified
   };
 
-  /// Waits while another server has it.
+  /// Waits while another server has the right.
   /// \param store  outlives the turn.
-  /// \throws Failure(Unavailable) if it was stopped, or the other one takes longer;
-  ///         Failure(Storage)
+  /// \throws Failure(Unavailable) if stopped, or if the other server takes longer; Failure(Storage)
   FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop,
           const Patience& patience);
   FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop)
@@ -30,7 +29,7 @@ class FitTurn {
   ~FitTurn() { store_.give_back_fit_right(id_, right_); }
 
   const store::FitRight& right() const noexcept { return right_; }
-  /// Whether another server may have made it meanwhile.
+  /// Whether another server may have fitted it meanwhile.
   bool has_others() const noexcept { return right_.fence > 0; }
 
  private:

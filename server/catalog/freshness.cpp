@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint64_t kGrowthPaths = 5;
 constexpr std::uint64_t kGrowthDivisor = 20;  // 5 %
 
-/// Paths that took the place of others, at least: each generation since brought one, and those that
-/// are more than there were took nobody's.
+/// Paths that replaced others, at least: each generation since brought one, and the growth in
+/// number replaced none.
 std::uint64_t replaced_paths(const Source& then, const store::ExperienceSummary& now) {
   if (now.dropped == 0 || now.generation <= then.generation)
     return 0;
@@ -20,8 +20,8 @@ std::uint64_t replaced_paths(const Source& then, const store::ExperienceSummary&
   return brought > more ? brought - more : 0;
 }
 
-/// Paths of a source that new ones are compared with: where a lowered cap has dropped most of them
-/// those that are left, or no growth would ever count again.
+/// Paths of a source to compare new ones with: where a lowered cap has dropped most of them the
+/// remaining ones, or no growth would ever count again.
 std::uint64_t paths_to_outgrow(const Source& then,
                                const std::vector<store::ExperienceSummary>& experience) {
   for (const store::ExperienceSummary& now : experience)

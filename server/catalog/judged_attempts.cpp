@@ -24,7 +24,7 @@ Origin origin_of(const store::KnownAttempt& attempt, const Context& context,
   return found->second == context ? Origin::Own : Origin::Other;
 }
 
-/// The planner with most attempts, those of the context before all others.
+/// The planner with most attempts of the context, then of unknown origin.
 std::string usual_planner(std::span<const store::KnownAttempt> known,
                           const std::vector<Origin>& origins) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> counts;  // own, unknown

@@ -70,7 +70,7 @@ void Leases::set_until(const Digest& id, Lease& lease) {
   by_end_.emplace(lease.until, id);
 }
 
-/// The client with the most holds, this one with the one it asks for, loses what ends first.
+/// The client with the most holds, counting the one asked for, loses the hold that ends first.
 void Leases::make_room(const std::string& client) {
   const Load& heaviest = *loads_.rbegin();
   const bool is_own = count_of(client) + 1 > std::get<std::size_t>(heaviest);
@@ -107,7 +107,7 @@ void Leases::end(Digest id) {
   forget(id);
 }
 
-/// \pre nobody holds it any more.
+/// \pre it has no holder any more.
 void Leases::forget(const Digest& id) {
   const auto found = leases_.find(id);
   const Lease& lease = found->second;

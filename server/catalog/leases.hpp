@@ -20,7 +20,7 @@
 
 namespace kinship::catalog {
 
-/// What was found when a distribution was last compared with the experience of its task.
+/// The result of the last comparison of a distribution with the experience of its task.
 struct Comparison {
   ExperienceVersion version;
   bool behind = false;
@@ -30,22 +30,22 @@ struct Comparison {
 Comparison comparison_of(const Distribution& distribution, const ExperienceVersion& version,
                          bool behind);
 
-/// Interest in distributions: clients that follow one hold a lease on it, and as long as one of
-/// them does the distribution is kept up with the experience without being fetched. A bounded
-/// number of holds, in all and of each client. When all are taken the client with the most of them
-/// loses the one that ends first, so that nobody's long leases end others'. Not shared between
-/// threads.
+/// Leases on distributions: clients that follow a distribution hold a lease on it, and while one of
+/// them does, the distribution is kept up to date with the experience without being fetched. The
+/// number of holds is bounded, in all and per client. When all are taken, the client with the most
+/// holds loses the one that ends first, so that long leases of one client do not end those of
+/// others. Not shared between threads.
 class Leases {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   struct Lease {
     fitting::DistributionKey key;
-    TimePoint until;                           ///< the last hold on it ends
-    std::map<std::string, TimePoint> holders;  ///< by client: until when; at least one
+    TimePoint until;                           ///< end of its last hold
+    std::map<std::string, TimePoint> holders;  ///< by client: end of its hold; at least one
     std::optional<Comparison> compared;        ///< missing: not yet, or not any more
-    std::optional<TimePoint> last_look_up;  ///< when it was compared with the store, or tried to be
-    std::optional<TimePoint> due;           ///< when to look again; set by set_due()
+    std::optional<TimePoint> last_look_up;     ///< last comparison with the store, or try
+    std::optional<TimePoint> due;              ///< next look-up; set by set_due()
   };
 
   /// \param max_holds       of all clients together.
@@ -54,7 +54,7 @@ class Leases {
       : max_holds_(max_holds), max_per_client_(max_per_client) {}
 
   /// Takes a lease for a client, or extends the one it has; never shortens it.
-  /// \return false if the client has as many as one may have.
+  /// \return false if the client has its maximum.
   bool take(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
             const std::string& client = {});
   void end(Digest id);  // by value: callers name it out of what is erased here
@@ -62,16 +62,16 @@ class Leases {
 
   /// Forgets the holds that have ended.
   void expire(TimePoint now);
-  /// Whose leases ended in any way since the last call, and were not taken again.
+  /// The distributions whose leases ended in any way since the last call, and were not taken again.
   std::vector<Digest> take_ended();
 
-  /// The lease, also one that has ended and was not forgotten yet; null if there is none. Its key,
-  /// `until`, `holders` and `due` are not to be changed through it.
+  /// The lease, also one that has ended and was not forgotten yet; null if there is none. Do not
+  /// change its key, `until`, `holders` and `due`.
   Lease* find(const Digest& id);
   bool holds(const Digest& id, TimePoint now) const;
-  std::size_t count(TimePoint now) const;                ///< of those that have not ended
+  std::size_t count(TimePoint now) const;                ///< leases that have not ended
   std::size_t holds() const noexcept { return holds_; }  ///< of all clients, not yet forgotten
-  void add_to(std::map<std::string, ClientHolds>& holds) const;  ///< what each client has
+  void add_to(std::map<std::string, ClientHolds>& holds) const;  ///< adds the holds of each client
   std::vector<Digest> of_task(std::string_view task) const;
   std::vector<Digest> of_robot(const Digest& robot) const;
 
@@ -82,8 +82,8 @@ class Leases {
 
  private:
   using ByTime = std::set<std::pair<TimePoint, Digest>>;
-  /// How many holds a client has, how soon the first of them ends, and who it is; the greatest is
-  /// the one that makes room for others.
+  /// Number of a client's holds, how soon the first of them ends, and its name; the client with the
+  /// greatest load makes room for others.
   using Load = std::tuple<std::size_t, TimePoint::duration, std::string>;
   struct Client {
     ByTime by_end;  // at least one

@@ -43,7 +43,7 @@ LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const Shar
       found.known = with_distribution(std::move(*stored));
       store.note_use(id);
     }
-  // After the distribution: what was retired before this is known here.
+  // After the distribution: every retirement before this is known here.
   const std::vector<store::ExperienceSummary> all = store.experience(key.task);
   if (found.known && is_retired(*found.known->distribution, all))
     found.known = nullptr;

@@ -10,16 +10,17 @@
 
 namespace kinship::catalog {
 
-/// What the store knows about a distribution.
+/// The state of a distribution in the store.
 struct LookUp {
-  /// Unknown robot, unreadable robot, unknown source, no experience: nothing can be fitted.
+  /// The final reply if nothing can be fitted: unknown or unreadable robot, unknown source, no
+  /// experience.
   std::optional<FetchReply> end;
-  SharedReply known;                                 ///< null: there is none that may be served
+  SharedReply known;                                 ///< null: none may be served
   std::vector<store::ExperienceSummary> experience;  ///< of the key's selection
 };
 
-/// Finds a distribution and the experience it would be made of now. One whose paths were retired
-/// since is not there.
+/// Finds a distribution and the experience that a fit would use now. A distribution with paths
+/// retired since counts as missing.
 /// \param in_memory  the distribution, if it need not be read; may be null.
 /// \throws Failure(Storage)
 LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const SharedReply& in_memory,

@@ -16,47 +16,48 @@
 
 namespace kinship::catalog {
 
-/// A reply on its way to one or many; shared by the catalog's memory and by those who send it.
+/// A reply, shared by the catalog's memory and the answers being sent.
 using SharedReply = std::shared_ptr<const FetchReply>;
 using FetchDone = std::function<void(const FetchReply&)>;
 
-/// Answers to be given once no lock is held.
+/// Answers to be given without a lock.
 using Answers = std::vector<std::pair<FetchDone, SharedReply>>;
 void give(const Answers& answers);
 
-/// Whether a distribution is there that knows this generation of its robot's own experience.
+/// Whether the reply has a distribution with this generation, or a later one, of its robot's own
+/// experience.
 bool satisfies(const FetchReply& reply, std::uint64_t minimum_generation);
 
-/// Who sent a request: the name of a request is its client's and a number, with a space between.
+/// The client of a request: the name of a request is the client's name, a space and a number.
 inline std::string_view client_of(std::string_view request_key) {
   return request_key.substr(0, request_key.find(' '));
 }
 
-/// What one client may have so many of at a time.
+/// The resources that are limited per client.
 enum class ClientBound { Waiters, Leases, Fits };
 
-/// How many it has.
+/// A client's use of them.
 struct ClientHolds {
   std::size_t waiters = 0, leases = 0, fits = 0;
 };
 
-/// Somebody who waits for a distribution.
+/// A fetch that waits for a distribution.
 struct Waiter {
-  /// The name of its request: a second waiter of the same one takes the place of the first.
+  /// The name of its request: a second waiter of the same request replaces the first.
   std::string key;
   std::uint64_t minimum_generation = 0;
-  /// When it is told Pending. Empty: it takes what the store has.
+  /// When it is answered Pending. Empty: it gets the distribution in the store, if any.
   std::optional<std::chrono::steady_clock::time_point> deadline;
   FetchDone done;
 };
 
-/// One distribution being looked up or fitted, and who waits for it: however many ask, there is
-/// one pending per id. Not shared between threads.
+/// A distribution being looked up or fitted, and its waiters: one per id, for any number of
+/// requests. Not shared between threads.
 class PendingFit {
  public:
   enum class Stage {
-    Idle,       ///< nobody works on it: its waiters ask for experience that has not arrived
-    LookingUp,  ///< the store is being asked
+    Idle,       ///< no work: its waiters want experience that has not arrived
+    LookingUp,  ///< a look-up in the store is queued or running
     Queued,     ///< for a fit
     Fitting
   };
@@ -65,17 +66,17 @@ class PendingFit {
 
   const fitting::DistributionKey& key() const noexcept { return key_; }
   Stage stage = Stage::Idle;
-  bool urgent = false;       ///< while Queued: before the background jobs
-  bool is_wanted = false;    ///< somebody asked, and not a lease alone
-  std::string client;        ///< who asked first; empty: nobody but a lease
-  bool was_evicted = false;  ///< the distribution, since the look began or the fit was compared
-  /// While Idle: its experience changed, but the short task pool had no room; when to try again.
+  bool urgent = false;       ///< while Queued: ahead of background jobs
+  bool is_wanted = false;    ///< a fetch asked, not only a lease
+  std::string client;        ///< that asked first; empty: only a lease did
+  bool was_evicted = false;  ///< the distribution, since the look-up began or the fit was compared
+  /// While Idle: when to try a look-up again that the short task pool had no room for.
   std::optional<std::chrono::steady_clock::time_point> look_up_due;
 
-  /// A waiter that takes another's place keeps the earlier deadline of the two.
+  /// Adds a waiter; one that replaces another keeps the earlier deadline of the two.
   void join(Waiter waiter);
 
-  // Each of these adds an answer for those it lets go.
+  // Each of these removes waiters and adds their answers.
   void answer_all(const SharedReply& reply, Answers& answers);
   void answer_satisfied(const SharedReply& reply, Answers& answers);
   void answer_without_deadline(const SharedReply& reply, Answers& answers);

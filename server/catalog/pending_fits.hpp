@@ -21,22 +21,23 @@ class PendingFits {
   using Map = std::unordered_map<Digest, PendingFit>;
 
   PendingFit* find(const Digest& id);
-  /// The pending of this id, made if there is none. \return it, and whether it is new.
+  /// The pending fit of this id, made if there is none. \return the pending fit, and whether it is
+  /// new.
   std::pair<PendingFit&, bool> open(const Digest& id, const fitting::DistributionKey& key);
   void close(const Digest& id) { pending_.erase(id); }
-  /// Adds an answer for everybody who waits, and closes all.
+  /// Adds an answer for every waiter, and closes all.
   void close_all(const SharedReply& reply, Answers& answers);
 
-  /// Adds an answer for those whose deadline has passed; closes what is idle then.
+  /// Adds an answer for waiters whose deadline has passed; closes pending fits that are idle then.
   void answer_expired(TimePoint now, const SharedReply& reply, Answers& answers);
 
   std::size_t waiters() const;
   std::size_t waiters_of(std::string_view client) const;
-  /// That a client asked for first and that are being looked up or fitted.
+  /// Number of pending fits that a client asked for first and that are not idle.
   std::size_t fits_of(std::string_view client) const;
-  /// Adds what each client has.
+  /// Adds the waiters and fits of each client.
   void add_to(std::map<std::string, ClientHolds>& holds) const;
-  /// When somebody's deadline passes, or a look is due.
+  /// The earliest deadline of a waiter, or due look-up.
   std::optional<TimePoint> next_deadline() const;
 
   Map::iterator begin() { return pending_.begin(); }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxChunks = 32;
 
-/// What a mixture says about the points of one block at a time. Memory of one thread's work.
+/// A mixture at the points of one block at a time. Memory of one thread's work.
 class BlockPosterior {
  public:
   /// \param mixture, kernels  outlive it.
@@ -35,7 +35,7 @@ class BlockPosterior {
   double peak(int row) const { return peaks_[static_cast<std::size_t>(row)]; }
   const double* log_densities() const noexcept { return log_densities_; }  ///< kBlockPoints
 
-  /// What lies so far below the largest term of a point is nothing beside it, nats.
+  /// A term so far below the largest one of a point is negligible, nats.
   static constexpr double kNegligible = 42;
 
  private:
@@ -48,7 +48,7 @@ class BlockPosterior {
   AlignedNumbers bounds_;  // 3 x stride: upper, lower, at the centre
   AlignedNumbers terms_;   // K x kBlockPoints
   std::vector<int> candidates_;
-  std::vector<std::pair<double, int>> order_;  // of candidates: what they are sorted by
+  std::vector<std::pair<double, int>> order_;  // of candidates: keys of their order
   double best_lower_bound_ = 0;
   int count_ = 0;
   std::vector<double> peaks_;
@@ -65,7 +65,7 @@ BlockPosterior::BlockPosterior(const PackedMixture& mixture, const SimdKernels& 
   candidates_.reserve(size);
 }
 
-/// Those that may count somewhere in the block's box, the likeliest first.
+/// Components that may count somewhere in the block's box, the likeliest first.
 void BlockPosterior::choose_candidates(const BlockPoints& points, int block) {
   kernels_.bounds(mixture_.dimension(), mixture_.interleaved(), mixture_.stride(),
                   points.centre(block), points.half_widths(block), bounds_.data());

@@ -233,7 +233,7 @@ class Fit {
   }
 
   /// With at most as many components as the configurations can carry. The mixture before is nearly
-  /// there: what joins it settles on a sample, and all points are seen a few times only.
+  /// there: new components settle on a sample, and all points are seen a few times only.
   FitSummary run_warm(DistinctPoints all, const WarmStart& warm) const {
     const Eigen::Index wanted = options_.components > 0 ? options_.components : warm.mixture.size();
     const Eigen::Index components = components_for(all, configurations_.rows(), wanted);

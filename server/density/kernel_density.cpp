@@ -41,7 +41,7 @@ void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
     throw std::invalid_argument("estimate_kernel_density: need one finite floor >= 0 per joint");
 }
 
-/// Centres of kernels and what each weighs.
+/// Centres and weights of kernels.
 struct Kernels {
   Eigen::MatrixXd centres;  // d x K
   Eigen::VectorXd weights;  // K, sum 1
@@ -126,7 +126,7 @@ float rounded_inward(double number, double lower, double upper) noexcept {
   return nearest;
 }
 
-/// Rounded to f32; what is within limits stays there.
+/// Rounded to f32; values within limits stay there.
 void round_inward(Eigen::MatrixXd& centres, const Eigen::Matrix2Xd& limits) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool has_limits = limits.size() > 0;

@@ -43,7 +43,7 @@ class Distances {
         sums_(static_cast<std::size_t>(points.blocks()), 0.0),
         furthest_(sums_.size(), std::numeric_limits<double>::max()) {}
 
-  /// What a new centre would change.
+  /// The changes that a new centre would make.
   struct Change {
     double total = 0;
     std::vector<int> blocks;

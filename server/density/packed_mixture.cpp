@@ -16,10 +16,10 @@ namespace {
 constexpr int kLaneMultiple = 8;
 /// Instead of the logarithm of 0: finite, so that differences are numbers.
 constexpr double kMinLogWeight = -1e100;
-/// Of what the kernels read: squares of sums of products with points, and sums of them, are finite.
+/// Of the kernels' input: squares of sums of products with points, and sums of them, are finite.
 constexpr double kLargestNumber = 1e120;
 
-/// What components of one covariance have in common.
+/// The part that components of one covariance share.
 struct Whitening {
   explicit Whitening(const Eigen::MatrixXd& factor)
       : matrix(factor.triangularView<Eigen::Lower>().solve(

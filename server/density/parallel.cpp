@@ -48,9 +48,9 @@ class Helpers {
       thread.join();
   }
 
-  /// Does a work here and, at the same time, by up to `most` helpers; returns when none of them is
-  /// at it any more.
-  /// \param work  does what is left of something, until nothing is; does not throw.
+  /// Does a work here and, at the same time, by up to `most` helpers; returns when no helper is at
+  /// it any more.
+  /// \param work  does the rest of something, until nothing is left; does not throw.
   void help(int most, const std::function<void()>& work) {
     start(most);
     {
@@ -62,7 +62,7 @@ class Helpers {
     wake_.notify_all();
     work();
     std::unique_lock lock(mutex_);
-    work_ = nullptr;  // nothing is left: who has not begun need not
+    work_ = nullptr;  // nothing is left: other helpers need not begin
     if (at_work_ == 0)
       return;
     lock.unlock();

@@ -1,5 +1,5 @@
-// Compiled with AVX2 and FMA instructions: see CMakeLists.txt and simd_kernels_body.hpp for what
-// that forbids.
+// Compiled with AVX2 and FMA instructions: see CMakeLists.txt and simd_kernels_body.hpp for the
+// restrictions.
 
 #if defined(__x86_64__)
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kPoorQuantile = 0.01;
 constexpr std::size_t kScoredPoints = 5000;  // of the old ones, and of the new ones
 
-/// The points that are new, or those that are not.
+/// The points that are new, or the others.
 DistinctPoints part_of(const DistinctPoints& points, const std::vector<std::uint8_t>& is_new,
                        bool of_new) {
   DistinctPoints part;
@@ -63,14 +63,14 @@ double quantile(const Eigen::VectorXd& scores, const BlockPoints& points, double
   return scores[order.back()];
 }
 
-/// Some of the points, and what all of them weigh.
+/// Some of the points, and the weight of all of them.
 struct Poor {
   Eigen::MatrixXd configurations;
   DistinctPoints points;  // of these configurations
   double weight = 0;
 };
 
-/// Those below a score.
+/// The points below a score.
 Poor poor_of(const BlockPoints& points, const Eigen::VectorXd& scores, double limit) {
   Poor poor{Eigen::MatrixXd(points.dimension(), points.size()), {}};
   std::uint32_t count = 0;

@@ -31,7 +31,7 @@ std::string of(std::uint64_t part, std::uint64_t whole) {
   return std::to_string(part) + " of " + std::to_string(whole);
 }
 
-/// Why a robot without shapes is not filtered, and what helps.
+/// Why a robot without shapes is not filtered, and the remedy.
 std::string without_shapes(const runtime::Robot& target) {
   std::string words = "not filtered, for '" + target.label + "': " + target.geometry;
   if (target.grade == GeometryGrade::None)

@@ -57,7 +57,7 @@ Digest identify(const DistributionKey& key) {
   sha.add(static_cast<std::uint64_t>(key.since_ms)).add(bits(kPoolVersion));
   sha.add(bits(transfer::kTransferVersion)).add(bits(inverse::kInverseVersion));
   sha.add(bits(density::kDensityVersion));
-  if (key.geometry_revision > 0)  // ids of robots that keep their geometry stay what they were
+  if (key.geometry_revision > 0)  // ids of robots that keep their geometry stay the same
     sha.add(std::string_view("geometry")).add(key.geometry_revision);
   return sha.finish();
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kExperienceVersion = 1;
 constexpr double kMetresPerRadian = 0.3;
 
-/// Of one pose of a path: what distances are computed from.
+/// The parts of a path's pose that distances are computed from.
 struct EndPose {
   explicit EndPose(const Eigen::Isometry3d& T) : p(T.translation()), q(T.linear()) {}
   Eigen::Vector3d p;

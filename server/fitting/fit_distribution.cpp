@@ -24,7 +24,7 @@
 namespace kinship::fitting {
 namespace {
 
-/// What a distribution says of itself before its fit.
+/// A distribution before its fit.
 Distribution begun(const DistributionKey& key, const FitContext& context,
                    const kinematics::Chain& target) {
   Distribution distribution;
@@ -40,7 +40,7 @@ Distribution begun(const DistributionKey& key, const FitContext& context,
   return distribution;
 }
 
-/// The share of poses solved, each source counted by its mass: what a sample's source had.
+/// The share of poses solved at the source of a sample: each source counts by its mass.
 double solved_share(const std::vector<Source>& sources) {
   double share = 0;
   for (const Source& source : sources)
@@ -50,7 +50,7 @@ double solved_share(const std::vector<Source>& sources) {
   return share;
 }
 
-/// What is added to the variance of each joint.
+/// Added to the variance of each joint.
 Eigen::VectorXd covariance_floors(const kinematics::Chain& chain,
                                   const DensityParameters& parameters) {
   Eigen::VectorXd floors(chain.dof());

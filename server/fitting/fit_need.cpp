@@ -18,7 +18,7 @@ std::uint64_t max_poses(const TransferParameters& transfer) {
                                           : static_cast<std::uint64_t>(transfer.max_poses_per_path);
 }
 
-/// As `resample` counts them, and one more for what rounding may do.
+/// As `resample` counts them, and one more for rounding.
 std::uint64_t poses_of(double length, const TransferParameters& transfer) {
   const double kept = length * (1 - 2 * transfer.dropped_end_share);
   const double poses = std::ceil(kept / transfer.pose_spacing) + 2;
@@ -26,7 +26,7 @@ std::uint64_t poses_of(double length, const TransferParameters& transfer) {
       std::clamp(poses, 1.0, static_cast<double>(max_poses(transfer))));
 }
 
-/// What threads hold besides while they transfer: each pose, each track that is tried or kept, and
+/// Further memory of threads while they transfer: each pose, each track that is tried or kept, and
 /// the configurations among which tracks begin.
 double bytes_under_way(const FitNeed& need, const FitSize& size) {
   constexpr double kBytesOfAPose = 1024;
@@ -121,8 +121,8 @@ FitNeed need_by_length(const FitSize& size, const store::Store& store,
 }
 
 std::size_t bytes_of_configuration(Eigen::Index dof) {
-  // As transferred, pooled, in blocks, in blocks of the paths that are not held out; what stands
-  // beside it: pose, solution, weight, path, its place among the distinct ones.
+  // As transferred, pooled, in blocks, in blocks of the paths that are not held out; beside it:
+  // pose, solution, weight, path, its place among the distinct ones.
   constexpr std::size_t kCopies = 4, kBeside = 96;
   return kCopies * sizeof(double) * static_cast<std::size_t>(dof) + kBeside;
 }

@@ -45,7 +45,7 @@ void rethrow_if_passing() {
 
 }  // namespace
 
-/// What one thread transfers: paths that it takes one after the other, several under way at a time.
+/// One thread's share: paths that it takes one after the other, several under way at a time.
 class PathTransfer::Share {
  public:
   /// The arguments outlive it.
@@ -73,7 +73,7 @@ class PathTransfer::Share {
     transfer::PathToTransfer path;  // points to the filters
   };
 
-  /// \return whether all are done; otherwise one of those under way is to blame.
+  /// \return whether all are done; otherwise one of the paths under way is to blame.
   bool try_stream() {
     try {
       transfer::transfer_stream(

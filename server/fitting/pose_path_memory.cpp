@@ -42,7 +42,7 @@ std::vector<SharedPosePath> PosePathMemory::read(const std::string& task,
   return paths;
 }
 
-/// What was put back to an earlier state lacks paths that are known here, and nothing tells which.
+/// A store put back to an earlier state lacks paths that are known here, and nothing tells which.
 void PosePathMemory::forget_other_epochs() {
   const Uuid epoch = store_.epoch();
   if (epoch != epoch_)
@@ -52,7 +52,7 @@ void PosePathMemory::forget_other_epochs() {
 
 void PosePathMemory::update(TaskPaths& known, const std::string& task,
                             const std::stop_token& stop) {
-  // Before the paths: what comes or goes while they are read is noticed the next time.
+  // Before the paths: changes while they are read are noticed the next time.
   const std::vector<store::ExperienceSummary> experience = store_.experience(task);
   std::vector<std::uint64_t> counts;
   counts.reserve(experience.size());
@@ -127,7 +127,7 @@ void PosePathMemory::add(SourcePaths& known, const store::StoredPath& stored,
         {stored.id, stored.received_ms, std::make_shared<const PosePath>(*std::move(path))});
 }
 
-/// Those beyond the store's cap may be of any age.
+/// Paths beyond the store's cap may be of any age.
 void PosePathMemory::forget_dropped(SourcePaths& known, const store::ExperienceSummary& now,
                                     const std::string& task) const {
   const std::vector<std::int64_t> ids = store_.path_ids(now.robot, task, now.generation);
@@ -138,7 +138,7 @@ void PosePathMemory::forget_dropped(SourcePaths& known, const store::ExperienceS
 }
 
 std::size_t PosePathMemory::size_of(const TaskPaths& known) {
-  constexpr std::size_t kNode = 64;  // of a map, and of what a pointer shares, about
+  constexpr std::size_t kNode = 64;  // of a map, and of a shared pointer's block, about
   std::size_t bytes = kNode + sizeof(TaskPaths);
   for (const auto& [robot, source] : known.sources) {
     bytes += kNode + sizeof(SourcePaths) + source.paths.capacity() * sizeof(KnownPath);

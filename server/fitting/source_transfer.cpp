@@ -10,8 +10,8 @@
 namespace kinship::fitting {
 namespace {
 
-// Bounds what one read transaction holds in memory: megabytes, for paths as planners write them;
-// half a gigabyte, were all of them as long and as wide as a report may be.
+// Bounds the memory of one read transaction: megabytes, for paths as planners write them; half a
+// gigabyte, were all of them as long and as wide as a report may be.
 constexpr std::size_t kPathsPerRead = 128;
 
 /// Whether item `index` of `count` is one of the `wanted` that are spread evenly over them.

@@ -20,7 +20,7 @@ std::string_view word_of(Type type) {
   return "untyped";
 }
 
-/// Of a metric or label: [a-z_][a-z0-9_]*, which is stricter than what Prometheus takes.
+/// Of a metric or label: [a-z_][a-z0-9_]*, which is stricter than Prometheus.
 bool is_name(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
   return !name.empty() && is_letter(name.front()) &&
@@ -32,7 +32,7 @@ std::string number(double value) {
     return "NaN";
   if (std::isinf(value))
     return value > 0 ? "+Inf" : "-Inf";
-  // Bounds of buckets as everybody writes them: 0.0001, not 1e-04.
+  // Bounds of buckets as is usual: 0.0001, not 1e-04.
   constexpr double kPlainFrom = 1e-4, kPlainTo = 1e15;
   const double size = std::abs(value);
   const bool is_plain = size == 0 || (size >= kPlainFrom && size < kPlainTo);
@@ -110,7 +110,7 @@ void Exposition::sample(std::uint64_t value, Labels labels) {
   line("", labels, "", std::to_string(value));
 }
 
-/// Reads each bucket once, so that the total is the sum of what was written, also while others
+/// Reads each bucket once, so that the total is the sum of the written ones, also while others
 /// observe.
 void Exposition::histogram(const Histogram& histogram, Labels labels) {
   if (type_ != Type::Histogram)

@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kDay_s = 86'400;
-constexpr double kBurst_s = 10;  // of what comes by the second
+constexpr double kBurst_s = 10;  // of quotas by the second
 constexpr double kMeter_s = 60;
 constexpr milliseconds kShortestRetry{100};
 
@@ -26,7 +26,7 @@ milliseconds retry_in(std::chrono::duration<double> time) {
                   milliseconds(std::lround(std::min(1000 * time.count(), longest))));
 }
 
-/// What is too much, in words, and the option that says so.
+/// The name of a quota's amount, and the option that sets it.
 struct Wording {
   std::string_view what, option;
   double unit;  // of the option
@@ -225,9 +225,9 @@ ClientQuotas::Entries::iterator ClientQuotas::make(const std::string& client, Ti
   return entries_.begin();
 }
 
-/// Whether somebody made room: nothing is given away, for its quotas are whole again.
+/// Whether an entry made room: its quotas are whole again, so nothing is given away.
 bool ClientQuotas::forget_idle(TimePoint now) {
-  constexpr int kMostLooked = 64;  // from those seen longest ago: a flood costs no more than that
+  constexpr int kMostLooked = 64;  // from the oldest on: a flood costs no more than that
   auto entry = entries_.end();
   for (int i = 0; i < kMostLooked && entry != entries_.begin(); ++i) {
     --entry;

@@ -82,7 +82,7 @@ class QueryReader {
     if (stored.scene_id) {
       scene = find_scene(*stored.scene_id);
       if (!scene)
-        return;  // without what stood there it is another query
+        return;  // without its obstacles it is another query
     }
     const Eigen::Isometry3d T_task_base =
         stored.T_task_base.value_or(Eigen::Isometry3d::Identity());

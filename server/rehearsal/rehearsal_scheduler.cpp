@@ -174,9 +174,9 @@ void RehearsalScheduler::work(const Digest& id) {
   try {
     if (is_out_of_date(before.key, before))
       rehearse(id, before.key);
-  } catch (const Stopped&) {  // everybody who waited was answered
+  } catch (const Stopped&) {  // all waiters were answered
   } catch (
-      const std::exception& exception) {  // the store cannot be read: who asks next tries again
+      const std::exception& exception) {  // the store cannot be read: the next request tries again
     options_.log("rehearsal " + id.short_hex() + ": " + exception.what());
   }
   WaiterAnswers answers;
@@ -285,7 +285,7 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64
   entry.known = std::move(known);
 }
 
-/// Leaves the processor to others in proportion to what it took, unless somebody waits.
+/// Leaves the processor to others in proportion to its use, unless a request waits.
 void RehearsalScheduler::rest(const Digest& id, double worked_s) {
   const double rest_s = worked_s * (1 / options_.processor_fraction - 1);
   std::unique_lock lock(mutex_);
@@ -300,7 +300,7 @@ void RehearsalScheduler::let_go(Entry& entry, WaiterAnswers& answers) {
   entry.waiters.clear();
 }
 
-/// Forgets what was not asked for longest.
+/// Forgets the least recently used ones.
 void RehearsalScheduler::make_room() {
   while (entries_.size() > options_.max_rehearsals) {
     auto oldest = entries_.end();

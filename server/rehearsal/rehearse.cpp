@@ -25,7 +25,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// In the order of what they have to prepare before the first sample: the mixture costs most.
+/// In the order of their preparation before the first sample: the mixture costs most.
 constexpr std::array<Guide, kMaxGuideCosts> kByEffort = {
     Guide::None,    Guide::Retreat,        Guide::Ways,        Guide::RetreatWays,
     Guide::Mixture, Guide::RetreatMixture, Guide::WaysMixture, Guide::All};

@@ -29,7 +29,7 @@ Result<kinematics::Chain> read_labelled_chain(const RobotDescription& descriptio
   return kinematics::read_chain(description);
 }
 
-/// What a description says of its robot by itself.
+/// The part of a reply that the description alone gives.
 RegisterReply reply_about(const kinematics::Chain& chain) {
   RegisterReply reply;
   reply.robot = chain.digest();
@@ -88,7 +88,7 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
                                                                      .registered_ms = now_ms});
   if (!status)
     return refused(status.error());
-  // Somebody else may have registered it meanwhile.
+  // Another client may have registered it meanwhile.
   if (*status == RegisterStatus::Known)
     if (const auto refusal = refusal_of_known(reply.robot, may_take))
       return refused(*refusal);
@@ -155,7 +155,7 @@ std::optional<Error> RobotRegistry::refusal_of_known(const Digest& robot,
     return may_take(known.value()->label);
   if (known.error().code == ErrorCode::NotFound)
     return std::nullopt;
-  // A damaged row is written anew by who registers its robot, so it still is somebody's.
+  // Registering its robot writes a damaged row anew, so its label still counts.
   const std::optional<std::string> label = listed_label(robot);
   if (!label)
     throw Failure(known.error());
@@ -173,7 +173,7 @@ std::optional<std::string> RobotRegistry::listed_label(const Digest& robot) cons
   return std::nullopt;
 }
 
-/// Of a robot that is known. Whoever comes second with the same finds the first's.
+/// Of a robot that is known. The second client with the same finds the first's.
 void RobotRegistry::take_geometry(Robot better, const RobotDescription& description,
                                   std::int64_t now_ms, RegisterReply& reply) {
   const std::uint64_t changes_before = changes();
@@ -190,7 +190,7 @@ void RobotRegistry::take_geometry(Robot better, const RobotDescription& descript
                                                  .geometry_ms = now_ms});
   if (!reply.took_geometry)
     return;
-  // Renamed or removed meanwhile, it is not kept; nor may what was read before the write be.
+  // A robot renamed or removed meanwhile is not kept; nor may one read before the write be.
   if (keep(std::move(better), changes_before) != find_in_memory(reply.robot))
     forget(reply.robot, false);
 }
@@ -219,7 +219,7 @@ bool RobotRegistry::read_again(const Digest& robot) {
   return record.has_value();
 }
 
-/// It is read from the store when somebody asks for it next, also by who is reading it just now.
+/// The next request reads it from the store, also one that is reading it just now.
 void RobotRegistry::forget(const Digest& robot, bool is_deleted) {
   const std::lock_guard lock(mutex_);
   ++changes_;
@@ -255,7 +255,7 @@ std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
           labels.push_back(other.label);
       }
     } while (!page.next_cursor.empty() && !is_over());
-  } catch (const Failure&) {  // the robot is registered; whom it is like can be asked again
+  } catch (const Failure&) {  // the robot is registered; similar ones can be asked for again
   }
   return labels;
 }

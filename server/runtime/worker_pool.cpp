@@ -83,7 +83,7 @@ void WorkerPool::work(int niceness) {
   Job job;
   while (next_job(job)) {
     job.run();
-    job = {};  // what it holds ends here, not when the next job comes
+    job = {};  // its references end here, not when the next job comes
   }
 }
 

@@ -1,4 +1,4 @@
-// What administrators change.
+// The verbs by which administrators make changes.
 
 #include <algorithm>
 #include <optional>
@@ -20,7 +20,7 @@ std::string describe(const RobotRemoval& removal) {
          " are gone";
 }
 
-/// What can be asked for again: a part of it may be done until then.
+/// Of a verb that can be requested again: a part of it may be done until then.
 AdminPage page_of_unfinished(const Error& error) {
   AdminPage page = page_of(error);
   page.status = AdminStatus::Failed;

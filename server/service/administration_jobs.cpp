@@ -1,4 +1,4 @@
-// The verbs that begin jobs, are about jobs, or read what jobs made.
+// The verbs that begin jobs, are about jobs, or read the results of jobs.
 
 #include <cstdint>
 #include <memory>
@@ -48,7 +48,7 @@ bool hash(const BackupFile& file, JobRun& run) {
 }
 
 /// The job that reads a backup through; its rows are the SHA-256 digest of its bytes in hexadecimal
-/// digits, and how many there are: whoever then reads the bytes sees that all are there. Reading
+/// digits, and their number: a client that then reads the bytes sees that all are there. Reading
 /// them needs no job, so it goes on after a restart, which ends jobs.
 Jobs::Task hash_backup_job(BackupFile file, const std::string& request_key) {
   // Shared, for a std::function is copyable.
@@ -124,7 +124,7 @@ AdminPage Administration::back_up(const Call& call) {
                        call.audit);
 }
 
-/// In the audit log once, for whoever then reads the bytes.
+/// In the audit log once, for the reading that follows.
 AdminPage Administration::hash_backup(const Call& call) {
   BackupFile file = open_backup(call.request.argument);
   const BackupSummary backup = file.summary();
@@ -134,7 +134,7 @@ AdminPage Administration::hash_backup(const Call& call) {
   return page;
 }
 
-/// Whoever did not have it digested, as after a restart, is in the audit log before the first byte.
+/// A reading without a digest, as after a restart, is in the audit log before the first byte.
 AdminPage Administration::read_backup(const Call& call) {
   const AuditEntry& audit = call.audit;
   const std::size_t begin = row_number(call.request.cursor).value_or_throw();

@@ -22,8 +22,8 @@ AuditRateLimit::Entry& AuditRateLimit::entry_of(const std::string& client,
   const auto found = entries_.find(client);
   if (found != entries_.end())
     return found->second;
-  // How many of a quiet one were left out is forgotten with it: else whoever invents clients could
-  // take all places for good.
+  // The number left out of a quiet client is forgotten with it: else invented clients could take
+  // all places for good.
   if (entries_.size() >= kClients)
     for (auto each = entries_.begin(); each != entries_.end();)
       each = each->second.bucket.is_full(kRate, now) ? entries_.erase(each) : std::next(each);

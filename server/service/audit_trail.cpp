@@ -82,7 +82,7 @@ std::function<void(const Job&)> AuditTrail::ending(AuditEntry entry) {
   };
 }
 
-/// What is not durable is told by the store's own trouble; the act itself cannot be undone.
+/// The store's own trouble reports an entry that is not durable; the act itself cannot be undone.
 void AuditTrail::add(const AuditEntry& entry) noexcept {
   try {
     store_.add_audit(entry);

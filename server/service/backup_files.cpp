@@ -37,7 +37,7 @@ bool is_bare(const std::string& name) {
          });
 }
 
-/// What is written, or lies beside what is.
+/// A file that is being written, or lies beside one that is.
 bool is_unfinished(const std::string& name) {
   return std::ranges::any_of(
       std::initializer_list<const char*>{".part", "-wal", "-shm", "-journal"},

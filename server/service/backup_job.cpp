@@ -15,7 +15,7 @@ Error refused(ErrorCode code, const fs::path& file, const std::string& why) {
   return {code, "backup '" + file.string() + "': " + why};
 }
 
-/// A copy is at most as large as the store and what waits beside it to go into it.
+/// A copy is at most as large as the store with the pages of its WAL.
 std::optional<Error> check_room(const fs::path& file, const store::Store& store,
                                 const BackupPlace& place) {
   const std::uint64_t needed = store.status().bytes;

@@ -1,4 +1,4 @@
-// What other servers of the same store did, and what follows for what this one has in memory.
+// Changes by other servers of the same store, and their consequences for this one's memory.
 
 #include <set>
 #include <string>

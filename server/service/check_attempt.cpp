@@ -18,7 +18,7 @@ struct Range {
 
 Error invalid(std::string message) { return {ErrorCode::InvalidInput, std::move(message)}; }
 
-/// What a joint may report: a continuous one counts its turns.
+/// The values that a joint may report: a continuous one counts its turns.
 Range range_of(const Joint& joint) {
   if (joint.type == JointType::Continuous)
     return {-kMaxJointValue, kMaxJointValue};

@@ -11,7 +11,7 @@
 namespace kinship::service {
 namespace {
 
-/// What to do if the rows cannot be had any more.
+/// The remedy if the rows cannot be had any more.
 std::string after_evicting(const Distribution& distribution) {
   return "; evict distribution " + distribution.id.short_hex() + " and fetch it again";
 }
@@ -39,7 +39,7 @@ Result<fitting::DistributionKey> key_of(const Distribution& distribution,
                                         "fetch it anew"};
 }
 
-/// The experience as the fit saw it: what came later has higher ids, and is not reached.
+/// The experience as the fit saw it: later paths have higher ids, and are not reached.
 std::vector<store::ExperienceSummary> experience_then(const Distribution& distribution) {
   std::vector<store::ExperienceSummary> experience;
   for (const Source& source : distribution.sources)

@@ -11,7 +11,7 @@
 namespace kinship::service {
 namespace {
 
-/// What waits is decided within milliseconds, unless the disk or the server is at its end.
+/// Waiting reports are decided within milliseconds, unless the disk or the server is at its end.
 constexpr RetryAfter kRetryAfter{1000};
 
 /// A robot may be registered later, and a damaged one repaired: their reports are not refused for
@@ -29,7 +29,7 @@ struct Ingest::Batch {
   std::vector<Attempt> attempts;  // until they are handed to the store
   std::vector<catalog::AttemptCost> costs;
   std::vector<Receipt> receipts;
-  std::vector<std::size_t> accepted;    // positions of what the store was given
+  std::vector<std::size_t> accepted;    // positions of the attempts given to the store
   std::vector<std::size_t> path_bytes;  // of each attempt
   std::size_t bytes = 0;
   RetryAfter retry_after{0};
@@ -111,7 +111,7 @@ std::string Ingest::take_in(Batch& batch) {
   return over_quota;
 }
 
-/// Before the answer: who has got it may send the next ones at once.
+/// Before the answer: a client that has it may send the next ones at once.
 void Ingest::let_go_of_client(const Batch& batch) {
   const std::lock_guard lock(mutex_);
   Load& own = clients_[batch.client];
@@ -121,7 +121,7 @@ void Ingest::let_go_of_client(const Batch& batch) {
     clients_.erase(batch.client);
 }
 
-/// After the answer: draining ends when everybody has got one.
+/// After the answer: draining ends when all have got one.
 void Ingest::let_go(const Batch& batch) {
   const std::lock_guard lock(mutex_);
   load_.attempts -= batch.receipts.size();
@@ -169,7 +169,7 @@ void Ingest::check(Batch& batch) {
   }
 }
 
-/// Of what a batch begins at once none is counted yet: the last one may be beyond the quota.
+/// The tasks that a batch begins at once are not counted yet: the last one may be beyond the quota.
 std::optional<quotas::Refusal> Ingest::begins_too_many(const Batch& batch,
                                                        const Attempt& attempt) const {
   if (batch.client.empty() || options_.is_known_task(attempt.task))

@@ -129,7 +129,7 @@ void Jobs::run(const EntryPointer& entry) {
   } catch (const std::exception& exception) {
     ended.message = exception.what();
   }
-  // First: who then finds the job ended, however it asks, finds so what is told here.
+  // First: a caller that then finds the job ended, in any way, finds its consequences, too.
   std::exchange(entry->task.on_end, [](const Job&) {})(ended);
   Calls calls;
   {
@@ -349,7 +349,7 @@ void Jobs::forget_old(TimePoint now) {
   std::size_t kept = 0, bytes = 0;
   std::map<std::string, std::size_t> kept_of;
   std::deque<EntryPointer> remaining;
-  // From the newest to the oldest: those that are too many or too much are the old ones.
+  // From the newest to the oldest, so that the old ones exceed the limits.
   for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
     if (has_ended((*entry)->job.state)) {
       const std::string& owner = (*entry)->task.owner;

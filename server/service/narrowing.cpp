@@ -18,7 +18,7 @@ void throw_if(const std::optional<Error>& refusal) {
     throw Failure(*refusal);
 }
 
-/// What went wrong for others may name their tasks and robots.
+/// Troubles of others may name their tasks and robots.
 void strip(ServerStatus& status) {
   for (TroubleCount& trouble : status.troubles)
     trouble.last.clear();
@@ -32,7 +32,7 @@ std::string Narrowing::label_of(const Digest& robot) const {
   return record ? record->description.label : robot.hex();
 }
 
-/// What is no robot's name, or could be several robots', stays what it is.
+/// A name of no robot, or of several, stays as it is.
 std::string Narrowing::label_of(const std::string& name) const {
   const Result<RobotSummary> robot = find_robot(store_, name);
   return robot ? robot->label : name;
@@ -85,7 +85,7 @@ void Narrowing::apply(AdminPage& page) const {
     std::erase_if(page.rows, [this](AdminRow& row) { return !keeps(row); });
 }
 
-/// Also cuts what of a row is about others.
+/// Also cuts the parts of a row that are about others.
 bool Narrowing::keeps(AdminRow& row) const {
   const auto may_see = [this](const std::string& task, const std::string& robot) {
     return access::may_see(caller_, task, robot);

@@ -258,7 +258,7 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
   if (forwarder_ && used_tasks_.note(request.task, options_.clock.unix_ms()))
     forwarder_->wake_for_task();
-  // Shared by those who ask and answer: they may be on two threads, in either order.
+  // Shared by request and answer: they may be on two threads, in either order.
   const auto watch = std::make_shared<FetchWatch>(options_.clock);
   done = [this, watch, client = std::string(catalog::client_of(waiter)),
           done = std::move(done)](const FetchReply& reply) {
@@ -276,7 +276,7 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
     watch->set_answered();
     done(reply);
   };
-  if (options_.on_event)  // the request is copied for those who watch alone
+  if (options_.on_event)  // the request is copied for watchers alone
     answer = [this, request, answer = std::move(answer)](const FetchReply& reply) {
       answer(reply);
       publish_fetch(events_, robots_, request, reply);
@@ -427,7 +427,7 @@ void Service::shutdown() {
   rehearsals_.stop();
   jobs_.stop();
   reset_pool_.stop(WorkerPool::Leftovers::Abandon);
-  // Each of what waits in these can be asked for again.
+  // Each task that waits in these can be requested again.
   memory_task_pool_.stop(WorkerPool::Leftovers::Abandon);
   short_task_pool_.stop(WorkerPool::Leftovers::Abandon);
   status_pool_.stop(WorkerPool::Leftovers::Abandon);

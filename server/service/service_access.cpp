@@ -19,7 +19,7 @@ std::optional<Error> Service::refusal_of(const Caller& caller, const AdminReques
   return access::refusal_of_job(caller, request.verb, request.argument);
 }
 
-/// Where it waits for nobody who may take long, and nobody for it.
+/// Where it waits for no task that may take long, and none waits for it.
 runtime::WorkerPool& Service::pool_for(AdminVerb verb) {
   if (rule_of(verb).is(VerbRule::Long))
     return reset_pool_;
@@ -74,7 +74,7 @@ void Service::name_robots(const std::set<Digest>& robots,
       others.insert(robot);
   if (others.empty())
     return done(labels);
-  // Shared by the task and by who finds no room for it: what `done` holds may be large.
+  // Shared by the task and the answer if there is no room for it: `done` may be large.
   const auto answer =
       std::make_shared<const std::function<void(const RobotLabels&)>>(std::move(done));
   auto run = [this, labels, others, answer]() mutable {

@@ -1,4 +1,4 @@
-// What a service lets its clients take, and who takes it.
+// The quotas of a service's clients, and their use.
 
 #include <algorithm>
 #include <map>
@@ -107,7 +107,7 @@ Ingest::Options Service::ingest_options() {
   return ingest;
 }
 
-/// Of those that have quotas; who follows something and was forgotten since is not.
+/// Of clients that have quotas; a follower that was forgotten since is left out.
 std::vector<ClientUse> Service::list_clients() const {
   std::vector<ClientUse> rows = clients_.list();
   const std::map<std::string, catalog::ClientHolds> holds = catalog_.holds_of_clients();

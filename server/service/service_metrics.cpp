@@ -1,4 +1,4 @@
-// What a service measures, as families that Prometheus reads; docs/operations.md tells of them.
+// The metrics of a service, as families that Prometheus reads; docs/operations.md describes them.
 
 #include <algorithm>
 #include <optional>
@@ -128,7 +128,7 @@ void expose_store(Exposition& page, const store::StoreStatus& store) {
               {{"epoch", store.epoch.text()}, {"schema", std::to_string(store.schema_version)}});
 }
 
-/// What is told of guidance of a robot in a task.
+/// Guidance of a robot in a task.
 struct Pair {
   std::string task, robot;
   Advice advice;
@@ -171,7 +171,7 @@ void Service::expose(Exposition& page) const {
   expose_upstream(page, store ? store->attempts : 0);
 }
 
-/// What is bounded, and how much of it there is.
+/// Bounded resources, and their use.
 void Service::expose_use(Exposition& page) const {
   const catalog::CatalogUse use = catalog_.use();
   const rehearsal::RehearsalTotals rehearsals = rehearsals_.totals();
@@ -221,7 +221,7 @@ void Service::expose_use(Exposition& page) const {
                events_.dropped());
 }
 
-/// Of the pairs with most attempts among those that somebody fetched for since the start.
+/// Of the pairs with most attempts among the ones fetched for since the start.
 void Service::expose_guidance(Exposition& page) const {
   const catalog::GuidanceWorths worths = advice_.worths(kMaxGuidancePairs);
   std::vector<Pair> pairs;

@@ -1,4 +1,4 @@
-// Of the service: robots that register. Those in memory wait for nobody who needs the store.
+// Of the service: robots that register. One in memory waits for no request that needs the store.
 
 #include <memory>
 #include <string>

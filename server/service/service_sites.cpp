@@ -1,4 +1,4 @@
-// A site's side of what it and the memory above it tell each other (server/sites).
+// A site's side of its exchange with the memory above it (server/sites).
 
 #include <future>
 #include <memory>
@@ -67,7 +67,7 @@ void Service::commit_from_upstream(std::vector<store::SharedReport> reports,
                         });
 }
 
-/// As reports of this site's robots, but that nobody watches each of them.
+/// As reports of this site's robots, but without an event for each of them.
 void Service::note_from_upstream(std::span<const catalog::AttemptCost> costs,
                                  std::span<const Receipt> receipts) {
   std::map<std::string, std::size_t> grown;  // paths
@@ -91,7 +91,7 @@ void Service::stop_forwarder() {
   if (!forwarder_)
     return;
   forwarder_->stop();
-  // What it handed to the store is answered when this is: items are committed in turn.
+  // Its commits are answered when this one is: items are committed in turn.
   std::promise<void> answered;
   store_->commit_shared({}, [&answered](const std::vector<Receipt>&) { answered.set_value(); });
   answered.get_future().wait();

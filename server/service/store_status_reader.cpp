@@ -26,7 +26,7 @@ void StoreStatusReader::run() {
     asked_for_.wait(lock, [this] { return is_stopping_ || asked_ > answered_; });
     if (is_stopping_)
       return;
-    const std::uint64_t answers = asked_;  // all who asked until now
+    const std::uint64_t answers = asked_;  // all requests until now
     const auto asked_at = clock_.now();
     lock.unlock();
     std::optional<store::StoreStatus> status;

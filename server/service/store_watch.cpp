@@ -12,7 +12,7 @@ StoreWatch::StoreWatch(const store::Store& store,
   const std::optional<store::StoreChanges> now = store_.changes_since("");
   if (!now)
     return;
-  cursor_ = now->cursor;  // nothing is in anybody's memory yet
+  cursor_ = now->cursor;  // no memory holds anything yet
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -27,8 +27,7 @@ void StoreWatch::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
       look();
-    } catch (
-        const std::exception&) {  // status() says why; the next look finds what this one did not
+    } catch (const std::exception&) {  // status() says why; the next look finds the changes
     }
     std::unique_lock lock(mutex_);
     stopping_.wait_for(lock, stop, kInterval, [] { return false; });

@@ -18,13 +18,13 @@ void throw_if_stopped(const Way& way) {
     throw Failure(ErrorCode::Unavailable, "the server is stopping");
 }
 
-/// The receipts of a commit. A store may take as long as it likes: whoever stops does not wait.
+/// The receipts of a commit. A store may take as long as it likes: a stop does not wait.
 std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
   if (reports.empty())
     return {};
   way.before_write();
   throw_if_stopped(way);
-  // Shared with the callback, which may come after nobody waits for it any more.
+  // Shared with the callback, which may come after the wait has ended.
   const auto promise = std::make_shared<std::promise<std::vector<Receipt>>>();
   std::future<std::vector<Receipt>> receipts = promise->get_future();
   const auto done = [promise](const std::vector<Receipt>& answered) {
@@ -40,7 +40,7 @@ std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
   return receipts.get();
 }
 
-/// Those whose robots are at the other store by now; the others are refused.
+/// The reports whose robots are at the other store by now; the others are refused.
 std::vector<SharedReport> with_robots(const Way& way, std::vector<SharedReport> reports,
                                       CarriedReports& carried) {
   std::map<Digest, std::optional<Error>> robots;
@@ -111,7 +111,7 @@ CarriedReports carry_reports(const Way& way, std::span<const Uuid> reports, std:
     throw_if_stopped(way);
     store::SharedReports read =
         way.from.read_reports(reports.first(std::min(reports.size(), piece.commit)), piece.bytes);
-    // Only now: what is retired by then includes what was retired before any of these was listed.
+    // Only now: this includes all retirements from before any of these was listed.
     carry_retirements(way, retired, piece);
     carried.left_out += read.looked_at - read.reports.size();
     count(commit(way, with_robots(way, std::move(read.reports), carried)), carried);

@@ -14,7 +14,7 @@ std::uint64_t revision_of(const std::map<Digest, std::uint64_t>& revisions, cons
   return found == revisions.end() ? 0 : found->second;
 }
 
-/// Nothing also if its row is damaged: who registers it anew mends that.
+/// Nothing also if its row is damaged: the next registration mends it.
 std::optional<store::RobotRecord> find_whole(const store::Store& site, const Digest& robot) {
   try {
     return site.find_robot(robot);

@@ -12,7 +12,7 @@
 namespace kinship::sites {
 namespace {
 
-/// Of this thread: what it waits for the memory does not count.
+/// Of this thread: waiting for the memory does not count.
 std::chrono::nanoseconds processor_time() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -40,7 +40,7 @@ Exchange::Exchange(store::Store& site, store::Store& memory, Positions& position
   begin();
 }
 
-/// A memory that lost what it acknowledged is told so, as a server is by its clients.
+/// Tells a memory that it lost acknowledged reports, as clients tell a server.
 void Exchange::begin() {
   if (memory_.has_lost(positions_.mark) && memory_.begin_epoch_if_lost(positions_.mark))
     options_.log("the memory above was rolled back behind what it acknowledged");
@@ -78,8 +78,8 @@ std::chrono::nanoseconds Exchange::take_load() {
          std::chrono::nanoseconds(commits_ns_->exchange(0));
 }
 
-/// After the last one whoever calls step() rests. What is retired by now need not be so again after
-/// a restart.
+/// After the last one the caller of step() rests. Retirements carried by now need not be carried
+/// again after a restart.
 void Exchange::rest_before_write(const std::stop_token& stop) {
   if (!std::exchange(has_written_, true))
     return;
@@ -232,7 +232,7 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
   if (tasks_due_ <= now) {
     want_tasks();
     geometry_.compare_changed();
-    // Also where no task is wanted: what this site sent may be retired above.
+    // Also where no task is wanted: reports that this site sent may be retired above.
     step.has_worked = carry_retirements(way_down(stop), positions_.down_retired, options_.down) > 0;
     save_positions();
     tasks_due_ = look_again();

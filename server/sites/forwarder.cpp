@@ -30,7 +30,7 @@ class Forwarder::Connected {
   Forwarder& forwarder_;
 };
 
-/// However an exchange ends, what it came to is written.
+/// Saves the positions of an exchange, however it ends.
 class Forwarder::Saved {
  public:
   explicit Saved(Exchange& exchange) : exchange_(exchange) {}
@@ -137,7 +137,7 @@ void Forwarder::wait_for_line(const std::stop_token& stop) {
   } while (!stop.stop_requested() && Clock::now() < until);
 }
 
-/// As long as the line holds. \throws what ends it.
+/// As long as the connection lasts. \throws the error that ends it.
 void Forwarder::exchange(const std::stop_token& stop) {
   const std::unique_ptr<store::Store> memory = options_.open();
   const Connected connected(*this, *memory);
@@ -222,8 +222,8 @@ void Forwarder::note_oldest(const Positions& positions) {
   passed_ = positions.passed;
 }
 
-/// For what it took of this machine, and while reports of robots wait here; those for a second at
-/// most, as a busy site would never send anything.
+/// In proportion to its load on this machine, and while reports of robots wait here; for them a
+/// second at most, as a busy site would never send anything.
 void Forwarder::rest(std::chrono::nanoseconds load, const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kLook{20};
   constexpr std::chrono::seconds kLongest{1};

@@ -11,16 +11,16 @@
 
 namespace kinship::store {
 
-/// What keeps a store.
+/// The engine of a store.
 enum class StoreKind {
   SqliteFile,        ///< a path
   PostgresDatabase,  ///< postgresql://... or postgres://...
 };
 
-/// What the name of a store says. \return InvalidInput for a URL of anything else.
+/// The engine that the name of a store asks for. \return InvalidInput for any other URL.
 Result<StoreKind> kind_of_store(std::string_view name);
 
-/// A store's name without what is secret in it: the password of a URL.
+/// A store's name without its secret, the password of a URL.
 std::string displayed_store(const std::string& name);
 
 struct StoreOptions {
@@ -29,7 +29,7 @@ struct StoreOptions {
 };
 
 /// Opens (or makes) the store of this name.
-/// \throws Failure(InvalidInput) for what names none; Failure as the engines say.
+/// \throws Failure(InvalidInput) if the name is of no store; Failure as the engines say.
 std::unique_ptr<Store> open_store(const std::string& name, const StoreOptions& options);
 
 }  // namespace kinship::store

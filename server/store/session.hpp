@@ -16,7 +16,7 @@
 #include "proto/types/failure.hpp"
 #include "server/store/values/bytes.hpp"
 
-/// What the statements of server/store/tables need of an engine.
+/// The interface of an engine to the statements of server/store/tables.
 namespace kinship::store {
 
 /// A value that is bound to a parameter of a statement. Borrows texts and bytes.
@@ -45,7 +45,7 @@ class Parameter {
   }
 
   bool is_null() const noexcept { return is_null_; }
-  const Value& value() const noexcept { return value_; }  ///< of a NULL: its type alone counts
+  const Value& value() const noexcept { return value_; }  ///< of a NULL only its type counts
 
  private:
   Value value_;
@@ -69,12 +69,12 @@ class Row {
 
  private:
   friend class Rows;
-  virtual void release() noexcept = 0;  ///< is not used any more
+  virtual void release() noexcept = 0;  ///< the statement is not used any more
 };
 
-/// The rows that a statement gives, to be read once, in a range-based for or the first alone. A
-/// statement without rows is done when this is made; one that writes and gives rows is read to its
-/// end.
+/// The rows of a statement, to be read once, by a range-based for or the first alone. The
+/// constructor runs a statement without rows to its end; the caller must read one that writes and
+/// gives rows to its end.
 class Rows {
  public:
   explicit Rows(Row& row) : row_(&row), has_row_(row_->next()) {}
@@ -106,14 +106,14 @@ class Rows {
   bool has_row_;
 };
 
-/// SQL that the engines say differently; each empty where an engine has no such thing.
+/// SQL that differs between the engines; each is empty where an engine needs none.
 struct Dialect {
   // For other servers of the same database:
   std::string_view lock_robots = {};  ///< keeps them from changing robots
   std::string_view for_update = {};   ///< of a SELECT: locks the rows
-  std::string_view lock_experience =
-      {};                              ///< the same of table experience, whose keys stay readable
-  std::string_view mark_changed = {};  ///< of an UPDATE: when the row was changed
+  /// The same for table experience, whose keys stay readable.
+  std::string_view lock_experience = {};
+  std::string_view mark_changed = {};           ///< of an UPDATE: sets when the row was changed
   std::string_view note_gone_robot = {};        ///< before the robot $1 is deleted
   std::string_view newest_attempts_first = {};  ///< of an ORDER BY
   // For damage; the first three are expressions on the table:
@@ -124,8 +124,8 @@ struct Dialect {
   std::string_view by_task_robot = {};            ///< behind table path: reads an index alone
 };
 
-/// A connection to a database, used by one thread at a time. Statements are prepared once for each
-/// text, and name their parameters $1, $2, ... A text is not run again while its rows are read.
+/// A connection to a database, used by one thread at a time. Statements are prepared once per text;
+/// their parameters are $1, $2, ... A text must not run again while its rows are read.
 ///
 /// Every method throws the engine's Failure(Storage).
 class Session {
@@ -154,14 +154,14 @@ class Session {
     return found;
   }
 
-  /// Runs a statement that writes; one that meets a damaged page is undone alone.
-  /// \return whether it is done.
+  /// Runs a statement that writes; if it meets a damaged page, it alone is undone.
+  /// \return false if it was undone.
   template <typename... Values>
   bool try_change(std::string_view sql, const Values&... values) {
     return try_run(sql, std::array<Parameter, sizeof...(Values)>{Parameter(values)...});
   }
 
-  /// \return what `read` gives; an empty value if it met a damaged page.
+  /// \return the value of `read`; an empty one if it met a damaged page.
   template <typename Read>
   std::invoke_result_t<Read> unless_damaged(Read read) const {
     try {
@@ -180,7 +180,7 @@ class Session {
     query_with(sql, parameters);
     return true;
   }
-  /// Whether a page, or what stands on it, is damaged, and others are fine.
+  /// Whether a page or its content is damaged and other pages are sound.
   virtual bool is_damage(const Failure& /*failure*/) const noexcept { return false; }
 };
 

@@ -9,40 +9,40 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/uuid.hpp"
 
-/// What one store has that another one is to have, too (server/sites). Reports are only added and
-/// paths only retired, so what two stores have is brought together by adding what is missing, in
-/// any order and as often as one likes.
+/// Exchange of reports between stores (server/sites). Reports are only added and paths only
+/// retired, so two stores become equal by adding missing reports and retirements, in any order and
+/// any number of times.
 namespace kinship::store {
 
-/// A report as it goes from one store to another.
+/// A report on its way from one store to another.
 struct SharedReport {
   Attempt attempt;
-  /// Of the report as its robot sent it: tells a retry from a second use of the UUID. It goes
-  /// along, as a placement that was stored and read again may differ in its last bit.
+  /// Digest of the report as its robot sent it: tells a retry from a second use of the UUID. It is
+  /// sent along, as a placement that was stored and read again may differ in its last bit.
   Digest body;
-  std::int64_t received_ms = 0;  ///< when it came to the first store that had it
-  bool is_retired = false;       ///< its path is in no fit, and is to be in none
+  std::int64_t received_ms = 0;  ///< arrival at the first store that had it
+  bool is_retired = false;       ///< no fit uses its path, here and at the receiver
 };
 
-/// A report that is there.
+/// A report that a store has.
 struct ArrivedReport {
   Uuid report_uuid;
   bool is_retired = false;  ///< its path
 };
 
-/// Some of a list that only grows, and where the next reading begins.
+/// A part of a list that only grows, and the cursor of the next reading.
 template <typename Row>
 struct Feed {
   std::vector<Row> rows;
-  std::string cursor;  ///< behind the last row that was looked at; that asked for if there is none
-  bool has_more = false;  ///< there was more than asked for
+  std::string cursor;     ///< behind the last row read; the caller's if there is none
+  bool has_more = false;  ///< more rows follow
 };
 
 /// Reports that were read whole.
 struct SharedReports {
   std::vector<SharedReport> reports;
-  std::size_t looked_at =
-      0;  ///< of those asked for, the first ones; the others were too many bytes
+  /// Requested reports that were looked at, from the first; the others exceed the bytes.
+  std::size_t looked_at = 0;
 };
 
 }  // namespace kinship::store

@@ -62,7 +62,7 @@ ShapeLanes::ShapeLanes(const ArmPair& pair) : pair_(pair), solver_(pair.target_s
     put(lane, middle);
     work(lane).raw = raw;
   }
-  for (int seat = 0; seat < kSeats; ++seat) {  // what nobody has written is computed with too
+  for (int seat = 0; seat < kSeats; ++seat) {  // unwritten seats are computed with too
     write_pose(Eigen::Isometry3d::Identity(), 1, seat, batch_.target);
     write_pose(Eigen::Isometry3d::Identity(), 1, seat, check_.target);
     write(raw, seat, batch_.q);

@@ -18,8 +18,8 @@
 namespace kinship::transfer {
 namespace {
 
-/// \throws std::invalid_argument with the parameter that breaks a rule. Those of resampling and
-///         inverse kinematics are checked there.
+/// \throws std::invalid_argument with the parameter that breaks a rule. Parameters of resampling
+///         and inverse kinematics are checked there.
 void check_tracking(const TransferParameters& parameters) {
   const auto require = [](bool holds, const char* name, double value, const char* rule) {
     if (!holds)

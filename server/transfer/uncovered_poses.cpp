@@ -68,7 +68,7 @@ std::vector<RandomSolutions> solve_uncovered(const ArmPair& pair, const PathPose
   for (std::size_t pose = 0; pose < count; ++pose)
     if (!covered[pose])
       look(pose, false);
-  // What a sweep finds can only matter to the pose after it: the one before was reached already.
+  // The find of a sweep only matters to the pose after it: the one before was reached already.
   std::vector<bool> looked(count, false);
   for (const bool backward : {false, true})
     for (std::size_t i = 0; i < count; ++i) {

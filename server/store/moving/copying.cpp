@@ -36,7 +36,7 @@ DifferingIds compare_ids(const std::vector<LightRow>& wanted,
   return differing;
 }
 
-/// In the way of nobody until the row that it is of has its own, or is gone.
+/// A label that blocks no other row until this row gets its own, or is gone.
 MovedRow with_passing_label(const MovedTable& robots, MovedRow row) {
   row[robots.column("label")] = "moving " + std::to_string(integer_of(row, 0));
   return row;
@@ -61,7 +61,7 @@ std::map<MovedRow, MovedRow> by_key(const MovedTable& table, std::vector<MovedRo
   return found;
 }
 
-/// Rows that a target is to get; those it has in their place; those of keys that are gone.
+/// Rows that a target lacks or has otherwise; the rows they replace; rows whose keys are gone.
 struct DifferingRows {
   std::vector<MovedRow> wanted, replaced, extra;
 };
@@ -163,7 +163,7 @@ void Copying::copy_pairs() {
 Copying::PairState Copying::state_of(const Pair& pair) {
   PairState state;
   source_.in_snapshot([&] {
-    // Attempts first: each path that one names is among those read after it.
+    // Attempts first: each path that one names is among the paths read after it.
     state.attempts = source_.light(moved_table("attempt"), pair);
     state.paths = source_.light(moved_table("path"), pair);
     state.experience = source_.experience_of(pair);
@@ -223,7 +223,7 @@ void Copying::copy_ids(const MovedTable& table, const std::vector<std::int64_t>&
   }
 }
 
-/// Those that rows name, if the target lacks them.
+/// Copies the scenes that rows name, if the target lacks them.
 void Copying::bring_scenes(const MovedTable& table, const std::vector<MovedRow>& rows) {
   if (table.reading != Reading::ByPair)
     return;

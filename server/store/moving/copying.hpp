@@ -11,14 +11,14 @@
 
 namespace kinship::store::moving {
 
-/// How far a copy is: rows of attempts and paths, about.
+/// Progress of a copy: rows of attempts and paths, about.
 using RowsDone = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
-/// Brings a store to what another one holds: rows that lack or differ are written, those that are
-/// gone are removed. What is equal is not read: of a robot and task it is told by their row of
-/// `experience`, else by ids and what may change beside them. So it goes on where another one was
-/// ended, and a second one brings what came since. The source may be written to meanwhile: each
-/// pair is of one state of it, and what came behind that is for the next one.
+/// Makes a store equal to another: missing and differing rows are written, extra rows removed.
+/// Equal rows are not read: for a robot and task their row of `experience` tells, else ids and the
+/// columns that may change. So a copy continues one that was ended, and a second one brings later
+/// changes. The source may be written to meanwhile: each pair is read in one state, and the next
+/// copy brings later changes.
 class Copying {
  public:
   Copying(Side& source, Side& target, RowsDone rows_done);
@@ -29,7 +29,7 @@ class Copying {
   const std::map<std::string, std::uint64_t>& written() const noexcept { return written_; }
 
  private:
-  /// What is to be brought of a robot and task.
+  /// The state of a robot and task to be copied.
   struct PairState {
     MovedRow experience;
     std::vector<LightRow> attempts, paths;
@@ -52,7 +52,7 @@ class Copying {
   Side& target_;
   const RowsDone rows_done_;
   std::vector<MovedRow> experience_;      // of the source, as its names were read
-  std::vector<MovedRow> removed_robots_;  // of the target, until nothing names them any more
+  std::vector<MovedRow> removed_robots_;  // of the target, until no row refers to them
   std::set<std::int64_t> scenes_;         // that the target has
   std::set<std::int64_t> paths_;          // that the target has, of the pair under way
   std::map<std::string, std::uint64_t> written_;

@@ -131,7 +131,7 @@ class Move {
     });
   }
 
-  /// Until what came during one copy is brought within a second by the next.
+  /// Copies until the changes during one copy take the next one less than a second.
   void copy_beside_server() {
     constexpr int kMaxCopies = 5;
     constexpr double kShort_s = 1;
@@ -163,7 +163,7 @@ class Move {
     result_.verify_s += seconds_since(begin);
   }
 
-  /// Nobody serves the source. It is closed first, so that nobody will.
+  /// No server serves the source. mark_moved() closes it first, so that none will.
   void finish() {
     mark_moved(source_, target_);
     try {
@@ -195,7 +195,7 @@ class Move {
     });
   }
 
-  /// Who opened the source just before it was closed, or wrote to it.
+  /// Throws if a server opened the source just before it was closed, or wrote to it.
   void require_unserved(const std::string& writes) {
     if (const std::string server = source_.served_by(); !server.empty())
       throw Failure(ErrorCode::Unavailable, server + "; stop it and go on");
@@ -210,7 +210,7 @@ class Move {
     try {
       unmark_moved(source_);
     } catch (const std::exception&) {
-      // Whoever opens it is told what to do.
+      // The next opening says how to go on.
     }
   }
 

@@ -191,7 +191,7 @@ MovedTable uses() {
                               "distribution_use.id) AND id IN (SELECT id FROM distribution)"};
 }
 
-/// With what is set aside in SQLite: no revision that was given is given again.
+/// With the quarantined rows of SQLite: no revision is given twice.
 MovedTable evictions() {
   return {.name = "evicted_distribution",
           .columns = {{"digest", Blob}, {"revision"}, {"evicted_ms"}},
@@ -221,7 +221,7 @@ MovedTable audit() {
           .postgres_light = "SELECT id FROM audit ORDER BY id"};
 }
 
-/// Notes, and what keeps revisions growing; epochs, runs and keys belong to one store.
+/// Notes, and the floor of revisions; epochs, runs and keys belong to one store.
 MovedTable settings() {
   const std::string moved = "key = 'revision_floor' OR key LIKE 'note:%'";
   return {.name = "setting",

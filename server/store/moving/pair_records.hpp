@@ -13,15 +13,15 @@ struct RowsSum {
   std::uint32_t digest = 0;
 };
 
-/// That all rows of a robot and task were the same in both stores.
+/// Records that all rows of a robot and task were equal in both stores.
 struct PairRecord {
   RowsSum paths, attempts;
 };
 
 std::uint32_t digest_of(const MovedRow& row, std::uint32_t before = 0);
 
-/// What was compared of pairs while a server went on, kept with the target until the move is done:
-/// it need not be compared again while the row of `experience` is as it was then.
+/// Records of pairs compared beside a server, kept in the target until the move is done: a pair is
+/// not compared again while its row of `experience` is unchanged.
 class PairRecords {
  public:
   explicit PairRecords(Side& target) : target_(target) {}

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kClaim = "moving_run";
 constexpr std::string_view kArrival = "moving_arrival";  // the transaction that all rows came in
 
-/// What one type of array is made of. Texts and reals are never NULL in these tables.
+/// The elements of an array of one type. Texts and reals are never NULL in these tables.
 template <typename Element, typename Make>
 std::vector<Element> elements_of(std::span<const MovedRow> rows, std::size_t column, Make make) {
   std::vector<Element> elements;
@@ -84,8 +84,8 @@ std::string unnested(const MovedTable& table, std::size_t count) {
   return text + ")";
 }
 
-/// As the other engine's; what the server keeps of a row's arrival is of one transaction, so that
-/// ids alone order what came from elsewhere.
+/// As the other engine's; all rows arrive in one transaction, so that ids alone order rows from
+/// elsewhere.
 std::string upsert_sql(const MovedTable& table) {
   const std::size_t columns = table.columns.size();
   const std::string arrival = "$" + std::to_string(columns + 1) + "::text::xid8";
@@ -204,7 +204,7 @@ class PostgresSide : public Side {
         parameters);
   }
 
-  /// What servers add next comes behind what was moved.
+  /// Ids of later rows follow the moved ones.
   void complete() override {
     for (const MovedTable& table : moved_tables())
       if (table.columns.front().name == "id" && table.name != "distribution_use")

@@ -19,11 +19,11 @@
 
 namespace kinship::store::moving {
 
-/// Settings of a target that begin so are gone once the move is done.
+/// Prefix of settings of a target that are deleted once the move is done.
 inline constexpr std::string_view kPairRecord = "moving_pair.";
 
-/// A store that is read from, or filled, row by row, past the interface that servers have. Used by
-/// one thread. What is written is in a transaction. Methods throw Failure(Storage).
+/// The source or target of a move: a store read or filled row by row, without the interface of
+/// servers. Used by one thread. Writes need a transaction. Methods throw Failure(Storage).
 class Side {
  public:
   Side() = default;
@@ -32,59 +32,60 @@ class Side {
   virtual ~Side() = default;
 
   virtual const std::string& name() const = 0;  ///< without a password
-  /// The same for each way to name it, and another one's for no other.
+  /// Identifies the store: equal for all its names, different for other stores.
   virtual std::string identity() = 0;
   virtual Uuid epoch() = 0;  ///< the newest; zero: no server had it open
 
-  /// Runs readings that see one state of it. Short: a server may wait for their end.
+  /// Runs readings in one state of the store. Keep them short: a server may wait for their end.
   virtual void in_snapshot(const std::function<void()>& read) = 0;
   std::vector<MovedRow> all(const MovedTable& table);
   /// The row of `experience`; empty: there is none.
   MovedRow experience_of(const Pair& pair);
-  /// Those of the ids that are there, in the order of ids.
+  /// The rows with these ids that exist, in order of ids.
   virtual std::vector<MovedRow> of_ids(const MovedTable& table,
                                        std::span<const std::int64_t> ids) = 0;
-  /// By id. \param pair  of a table that is read by pairs.
+  /// In order of ids. \param pair  for a table that is read by pairs.
   virtual std::vector<LightRow> light(const MovedTable& table, const Pair& pair);
   std::vector<LightRow> light(const MovedTable& table) { return light(table, {}); }
 
   std::string setting(std::string_view key);  ///< empty: none
   void put_setting(std::string_view key, const std::optional<std::string>& value);
 
-  /// Who has it open, in words; empty: nobody. Where it can be, it is kept closed from then on.
+  /// The servers that have it open, as text; empty: none. Then a file is locked against servers
+  /// from now on.
   virtual std::string served_by() = 0;
-  /// Differs once anybody else has written reports.
+  /// A text that changes once another program has written reports.
   virtual std::string writes_seen() = 0;
-  /// Whether there is anything in it that a move would bring, or mix with.
+  /// Whether it has rows that a move copies or that would mix with them.
   virtual bool has_content();
 
-  /// What a crash takes of it is copied again.
+  /// Need not be durable on return: rows lost in a crash are copied again.
   virtual void in_transaction(const std::function<void()>& write) = 0;
-  /// The last one: it and all before it are durable on return.
+  /// The last transaction: it and all earlier ones are durable on return.
   virtual void in_last_transaction(const std::function<void()>& write) = 0;
-  /// Only this object may write from now on: transactions of others that claimed it fail.
+  /// Only this object may write from now on: transactions of earlier claims fail.
   virtual void claim() = 0;
-  /// Inserts rows, or replaces those of their keys.
+  /// Inserts rows, or replaces the rows of their keys.
   virtual void write(const MovedTable& table, std::span<const MovedRow> rows) = 0;
   virtual void erase(const MovedTable& table, std::span<const MovedRow> rows) = 0;
-  /// Makes what follows from the rows: counters of ids, what one engine alone keeps.
+  /// Derives data from the rows: counters of ids, and data of one engine only.
   virtual void complete() = 0;
   void add_audit(const AuditEntry& entry);
-  /// Removes all that a move wrote, and the claim.
+  /// Removes all rows that a move wrote, and the claim.
   virtual void remove_all() = 0;
 
  protected:
-  /// How an engine gives the rows of a table, as SQL.
+  /// SQL of an engine for the rows of a table.
   struct Selection {
     std::string columns, from, condition;
     const std::string& light;
   };
   virtual Selection selection_of(const MovedTable& table) const = 0;
   virtual Session& session() = 0;
-  /// Of a failure of the engine one that names the store; nothing of any other.
+  /// A failure of the engine with the store's name added; nothing for other failures.
   virtual std::optional<Failure> naming_store(const Failure& failure) const = 0;
 
-  /// Runs what may meet a failure of the engine.
+  /// Runs a function; adds the store's name to a failure of the engine.
   template <typename Function>
   std::invoke_result_t<Function> named(Function function) const {
     try {
@@ -119,21 +120,21 @@ MovedRow read_row(const Row& row, const MovedTable& table) {
   return cells;
 }
 
-/// A file that is moved from. A server may have it open: then it is read beside that, in short
-/// snapshots, and never written; else its lock is held.
-/// \throws Failure(NotFound) if it is not there; Failure(Storage) if it is no store of today's
+/// A file as the source. If a server has it open, it is read in short snapshots and never written;
+/// else its lock is held.
+/// \throws Failure(NotFound) if it does not exist; Failure(Storage) if it is no store of today's
 ///         schema.
 std::unique_ptr<Side> open_sqlite_source(const std::filesystem::path& file);
 
-/// A file that is moved to, made if it is not there; its lock is held.
+/// A file as the target, made if missing; its lock is held.
 /// \throws Failure(Unavailable) if a server has it open.
 std::unique_ptr<Side> open_sqlite_target(const std::filesystem::path& file);
 
-/// A database that is moved from. Servers may have it open.
+/// A database as the source. Servers may have it open.
 /// \throws Failure(NotFound) if there is no store in it; Failure(Storage), Failure(InvalidInput).
 std::unique_ptr<Side> open_postgres_source(const std::string& url);
 
-/// A database that is moved to; it gets our tables if it has none.
+/// A database as the target; it gets the tables of a store if it has none.
 std::unique_ptr<Side> open_postgres_target(const std::string& url);
 
 }  // namespace kinship::store::moving

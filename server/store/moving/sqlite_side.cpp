@@ -126,7 +126,7 @@ class SqliteSide : public Side {
     named([&] {
       make_wal_durable(file_);
       database_ = open_migrated(file_, embedded_migrations());
-      // What a power cut takes of the last seconds is copied again.
+      // Writes of the last seconds that a power cut takes are copied again.
       database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
     });
     files::sync_folder_of(file_);
@@ -186,7 +186,7 @@ class SqliteSide : public Side {
         throw;
       return failure.what();
     }
-    // What a server left in the WAL is read once it is on the disk.
+    // A WAL that a server left is read once it is on the disk.
     database_.reset();
     make_wal_durable(file_);
     open_beside();
@@ -200,7 +200,7 @@ class SqliteSide : public Side {
   void in_transaction(const std::function<void()>& write) override {
     if (is_target_)
       return named([&] { in_transaction_of(*database_, write); });
-    // Of a source only its mark is written, and only while nobody has it open.
+    // Of a source only its mark is written, and only while no server has it open.
     if (!lock_)
       throw Failure(ErrorCode::Unavailable, "store '" + name_ + "': a server has it open");
     database_.reset();
@@ -306,7 +306,7 @@ class SqliteSide : public Side {
                                            : ""));
   }
 
-  /// Whole or not at all: who goes on after a full disk finds no half of a schema.
+  /// Whole or not at all: a retry after a full disk finds no half of a schema.
   void make_empty_store() const {
     named([&] {
       files::NewFile file(file_, kNewDatabase);

@@ -72,7 +72,7 @@ std::uint32_t checksum_of(const MovedTable& table, const MovedRow& row) {
   return crc32c(bytes_of(table, row, "payload"));
 }
 
-/// What people know a row by: "path 7 (report 0194...)".
+/// A row's name for people: "path 7 (report 0194...)".
 std::string describe_row(const MovedTable& table, const MovedRow& row) {
   if (has_column(table, "report_uuid"))
     return table.name + " " + words_of(row[0]) + " (report " +
@@ -213,7 +213,7 @@ class Verifier {
     return std::move(verification_);
   }
 
-  /// What changed while it was compared is neither equal nor different.
+  /// A pair that changes while it is compared is neither equal nor different.
   Verification run_beside_server() {
     for (const Pair& pair : pairs_) {
       const MovedRow experience = source_.experience_of(pair);

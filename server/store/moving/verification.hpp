@@ -10,7 +10,7 @@
 
 namespace kinship::store::moving {
 
-/// What a comparison of a table of two stores found.
+/// The result of comparing a table of two stores.
 struct VerifiedTable {
   std::string name;
   RowsSum source = {}, target = {};
@@ -26,12 +26,12 @@ struct Verification {
   bool is_equal() const noexcept { return differences == 0; }
 };
 
-/// Compares each row of two stores that nobody writes to, cell by cell. Of a robot and task that
-/// was compared before and has not changed since, ids and what may change beside them are.
+/// Compares each row of two stores, not written meanwhile, cell by cell. For a robot and task
+/// compared before and unchanged since, it compares ids and the columns that may change.
 Verification verify(Side& source, Side& target, const RowsDone& rows_done);
 
-/// Compares the paths and attempts of each robot and task that was not compared before, while the
-/// source may be written to; what changes meanwhile is left for verify().
+/// Compares the paths and attempts of each robot and task not compared before, while the source may
+/// be written to; pairs that change meanwhile are left for verify().
 Verification verify_beside_server(Side& source, Side& target, const RowsDone& rows_done);
 
 }  // namespace kinship::store::moving

@@ -11,16 +11,16 @@
 
 namespace kinship::store::postgres {
 
-/// Changes that somebody waits for, each a transaction. May be shared between threads.
+/// Changes that a caller waits for, each a transaction. May be shared between threads.
 class DurableWrites {
  public:
-  /// \param require_synchronous  nothing is committed without a standby that has it.
+  /// \param require_synchronous  every commit needs a synchronous standby.
   DurableWrites(ConnectionPool::Connect connect, bool require_synchronous)
       : pool_(std::move(connect)), require_synchronous_(require_synchronous) {}
 
-  /// Runs `function(Connection&)` in a transaction, again where it was in conflict with another
-  /// server's or the connection was dead, and returns when it is durable.
-  /// \throws PostgresError; Failure(Storage) if it is not certain whether it is done.
+  /// Runs `function(Connection&)` in a transaction, again after a conflict with another server or
+  /// on a dead connection, and returns when it is durable.
+  /// \throws PostgresError; Failure(Storage) if the outcome of the commit is not certain.
   template <typename Function>
   std::invoke_result_t<Function, Connection&> write(Function function) {
     constexpr int kTries = 5;

@@ -65,7 +65,7 @@ std::vector<std::int64_t> FitReads::path_ids(const Digest& robot, std::string_vi
       [](const std::vector<std::int64_t>&) { return true; });
 }
 
-/// What is under an id is always the same.
+/// The scene of an id never changes.
 SceneRead FitReads::scene(std::int64_t id) {
   SceneRead scene;
   const auto read_replica = [&](Connection& connection) {
@@ -95,8 +95,8 @@ bool FitReads::ask_replicas(std::size_t first, const ReadReplica& read) {
   return false;
 }
 
-/// Nothing while this server's run is one of a primary from before: what a standby of that one has
-/// may be lost.
+/// Nothing while this server's run is of an earlier primary: rows on a standby of that one may be
+/// lost.
 std::optional<Uuid> FitReads::usable_run() const {
   const std::int64_t now = primary_.timeline();
   const std::lock_guard lock(mutex_);

@@ -22,17 +22,17 @@
 
 namespace kinship::store::postgres {
 
-/// What fits read: of a replica that has the generation which is wanted, in the state of the
-/// database that is read, else of the primary. What is read of a robot and task is never older than
-/// what was read of them before. May be shared between threads.
+/// The readings of fits: from a replica whose state has the wanted generation, else from the
+/// primary. Successive readings of a robot and task never go back in time. May be shared between
+/// threads.
 class FitReads {
  public:
   /// \param primary, readers  outlive it; readers are connections to the primary.
-  /// \param uses_replicas     else all comes from the primary.
+  /// \param uses_replicas     false: the primary alone is read.
   FitReads(const Primary& primary, ConnectionPool& readers, bool uses_replicas);
 
-  /// This server began a run, on a primary of a timeline. Who has the row of that run has the
-  /// history of that primary, and not one of a primary from before, with what was lost since.
+  /// Notes that this server began a run, on a primary of a timeline. A standby with the row of that
+  /// run has the history of that primary, not that of an earlier primary with rows lost since.
   void run_began(const Uuid& run, std::int64_t timeline);
 
   /// See Store.
@@ -45,11 +45,11 @@ class FitReads {
 
  private:
   using Pair = std::pair<Digest, std::string>;
-  /// Of a standby that has the history of the primary.
+  /// Reads from a standby that has the history of the primary.
   using ReadReplica = std::function<Replica::Answer(Connection&)>;
 
-  /// \param read      gives a value of one state of the database.
-  /// \param is_whole  whether nothing in it is damaged; else the primary is asked.
+  /// \param read      reads a value from one state of the database.
+  /// \param is_whole  false if a part of it is damaged; then the primary is asked.
   template <typename Value, typename Read, typename IsWhole>
   Value read_pair(const Pair& pair, std::uint64_t generation, Read read, IsWhole is_whole);
   bool ask_replicas(std::size_t first, const ReadReplica& read);

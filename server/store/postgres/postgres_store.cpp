@@ -66,7 +66,7 @@ class PostgresStore : public Store {
       return readers_.read(
           [&](Connection& connection) { return history_.is_gone(connection, *doubtful); });
     } catch (const PostgresError&) {
-      return false;  // what the database says is not known now
+      return false;  // the database's answer is not known now
     }
   }
 
@@ -388,7 +388,7 @@ class PostgresStore : public Store {
                                   "the queue of reports is full, try again"));
   }
 
-  /// On the writer's thread; nobody waits for it.
+  /// On the writer's thread; no caller waits for it.
   void write_later(std::function<void(Connection&)> function) const {
     QueuedItem item;
     item.write = std::move(function);
@@ -402,7 +402,7 @@ class PostgresStore : public Store {
         [noticed = std::move(noticed)](Connection& connection) { set_aside(connection, noticed); });
   }
 
-  /// What the database says, or said last.
+  /// The database's counts, or the last ones it gave.
   void count(StoreStatus& status) const {
     try {
       readers_.read([&](Connection& connection) {

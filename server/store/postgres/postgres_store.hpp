@@ -13,16 +13,17 @@
 namespace kinship::store {
 
 struct PostgresOptions {
-  /// Reports that come while more than this waits to be written are answered TryAgain.
+  /// Reports that arrive while more than this is queued are answered TryAgain.
   std::size_t max_queued_bytes = std::size_t{64} << 20U;
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to connect again
-  /// Of one statement: a server that does not answer for so long is given up. Not of a COMMIT.
+  /// Time limit of one statement, after which the connection is given up. Not for a COMMIT.
   std::chrono::milliseconds patience{10'000};
-  std::uint64_t max_distribution_bytes = 0;  ///< beyond that those not used for longest go; 0: none
-  std::uint64_t max_paths_per_pair = 0;      ///< of a robot and task; 0: no cap
-  /// Nothing is acknowledged that no synchronous standby has.
+  /// Beyond it the least recently used distributions are deleted; 0: no limit.
+  std::uint64_t max_distribution_bytes = 0;
+  std::uint64_t max_paths_per_pair = 0;  ///< of a robot and task; 0: no cap
+  /// Receipts are given only for commits that a synchronous standby has.
   bool require_synchronous = false;
-  /// What fits read may come from standbys that the URL names, see store.hpp.
+  /// Fits may read from standbys named in the URL, see store.hpp.
   bool read_replicas = true;
   /// Takes a line when reports cannot be stored and when they can again, from a thread of the
   /// store's own; may be empty.
@@ -32,7 +33,7 @@ struct PostgresOptions {
 /// Opens (or makes) a store in a PostgreSQL database: connects, migrates an older schema, starts
 /// the thread that writes. Several servers may have it open. Destroying the store drains the queue.
 /// \param url  postgresql://... , as libpq reads it.
-/// \throws Failure(InvalidInput) for what is no connection string; Failure(Storage) if the database
+/// \throws Failure(InvalidInput) if `url` is no connection string; Failure(Storage) if the database
 ///         cannot be reached, is a standby, too old, or newer than this binary. No message names a
 ///         password.
 std::unique_ptr<Store> open_postgres_store(const std::string& url,

@@ -40,8 +40,8 @@ bool is_number(std::string_view text) {
          std::ranges::all_of(text, [](char letter) { return letter >= '0' && letter <= '9'; });
 }
 
-/// Since which transaction to look. Those of another primary have the numbers of some that this one
-/// never had: everything is told then.
+/// The transaction to look from. Numbers of another primary may name transactions that this one
+/// never had: then everything is reported.
 std::string transaction_of(std::string_view cursor, std::string_view timeline) {
   const std::size_t point = std::min(cursor.find('.'), cursor.size());
   const std::string_view transaction = cursor.substr(std::min(point + 1, cursor.size()));
@@ -50,9 +50,9 @@ std::string transaction_of(std::string_view cursor, std::string_view timeline) {
   return cursor.substr(0, point) == timeline ? std::string(transaction) : "0";
 }
 
-/// What was committed since a look; see Store::changes_since(). The cursor is a transaction id
-/// below which nothing was under way then. Reads one state of the database: in a snapshot. \throws
-/// Failure(InvalidInput) for a cursor that is none.
+/// Changes committed since the last look; see Store::changes_since(). The cursor is a transaction
+/// id below which no transaction was under way then. Reads one state of the database: in a
+/// snapshot. \throws Failure(InvalidInput) for a cursor that is none.
 StoreChanges changes_since(Connection& connection, std::string_view cursor) {
   const std::string timeline = std::to_string(timeline_of(connection));
   StoreChanges changes;

@@ -12,19 +12,19 @@
 
 namespace kinship::store::postgres {
 
-/// This server among the others of its database: it is alive as long as it looks what they did, and
-/// has the right to fit what it fits for as long. May be shared between threads.
+/// This server among the others of its database: it counts as alive, and keeps its rights to fit,
+/// as long as it calls changes_since(). May be shared between threads.
 class Presence {
  public:
   /// \param pool  outlives it.
   explicit Presence(ConnectionPool& pool) : pool_(pool) {}
   Presence(const Presence&) = delete;
   Presence& operator=(const Presence&) = delete;
-  ~Presence();  ///< from now on it is not there: nobody waits until it counts as dead
+  ~Presence();  ///< deregisters the server, so that others need not wait until it counts as dead
 
   const Uuid& server() const noexcept { return server_; }
 
-  /// See Store. Called at least every 2 s by who wants to keep its rights.
+  /// See Store. To be called at least every 2 s to keep the rights.
   StoreChanges changes_since(std::string_view cursor);
   std::optional<FitRight> take_fit_right(const Digest& id);
   void give_back_fit_right(const Digest& id, const FitRight& right) noexcept;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::chrono::seconds kPatience{3};  // the primary can be asked instead
 constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{60}, kPauseOfAPrimary{10};
 
-/// Whether the server ended the reading alone, for what it had to replay, and goes on.
+/// Whether the server ended only the reading, in favour of its replay, and goes on.
 bool is_conflict(const PostgresError& error) {
   return error.kind() == ErrorKind::Conflict || error.kind() == ErrorKind::Busy;
 }

@@ -12,25 +12,26 @@
 
 namespace kinship::store::postgres {
 
-/// A host of the database that may be a standby, which is read while it is one and answers. One
-/// that did not answer is left alone for a while, twice as long each time; then one reader tries
-/// it, and the others do without. May be shared between threads.
+/// A host of the database that may be a standby, read while it is one and answers. After a missing
+/// answer it is not asked for a while, twice as long each time; then one reader tries it, and the
+/// others go on without it. May be shared between threads.
 class Replica {
  public:
-  /// What became of a reading.
+  /// The outcome of a reading.
   enum class Answer {
     Read,     ///< done
-    Behind,   ///< it does not have yet what is wanted
+    Behind,   ///< it does not have the wanted state yet
     Primary,  ///< it takes writes: not to be read as a replica
-    Damaged,  ///< what it has cannot be read
-    Failed,   ///< it did not answer, or ended the reading for what it had to replay
+    Damaged,  ///< its data cannot be read
+    Failed,   ///< it did not answer, or ended the reading to replay changes
     LeftOut   ///< was not asked
   };
   using Read = std::function<Answer(Connection&)>;
 
   Replica(const ConnectionString& host, const ConnectionOptions& options);
 
-  /// Runs `read` on one state of the database. What fails is not tried again, nor thrown.
+  /// Runs `read` on one state of the database. A PostgresError is neither thrown nor followed by
+  /// another try.
   Answer read(const Read& read);
 
   ReplicaUse use() const;

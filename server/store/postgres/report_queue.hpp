@@ -16,7 +16,7 @@
 
 namespace kinship::store::postgres {
 
-/// What waits to be written: a client's batch of attempts, or something that nobody waits for.
+/// An item of the queue: a client's batch of attempts, or a write without a waiting caller.
 struct QueuedItem {
   std::vector<std::optional<PreparedAttempt>> prepared;  ///< empty: answered already
   std::vector<Receipt> receipts;                         ///< one an attempt
@@ -27,14 +27,14 @@ struct QueuedItem {
   std::size_t weight() const { return receipts.empty() ? 1 : receipts.size(); }
 };
 
-/// Encodes and hashes on the caller's thread, which spares the writer's. What cannot be stored is
-/// refused here.
+/// Encodes and hashes on the caller's thread, which spares the writer's. Refuses attempts that
+/// cannot be stored.
 QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done);
 
-/// The same of what another store has.
+/// The same for reports from another store.
 QueuedItem prepare_item(std::vector<SharedReport> reports, Store::ReportsDone done);
 
-/// For reports that there is no room to queue: each is answered TryAgain, in turn.
+/// For reports that the queue has no room for: each is answered TryAgain, in order.
 QueuedItem declined_item(const std::vector<Uuid>& reports, Store::ReportsDone done,
                          const std::string& why);
 
@@ -43,8 +43,8 @@ class ReportQueue {
  public:
   void push(QueuedItem item);
 
-  /// Waits for items, but not longer than a second, and takes those that make one transaction.
-  /// \return nothing once it is closed and empty.
+  /// Waits for items, at most a second, and takes the items of one transaction.
+  /// \return nothing once the queue is closed and empty.
   std::optional<std::vector<QueuedItem>> take();
   void close();
 

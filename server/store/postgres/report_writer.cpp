@@ -18,8 +18,8 @@ std::string in_doubt(const std::string& why) {
   return "whether it is stored is not certain (" + why + "); a report that comes again tells";
 }
 
-/// What is retired in another store is so here before it is looked at. \return whether there is
-/// any.
+/// Retires the reports that another store retired, before they are looked at. \return whether there
+/// are any.
 bool retire_first(Connection& connection, const std::vector<const PreparedAttempt*>& attempts) {
   std::vector<Uuid> retired;
   for (const PreparedAttempt* const prepared : attempts)
@@ -184,7 +184,7 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
 
 void ReportWriter::write_alone(const std::function<void(Connection&)>& write) {
   if (!connection_)
-    return;  // what nobody waits for may be lost
+    return;  // a write without a waiter may be lost
   try {
     Transaction transaction(*connection_, Transaction::Kind::Write);
     write(*connection_);

@@ -26,38 +26,38 @@ struct ReportWriterOptions {
   std::function<void(std::string_view)> log = {};
 };
 
-/// That what is committed on this connection waits for a standby.
-/// \throws PostgresError that says what is not set.
+/// Checks that commits on this connection wait for a standby.
+/// \throws PostgresError that names the missing setting.
 void require_standby(Connection& connection);
 
-/// The thread that writes reports, on a connection of its own. It takes whatever is queued as one
-/// transaction and answers when the commit is certain; nobody waits for a timer. While the database
-/// is away, or without a standby that it must have, reports are answered TryAgain, and it is tried
-/// once a second to go on. A commit that waits for a standby is waited for, as long as it takes.
+/// The thread that writes reports, on a connection of its own. It writes the queued items, up to a
+/// cap, in one transaction and answers when the commit is certain, without a timer. While the
+/// database does not answer, or lacks a required standby, reports are answered TryAgain, and the
+/// thread tries again every `retry_after`. It waits for a commit without limit, as for a standby.
 class ReportWriter {
  public:
   /// \param connection  on which a run of the history has begun.
-  /// \param connected   called on the writer's thread when it has connected anew.
+  /// \param connected   called on the writer's thread after each reconnection.
   ReportWriter(Primary& primary, History& history, std::unique_ptr<Connection> connection,
                ReportWriterOptions options, std::function<void(Connection&)> connected);
   ReportWriter(const ReportWriter&) = delete;
   ReportWriter& operator=(const ReportWriter&) = delete;
-  /// Writes what is queued. What the database does not take within some seconds is answered
-  /// TryAgain.
+  /// Writes the queued items. Reports that the database does not take within some seconds are
+  /// answered TryAgain.
   ~ReportWriter();
 
   void submit(QueuedItem item) { queue_.push(std::move(item)); }
 
   std::size_t queued() const { return queue_.weight(); }
   std::size_t queued_bytes() const { return queue_.bytes(); }
-  /// Empty while reports are stored; else why they are not.
+  /// Empty while reports are stored; else the reason why not.
   std::string trouble() const;
 
-  /// Ends what the connection waits for: the interrupt that `primary` was made with.
+  /// Ends the waits of the connection: the interrupt that `primary` was made with.
   void set_interrupt(Interrupt& interrupt) noexcept { interrupt_ = &interrupt; }
 
  private:
-  /// An attempt on its way, and where its receipt goes.
+  /// An attempt being written, and the place of its receipt.
   struct Pending {
     const PreparedAttempt* prepared = nullptr;
     Receipt* receipt = nullptr;

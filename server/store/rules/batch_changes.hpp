@@ -11,7 +11,7 @@
 #include "server/store/store.hpp"
 #include "server/store/values/path_content.hpp"
 
-/// What a batch of reports changes in a store. Pointers are to the attempts of the batch.
+/// The changes of a store by a batch of reports. Pointers are to the attempts of the batch.
 namespace kinship::store {
 
 /// The codes are part of the schema.
@@ -23,11 +23,11 @@ struct NewPath {
   ExperienceKey key;
   std::int64_t id = 0;
   std::int64_t received_ms = 0;
-  bool is_dropped = false;  ///< kept by one attempt, and dropped by it or a later one of the batch
+  bool is_dropped = false;  ///< stored by one attempt, dropped by it or a later one of the batch
   bool is_retired = false;
 };
 
-/// What the row of a path has and its checksum is over.
+/// The content of a path's row, which its checksum covers.
 /// \param T_task_base  as stored; empty: missing.
 PathContent content_of(const NewPath& path, Bytes T_task_base);
 
@@ -39,20 +39,20 @@ struct NewAttempt {
   std::optional<std::int64_t> path_id = {};
 };
 
-/// A report that came again, whose path could not be read any more.
+/// A report sent again, whose path could not be read any more.
 struct RestoredReport {
   Uuid report_uuid;
   AttemptStatus status = AttemptStatus::Stored;
   std::optional<std::int64_t> path_id = {};
 };
 
-/// A path that turned out to be damaged, now or before.
+/// A path found damaged, by this batch or before.
 struct DamagedPath {
   std::int64_t id = 0;
   std::optional<std::int64_t> replaced_by = {};  ///< none: its content is beyond the cap
 };
 
-/// What a batch adds to a row of `experience`.
+/// The change of a row of `experience` by a batch.
 struct PairChange {
   bool is_changed = false;  ///< its paths: the generation rises by one
   std::int64_t paths = 0;
@@ -61,7 +61,7 @@ struct PairChange {
   ModeTotals guided = {}, control = {};
 };
 
-/// All that a batch writes.
+/// All writes of a batch.
 struct BatchChanges {
   std::vector<Receipt> receipts;                  ///< of the attempts, in order
   std::map<Digest, const PreparedScene*> scenes;  ///< by content: missing, or damaged

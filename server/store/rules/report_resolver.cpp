@@ -22,7 +22,7 @@ std::string beyond_cap_text(std::uint64_t max_paths) {
          std::to_string(max_paths) + " paths, the most that are kept (--max-paths-per-pair)";
 }
 
-/// What became of an attempt's path.
+/// The fate of an attempt's path.
 struct AttemptPath {
   AttemptStatus status = AttemptStatus::Unsolved;
   std::optional<std::int64_t> id = {};
@@ -106,7 +106,7 @@ Receipt ReportResolver::resolve_new(const PreparedAttempt& prepared, Pair& pair)
   return receipt_of(prepared, path);
 }
 
-/// Answers a report that came before. What it vouches for and cannot be read is written anew.
+/// Answers a report that came before. Its path and scene are written anew if they are unreadable.
 Receipt ReportResolver::resolve_again(const PreparedAttempt& prepared, Pair& pair,
                                       EarlierReport& earlier) {
   const Uuid& uuid = prepared.attempt.report_uuid;

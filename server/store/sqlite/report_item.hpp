@@ -20,19 +20,19 @@
 
 namespace kinship::store {
 
-/// The reports that could not be written because of damage, and why. Their clients send them again
-/// and again: for a while they are answered without a look at the disk, and without a second try of
-/// the batch that they came with. May be shared between threads.
+/// The reports that could not be written because of damage, with the reasons. Their clients keep
+/// resending them: for a while they are answered without reading the disk, and without a second try
+/// of their batch. May be shared between threads.
 class DamagedReports {
  public:
   using Clock = std::chrono::steady_clock;
 
   void note(const Uuid& report_uuid, const std::string& why, Clock::time_point now = Clock::now());
-  /// Why it could not be written; nothing if that is long ago.
+  /// The reason why a report could not be written; nothing if it is none or too old.
   std::optional<std::string> find(const Uuid& report_uuid, Clock::time_point now = Clock::now());
 
   static constexpr std::chrono::seconds kRemembered{10};
-  static constexpr std::size_t kMaxReports = 4096;  ///< beyond it the memory begins anew
+  static constexpr std::size_t kMaxReports = 4096;  ///< beyond it all are forgotten
 
  private:
   struct Noted {
@@ -43,21 +43,22 @@ class DamagedReports {
   std::map<Uuid, Noted> reports_;  // guarded by mutex_
 };
 
-/// A client's batch of attempts on its way through the writer. One bad attempt is refused alone.
+/// A client's batch of attempts in the writer's queue. One bad attempt is refused alone.
 class ReportItem : public WriteItem {
  public:
   /// Encodes and hashes on the caller's thread, which spares the writer's.
-  /// \param history  told how far the item brought it, before `done` is called.
-  /// \param damaged  where reports that damage keeps out are remembered. Both outlive the item.
+  /// \param history  gets the item's position before `done` is called.
+  /// \param damaged  keeps the reports that cannot be written because of damage. Both outlive the
+  ///                 item.
   /// \param max_paths  of a robot and task (rules/report_resolver.hpp); 0: no cap.
   ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
              Store::ReportsDone done, std::uint64_t max_paths = 0);
 
-  /// Of what another store has.
+  /// For reports from another store.
   ReportItem(History& history, DamagedReports& damaged, std::vector<SharedReport> reports,
              Store::ReportsDone done, std::uint64_t max_paths);
 
-  /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
+  /// For attempts that the queue has no room for: each is answered TryAgain, in order.
   static std::unique_ptr<ReportItem> declined(History& history, DamagedReports& damaged,
                                               const std::vector<Uuid>& reports,
                                               Store::ReportsDone done, const std::string& why);
@@ -81,7 +82,7 @@ class ReportItem : public WriteItem {
   Store::ReportsDone done_;
 };
 
-/// Sets aside what a reader found damaged; if it fails, the next reader finds it again.
+/// Quarantines damaged rows that a reader found; if it fails, the next reader finds them again.
 class DamageItem : public WriteItem {
  public:
   DamageItem(AsideKind kind, std::vector<std::int64_t> rows)

@@ -8,14 +8,14 @@
 #include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/store.hpp"
 
-/// Whether there is room for reports, what the disk did, and what is damaged, in words.
+/// Texts about room for reports, failures of the disk and damage.
 namespace kinship::store {
 
-/// Empty if reports are taken; else why not.
+/// Empty if reports are accepted; else the reason why not.
 std::string lack_of_room(const DiskSpace& space, const Writer& writer, const ReaderPool& readers,
                          std::uint64_t max_wal_bytes);
 
-/// \param lack  of room, in words; empty: none.
+/// \param lack  result of lack_of_room().
 void describe_disk(StoreStatus& status, const DiskSpace& space, const Writer& writer,
                    const std::string& lack);
 

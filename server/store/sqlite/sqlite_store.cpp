@@ -401,7 +401,7 @@ class SqliteStore : public Store {
     set_aside_later(AsideKind::Attempt, std::move(damaged.attempts));
   }
 
-  /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.
+  /// After a write failure no connection stays open, so that the WAL is read anew from the disk.
   std::unique_ptr<Database> reopen() {
     readers_.suspend();
     space_.release_ballast_if_short();

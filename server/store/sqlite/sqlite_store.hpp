@@ -13,7 +13,7 @@
 namespace kinship::store {
 
 struct SqliteOptions {
-  /// Reports that come while more than this waits to be written are answered TryAgain.
+  /// Reports that arrive while more than this is queued are answered TryAgain.
   std::size_t max_queued_bytes = std::size_t{64} << 20U;
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
   std::uint64_t checkpoint_bytes = std::uint64_t{32} << 20U;  ///< of the WAL, to checkpoint it
@@ -21,13 +21,14 @@ struct SqliteOptions {
   std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;
   /// While the file system has less than this free, reports are answered TryAgain; 0: no limit.
   std::uint64_t free_space_watermark_bytes = 0;
-  /// Of FILE.ballast, which is given up when the disk is full, so that what is there can still be
-  /// brought into order; 0: none.
+  /// Size of FILE.ballast, which is removed when the disk is full, so that the store can still
+  /// checkpoint and delete; 0: none.
   std::uint64_t ballast_bytes = 0;
-  std::uint64_t max_distribution_bytes = 0;  ///< beyond that those not used for longest go; 0: none
-  std::uint64_t max_paths_per_pair =
-      0;  ///< of a robot and task (rules/report_resolver.hpp); 0: no cap
-  std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: none
+  /// Beyond it the least recently used distributions are deleted; 0: no limit.
+  std::uint64_t max_distribution_bytes = 0;
+  /// Cap of the paths of a robot and task (rules/report_resolver.hpp); 0: none.
+  std::uint64_t max_paths_per_pair = 0;
+  std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: no search
   /// Takes a line when damage is found, from a thread of the store's own; may be empty.
   std::function<void(std::string_view)> log = {};
 };

@@ -10,15 +10,15 @@
 #include "server/store/store.hpp"
 #include "server/store/values/path_content.hpp"
 
-/// Paths and scenes, as read with their checksums.
+/// Readings of paths and scenes that verify their checksums.
 namespace kinship::store {
 
-/// Ids of rows that turned out damaged while others were read, and are not quarantined yet.
+/// Ids of damaged rows that a reading found and that are not quarantined yet.
 struct DamagedRows {
   std::vector<std::int64_t> paths = {}, scenes = {}, attempts = {};
 };
 
-/// Paths as read, and the ids of those whose checksum or content is wrong.
+/// Paths as read, and the ids of paths with a wrong checksum or content.
 struct PathsRead {
   std::vector<StoredPath> paths;
   std::vector<std::int64_t> damaged;
@@ -35,8 +35,8 @@ struct PathsRead {
   }
 };
 
-/// The paths in use of a robot and task in the order of ids; damaged ones do not count towards the
-/// limit. Some megabytes at a time are fetched. In a snapshot.
+/// The paths in use of a robot and task in order of ids; damaged ones do not count towards the
+/// limit. Fetches some megabytes at a time. Call it in a snapshot.
 PathsRead select_paths(Session& session, const Digest& robot, std::string_view task,
                        const PathRange& range);
 
@@ -44,14 +44,14 @@ PathsRead select_paths(Session& session, const Digest& robot, std::string_view t
 std::vector<std::int64_t> select_path_ids(Session& session, const Digest& robot,
                                           std::string_view task);
 
-/// A scene as read: nothing if it is damaged, was quarantined before, or is not there.
+/// A scene as read: nothing if it is damaged, was quarantined before, or is missing.
 struct SceneRead {
   std::optional<RecordedScene> scene;
-  bool damaged = false;  ///< found now
+  bool damaged = false;  ///< found by this reading
 };
 SceneRead select_scene(Session& session, std::int64_t id);
 
-/// Reports as read for another store.
+/// Reports for another store, and the damaged rows found.
 struct SharedRead {
   SharedReports found;
   DamagedRows damaged;

@@ -88,7 +88,7 @@ std::int64_t insert_distribution(Session& session, const Distribution& distribut
   return row.value();
 }
 
-/// Deletes those not used for longest, but not this one.
+/// Deletes the least recently used ones, but not this one.
 void make_room_beside(Session& session, std::int64_t row, std::uint64_t max_bytes) {
   auto bytes = static_cast<std::int64_t>(bytes_of_distributions(session));
   const auto limit = static_cast<std::int64_t>(max_bytes);
@@ -106,7 +106,7 @@ void make_room_beside(Session& session, std::int64_t row, std::uint64_t max_byte
   const std::int64_t floor = revision_floor(session);
   std::int64_t newest = floor;
   for (const std::int64_t id : oldest) {
-    // What cannot be read stays in the index, with its revision.
+    // A row that cannot be read stays in the index, with its revision.
     const auto revision = session.unless_damaged([&] {
       return session.find_integer("SELECT revision FROM distribution WHERE id = $1", id);
     });

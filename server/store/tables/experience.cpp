@@ -47,7 +47,7 @@ void add_newest(Session& session, const ExperienceKey& key, RecentAttempts& rece
   }
 }
 
-/// One by one, by the ids of an index, without those that cannot be read.
+/// One by one, by the ids of an index, without unreadable ones.
 void add_newest_readable(Session& session, const ExperienceKey& key, RecentAttempts& recent) {
   for (const Row& id :
        session.query("SELECT id FROM attempt WHERE task_id = $1 AND robot_id = $2 ORDER BY " +

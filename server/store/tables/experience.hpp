@@ -8,7 +8,7 @@
 #include "server/store/store.hpp"
 #include "server/store/values/experience_key.hpp"
 
-/// One row per robot and task that attempts were reported of: its generations and its sums.
+/// One row per robot and task with reported attempts: its generations and its sums.
 namespace kinship::store {
 
 /// 0 if there is none.
@@ -17,8 +17,7 @@ std::uint64_t generation_of(Session& session, const Digest& robot, std::string_v
 /// The robots that have, or had, paths of a task, by digest.
 std::vector<ExperienceSummary> experience_of(Session& session, std::string_view task);
 
-/// Locks the rows of a robot, or of a task, in the order of the key, for the rest of the
-/// transaction.
+/// Locks the rows of a robot, or of a task, in order of the key, until the transaction ends.
 std::vector<ExperienceKey> lock_pairs_of_robot(Session& session, std::int64_t robot_id);
 std::vector<ExperienceKey> lock_pairs_of_task(Session& session, std::int64_t task_id);
 

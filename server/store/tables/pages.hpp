@@ -16,39 +16,40 @@
 /// The pages of listings. A cursor is the sort key of the last row shown.
 namespace kinship::store {
 
-/// Says which robots and tasks a statement reads, each empty for all.
+/// Selects the robot and task that a statement reads, each empty for all.
 struct PairFilter {
   std::optional<Digest> robot = {};
   std::string_view task = {};
 
   bool is_empty() const noexcept { return !robot && task.empty(); }
 
-  /// A column of a table, and the SQL of what it has to be.
+  /// A column of a table, and the SQL of its required value.
   struct Column {
     std::string name, id;
   };
-  /// task_id and robot_id, of what it asks for, which is added to the parameters; they borrow it.
+  /// Columns task_id and robot_id of the filter. Adds its values to the parameters, which borrow
+  /// them.
   std::vector<Column> columns(std::vector<Parameter>& parameters) const;
 
-  /// Adds what it asks for to the parameters.
-  /// \return " AND <table>.task_id = ... AND <table>.robot_id = ...", of what it asks for.
+  /// Adds its values to the parameters, which borrow them.
+  /// \return " AND <table>.task_id = ... AND <table>.robot_id = ...", as far as the filter is set.
   std::string condition(const std::string& table, std::vector<Parameter>& parameters) const;
 };
 
-/// How many rows a page may have that was asked for with a limit.
+/// Maximum rows of a page, from the caller's limit.
 std::int64_t rows_of_page(std::size_t limit);
 
-/// The id of the last row shown of a listing by falling ids; at the beginning one that no row
-/// reaches. \throws Failure(InvalidInput) for a cursor of another listing.
+/// The id of the last row shown of a listing by falling ids; for an empty cursor an id above all
+/// rows. \throws Failure(InvalidInput) for a cursor of another listing.
 std::int64_t parse_falling_cursor(std::string_view cursor);
 
-/// The same by rising ids; at the beginning 0.
+/// The same by rising ids; 0 for an empty cursor.
 std::int64_t parse_rising_cursor(std::string_view cursor);
 
-/// \throws Failure(InvalidInput) that names it.
+/// \throws Failure(InvalidInput) that names the cursor.
 [[noreturn]] void refuse_cursor(std::string_view cursor);
 
-/// Reads a page of `limit` entries from rows of which there is one more where another page follows.
+/// Reads a page of `limit` entries; the rows have one more if another page follows.
 /// \param read       makes an entry of a row.
 /// \param cursor_of  the cursor that continues after the row.
 template <typename Entry, typename Read, typename CursorOf>
@@ -66,7 +67,7 @@ Page<Entry> read_page(Rows rows, std::int64_t limit, Read read, CursorOf cursor_
   return page;
 }
 
-/// The same of a feed. \param cursor  that it was asked for with.
+/// The same of a feed. \param cursor  of the caller.
 template <typename Entry, typename Read, typename CursorOf>
 Feed<Entry> read_feed(Rows rows, std::string_view cursor, std::size_t limit, Read read,
                       CursorOf cursor_of) {

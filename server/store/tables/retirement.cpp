@@ -35,7 +35,7 @@ Digest digest_of_robot(Session& session, std::int64_t robot_id) {
   return rows.empty() ? Digest() : id_of<Digest>(rows.front().column_blob(0));
 }
 
-/// Adds what a robot has beside its paths. From indexes and small rows.
+/// Counts a robot's rows beside its paths, from indexes and small rows.
 void count_rest(Session& session, std::int64_t robot_id, RemovedRobot& removed) {
   std::set<std::string> tasks;  // of its attempts and distributions
   for (const Row& row : session.query("SELECT task.name, attempts FROM experience"

@@ -12,7 +12,7 @@
 namespace kinship::store {
 namespace {
 
-/// A robot's row and parts, with what its checksum covers as it is stored.
+/// A robot's row and parts, with the bytes that its checksum covers, as stored.
 struct StoredRobot {
   RobotRecord robot;
   std::vector<std::uint8_t> T_tip_transfer, mesh_solids;
@@ -66,7 +66,7 @@ std::optional<StoredRobot> select_stored_robot(Session& session, std::int64_t id
   });
 }
 
-/// Nothing if the row is not what write_robot() wrote.
+/// Nothing if the row is not as write_robot() wrote it.
 std::optional<RobotRecord> completed(const std::optional<StoredRobot>& stored) {
   if (!stored)
     return std::nullopt;
@@ -81,7 +81,7 @@ Failure damaged_row(const Digest& robot) {
   return {ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged"};
 }
 
-/// From the indexes. \return Conflict if another robot has the label, and what can be done.
+/// From the indexes. \return Conflict, with a remedy, if another robot has the label.
 std::optional<Error> check_free(Session& session, const std::string& label, const Digest& robot) {
   const auto has_label = session.find_integer("SELECT id FROM robot WHERE label = $1", label);
   if (!has_label ||
@@ -169,7 +169,7 @@ Result<RegisterStatus> insert_robot(Session& session, const RobotRecord& robot) 
   if (auto fault = find_pose_fault(robot.description))
     return *std::move(fault);
   RobotRecord written = robot;
-  // Neither what was fitted with the geometry of before nor a fit that failed over it is its own.
+  // Neither a distribution of the earlier geometry nor a fit that failed over it is its own.
   if (before)
     written.geometry_revision =
         static_cast<std::uint64_t>(geometry_revision_of(session, *before).value_or(0)) + 1;

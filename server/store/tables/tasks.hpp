@@ -14,7 +14,7 @@ namespace kinship::store {
 /// The task's internal id; makes the task if it is missing.
 std::int64_t ensure_task(Session& session, std::string_view task);
 
-/// By name. In a snapshot. \param cursor  the name of the last task shown.
+/// In order of names. Call it in a snapshot. \param cursor  the name of the last task shown.
 Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::size_t limit);
 
 /// In a snapshot.

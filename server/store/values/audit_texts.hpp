@@ -7,17 +7,18 @@
 #include "proto/types/audit.hpp"
 #include "server/store/store.hpp"
 
-/// What entries of the audit log say of an act.
+/// Texts of the entries of the audit log.
 namespace kinship::store {
 
-/// An entry whose texts fit.
+/// The entry with its texts cut to their limits.
 AuditEntry cut_to_fit(AuditEntry entry);
 
-/// What an entry says of an act beyond who asked for what.
+/// `asked`, which names the caller and the request, with an outcome and the values before and
+/// after.
 AuditEntry entry_of_act(const AuditEntry& asked, AuditOutcome outcome, std::string before,
                         std::string after);
 
-/// What kinshipd did to a store by itself, or by a verb of its command line.
+/// The entry of a change by kinshipd itself, or by a verb of its command line.
 AuditEntry entry_of_maintenance(const std::string& verb, const std::string& store,
                                 const std::string& before, const std::string& after);
 
@@ -29,13 +30,13 @@ std::string in_number(std::int64_t count, const std::string& noun);
 
 std::string describe_paths(std::string_view task, std::int64_t paths);
 
-/// A robot as it is before it is removed.
+/// Describes a robot before its removal.
 std::string describe_robot(std::string_view label, const Digest& robot, std::int64_t paths,
                            std::int64_t attempts);
 
 std::string describe_removal(const RobotRemoval& removal);
 
-/// A distribution as it is before it is evicted.
+/// Describes a distribution before its eviction.
 std::string describe_distribution(const Distribution& distribution);
 
 }  // namespace kinship::store

@@ -20,8 +20,8 @@ constexpr std::size_t kMaxTextBytes = 1'000'000;
 template <typename Value, typename Table>
 void add_members(ByteWriter& out, const Value& value, const Table& fields);
 
-/// Counts of every width as 8 bytes, ids as they are, lists after their size, what may be missing
-/// after a flag.
+/// Appends a value: integers of every width as 8 bytes, ids as they are, lists after their size,
+/// optional values after a flag.
 template <typename T>
 void add_value(ByteWriter& out, const T& value) {
   if constexpr (std::is_same_v<T, std::optional<Eigen::Isometry3d>>) {
@@ -56,8 +56,8 @@ void add_members(ByteWriter& out, const Value& value, const Table& fields) {
 template <typename Value, typename Table>
 void read_members(ByteReader& in, int format, const Table& fields, Value& value);
 
-/// \param format  which the blob has: what came later is not in it, and keeps its default.
-/// \throws std::out_of_range if the bytes are no such value.
+/// \param format  of the blob: fields of later formats are not in it and keep their defaults.
+/// \throws std::out_of_range if the bytes are no value of this type.
 template <typename T>
 T read_value(ByteReader& in, int format, const FieldRules& rules = {}) {
   if constexpr (std::is_same_v<T, std::optional<Eigen::Isometry3d>>) {

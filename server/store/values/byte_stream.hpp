@@ -30,9 +30,9 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Takes values from a blob in the order in which they were added. Every size is checked against
-/// a limit and against what is left before anything is allocated.
-/// Every method throws std::out_of_range if the blob does not hold what is asked for.
+/// Takes values from a blob in the order in which they were added. Every size is checked against a
+/// limit and against the bytes left before any allocation. Every method throws std::out_of_range if
+/// the blob does not hold the value.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
@@ -54,7 +54,7 @@ class ByteReader {
 /// A pose as the database keeps it: 7 float64, x y z and the quaternion x y z w.
 std::vector<std::uint8_t> pose_blob(const Eigen::Isometry3d& T_a_b);
 
-/// \return empty if the blob is not 56 bytes or no pose.
+/// \return empty if the blob is not 56 bytes long or no pose.
 std::optional<Eigen::Isometry3d> pose_from_blob(std::span<const std::uint8_t> blob);
 
 }  // namespace kinship::store

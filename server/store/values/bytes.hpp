@@ -5,7 +5,7 @@
 
 namespace kinship::store {
 
-/// Bytes of somebody else's.
+/// Borrowed bytes.
 using Bytes = std::span<const std::uint8_t>;
 
 }  // namespace kinship::store

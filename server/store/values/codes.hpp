@@ -12,7 +12,7 @@
 #include "server/store/values/byte_stream.hpp"
 #include "server/store/values/bytes.hpp"
 
-/// How values stand in columns. The codes of the enumerations are part of the schemas.
+/// Values in columns. The codes of the enumerations are part of the schemas.
 namespace kinship::store {
 
 constexpr std::int64_t code_of(Outcome outcome) {

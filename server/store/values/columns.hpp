@@ -8,11 +8,11 @@
 #include "server/store/values/bytes.hpp"
 #include "server/store/values/codes.hpp"
 
-/// The columns of a row that a query brought, of whatever engine.
+/// The columns of a row of a query, of any engine.
 namespace kinship::store {
 
-/// Columns count from 0; of one that is NULL the others are 0 or empty. Texts and bytes are valid
-/// until the next row.
+/// Columns count from 0; the value of a NULL column is 0 or empty. Texts and bytes are valid until
+/// the next row.
 template <typename Row>
 concept Columns = requires(const Row& row, int column) {
   { row.column_is_null(column) } -> std::convertible_to<bool>;

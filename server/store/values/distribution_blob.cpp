@@ -10,7 +10,7 @@
 namespace kinship::store {
 namespace {
 
-// Written first. What a format brings stands at its fields.
+// Written first. Each addition of a format stands at its fields.
 constexpr int kDistributionFormat = newest_format<Source>();
 
 constexpr std::tuple kBegin{Field{"id", &Distribution::id},
@@ -36,7 +36,7 @@ constexpr std::tuple kEnd{
     Field{"cuts", &Distribution::cuts, {.limit = kMaxDof}}, Field{"fit", &Distribution::fit},
     Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
 
-/// What sizes and enumerators do not say.
+/// Rules beyond sizes and enumerators.
 void check_choice(const Distribution& distribution) {
   for (const ComponentScore& score : distribution.component_scores)
     if (score.components < 1 || score.components > int{kMaxComponents} ||

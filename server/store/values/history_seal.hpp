@@ -9,8 +9,8 @@
 
 namespace kinship::store {
 
-/// A point of a store's history: the run that wrote it, and how far that had come by then. What
-/// the position counts is the engine's.
+/// A point of a store's history: the run that wrote it, and the position of that run by then. The
+/// engine defines the position.
 struct HistoryPoint {
   Uuid run;
   std::uint64_t position = 0;
@@ -18,11 +18,12 @@ struct HistoryPoint {
   bool operator==(const HistoryPoint&) const = default;
 };
 
-/// Of a new store: 244 random bits.
+/// The key of a new store: 244 random bits.
 Digest random_key();
 
-/// A point as bytes for clients, with a seal (HMAC-SHA-256 of epoch, run and position, its first 16
-/// bytes) that only this store can make: nobody can name a point at which the store never was.
+/// A point as a consistency token for clients, with a seal (HMAC-SHA-256 of epoch, run and
+/// position, its first 16 bytes) that only this store can make: a client cannot forge a point at
+/// which the store never was.
 /// \param key  of the store, secret.
 HistoryMark seal(const Digest& key, const Uuid& epoch, const HistoryPoint& point);
 

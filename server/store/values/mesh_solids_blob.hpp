@@ -9,10 +9,10 @@
 
 namespace kinship::store {
 
-/// \return bytes that keep every number, poses as 7 of them; none for no solids.
+/// \return bytes that keep every number, poses as 7 numbers; empty without solids.
 std::vector<std::uint8_t> encode_mesh_solids(const MeshSolids& mesh_solids);
 
-/// \return the solids, or nothing if the bytes are none that keep the rules.
+/// \return the solids, or nothing if the bytes are no solids that keep the rules.
 std::optional<MeshSolids> decode_mesh_solids(std::span<const std::uint8_t> bytes);
 
 }  // namespace kinship::store

@@ -4,16 +4,18 @@
 #include <string>
 #include <string_view>
 
-/// Settings of a store that is moved to another one (server/store/moving), so that no server takes
-/// half a store for a whole one, or serves one that was left.
+/// Settings that mark a move between two stores (server/store/moving), so that no server serves a
+/// half-filled target or a source that was moved.
 namespace kinship::store {
 
-inline constexpr std::string_view kMovingFrom = "moving_from";  ///< here: what it is filled from
-inline constexpr std::string_view kMovedTo = "moved_to";        ///< where its content is now
+/// In the target: the source's name.
+inline constexpr std::string_view kMovingFrom = "moving_from";
+/// In the source: the target's name.
+inline constexpr std::string_view kMovedTo = "moved_to";
 
-/// What a server does that opens a store with these settings.
-/// \param name  of the store. \param moving_from, moved_to  empty: not there.
-/// \throws Failure(Unavailable) that says what to do, if either is there.
+/// Keeps a server from opening a store with these settings.
+/// \param name  of the store. \param moving_from, moved_to  empty: not set.
+/// \throws Failure(Unavailable) that says how to proceed, if either is set.
 void refuse_moving_store(const std::string& name, const std::string& moving_from,
                          const std::string& moved_to);
 

@@ -9,11 +9,12 @@
 
 namespace kinship::store {
 
-/// Of a path that was dropped, with encoding 2.
+/// The waypoints of a dropped path, with encoding 2.
 inline constexpr std::array<std::uint8_t, 1> kNoWaypoints = {0};
 inline constexpr std::int64_t kEncodingOfDropped = 2;
 
-/// What the checksum of a path is over: all that a transfer relies on, not the waypoints alone.
+/// The values that a path's checksum covers: all that a transfer relies on, not the waypoints
+/// alone.
 struct PathContent {
   Bytes report_uuid;
   Bytes T_task_base;  ///< as stored; empty: missing
@@ -22,22 +23,22 @@ struct PathContent {
   std::int64_t encoding = 0;
   Bytes waypoints;
 
-  /// No encoding makes so short a blob.
+  /// Encodings never make so short a blob.
   bool is_dropped() const { return waypoints.size() == 1; }
   std::uint32_t crc() const;
 
   /// The path without its id, its scene and the time it was received.
-  /// \return nothing if the waypoints or the placement are none.
+  /// \return nothing if the waypoints or the placement cannot be decoded.
   std::optional<StoredPath> decode() const;
 };
 
-/// Where a column stands among those below.
+/// The numbers of the columns below.
 struct PathColumn {
   static constexpr int kId = 0, kReportUuid = 1, kPlacement = 2, kDof = 3, kWaypointCount = 4,
                        kEncoding = 5, kCrc = 6, kWaypoints = 7, kReceivedMs = 8, kSceneId = 9;
 };
 
-/// What the checksum is over, and the checksum.
+/// The columns that the checksum covers, and the checksum.
 inline constexpr std::string_view kPathContentColumns =
     "path.id, path.report_uuid, path.T_task_base, path.dof, path.waypoint_count, path.encoding, "
     "path.crc32c, path.waypoints ";
@@ -72,7 +73,7 @@ std::optional<StoredPath> read_path_content(const Row& row) {
   return path;
 }
 
-/// The same with all of it.
+/// The same with all columns.
 /// \param row  of kPathColumns.
 template <Columns Row>
 std::optional<StoredPath> read_path(const Row& row) {

@@ -29,8 +29,8 @@ double length_of(const Eigen::MatrixXd& waypoints) {
   return (waypoints.rightCols(segments) - waypoints.leftCols(segments)).colwise().norm().sum();
 }
 
-/// What makes a path new: its waypoints and the cell of its placement. Waypoints alone would drop
-/// the same motion at another placement, which passes through other poses of the task.
+/// A path is new by its waypoints and the cell of its placement. Waypoints alone would drop the
+/// same motion at another placement, which passes through other poses of the task.
 Digest content_digest(const Digest& waypoints,
                       const std::optional<Eigen::Isometry3d>& T_task_base) {
   Sha256 hash;

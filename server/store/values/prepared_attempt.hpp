@@ -16,7 +16,7 @@ namespace kinship::store {
 /// A path ready to be written.
 struct PreparedPath {
   Digest waypoints;   ///< of the waypoints alone
-  Digest content;     ///< and of the snapped placement: kept once per robot and task
+  Digest content;     ///< of waypoints and snapped placement: kept once per robot and task
   double length = 0;  ///< joint units
   WaypointBlob blob;
 };
@@ -27,26 +27,26 @@ struct PreparedScene {
   SceneBlob blob;
 };
 
-/// An attempt with all that can be computed before the writer has it.
+/// An attempt with all values that can be computed before the writer gets it.
 struct PreparedAttempt {
   Attempt attempt;  ///< without its path and scene
   Digest body;      ///< of everything but the UUID: tells a retry from a second use of the UUID
   std::optional<PreparedPath> path;
   std::optional<PreparedScene> scene;
-  std::optional<std::int64_t> received_ms;  ///< by the store that had it first; missing: now
+  std::optional<std::int64_t> received_ms;  ///< by the first store that had it; missing: now
   bool is_retired = false;                  ///< its path, elsewhere
 };
 
-/// Which reports these are.
+/// The UUIDs of the reports.
 std::vector<Uuid> report_uuids(const std::vector<Attempt>& attempts);
 std::vector<Uuid> report_uuids(const std::vector<SharedReport>& reports);
 
-/// The body as it would be if another machine said the same.
+/// The body of the same report from another machine.
 Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine);
 
-/// \return the reason if it cannot be stored: what find_fault() says, or a counter over 2^63.
+/// \return the reason if it cannot be stored: that of find_fault(), or a counter over 2^63.
 Result<PreparedAttempt> prepare(Attempt attempt);
-/// The same of what another store has: with the body that its robot sent.
+/// The same for a report from another store, with the body that its robot sent.
 Result<PreparedAttempt> prepare(SharedReport report);
 
 }  // namespace kinship::store

@@ -12,10 +12,10 @@
 
 namespace kinship::store {
 
-/// A mode that had no attempts among so many newest ones is as good as unknown.
+/// Newest attempts that are searched; a mode without attempts among them counts as unknown.
 inline constexpr std::int64_t kMaxRecentRows = 10'000;
 
-/// The newest judged attempts of each sampling mode, as they are met.
+/// Collects the newest judged attempts of each sampling mode.
 class RecentAttempts {
  public:
   static constexpr std::string_view kColumns =

@@ -12,10 +12,10 @@
 
 namespace kinship::store {
 
-/// How a scene lies in the database; the numbers are part of the schema.
+/// Encoding of a scene in the database; the numbers are part of the schema.
 enum class SceneEncoding : std::uint8_t { Plain = 1, Zstd = 2 };
 
-/// A scene as a blob, with what is needed to decode it.
+/// A scene as a blob, with the values needed to decode it.
 struct SceneBlob {
   std::int64_t size = 0;  ///< before compression
   SceneEncoding encoding = SceneEncoding::Plain;
@@ -23,15 +23,15 @@ struct SceneBlob {
 };
 
 /// \param scene  keeps the rules of check_scene().
-/// \return the smaller of the two encodings; both keep every number, poses as 7 of them.
+/// \return the smaller of the two encodings; both keep every number, poses as 7 numbers.
 SceneBlob encode_scene(const RecordedScene& scene);
 
-/// \return empty if the blob is not what encode_scene makes, or breaks a rule of check_scene().
+/// \return empty if the blob is no result of encode_scene, or breaks a rule of check_scene().
 std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encoding,
                                           std::span<const std::uint8_t> bytes);
 
-/// The checksum of a scene's row. The content's digest is under it: a scene that stands under
-/// another's digest would be taken for it.
+/// The checksum of a scene's row. It covers the content's digest: a scene under another's digest
+/// would be taken for that one.
 std::uint32_t scene_crc(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene);
 
 inline constexpr std::string_view kSceneColumns =

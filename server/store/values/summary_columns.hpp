@@ -10,7 +10,7 @@
 #include "proto/types/summaries.hpp"
 #include "server/store/values/columns.hpp"
 
-/// The columns that listings select, as SQL, and what is made of them.
+/// The columns that listings select, as SQL, and the summaries made from them.
 namespace kinship::store {
 
 inline constexpr std::string_view kRecordColumns =
@@ -65,7 +65,7 @@ PathSummary read_path_summary(const Row& row) {
   return summary;
 }
 
-/// The last one is the id, by which they are listed.
+/// The last column is the id, by which distributions are listed.
 inline constexpr std::string_view kDistributionSummaryColumns =
     "distribution.digest, revision, task.name, robot.digest, robot.label, profile, state, reason,"
     " components, configurations, paths, fitted_ms, distribution.id ";
@@ -112,7 +112,7 @@ AuditEntry read_audit_entry(const Row& row) {
   return entry;
 }
 
-/// Of a robot, its paths and attempts, and when its geometry was taken over anew; 0: never.
+/// Of a robot; with its paths and attempts, and when its geometry was last replaced; 0: never.
 inline constexpr std::string_view kRobotSummaryColumns =
     "digest, label, base_link, tip_link, dof, registered_ms,"
     " (SELECT CAST(coalesce(sum(paths), 0) AS bigint) FROM experience WHERE robot_id = robot.id),"
@@ -135,7 +135,7 @@ RobotSummary read_robot_summary(const Row& row) {
   return summary;
 }
 
-/// What the attempts of a sampling mode cost, by three columns: attempts, solved, checks.
+/// The cost of the attempts of a sampling mode, from three columns: attempts, solved, checks.
 template <Columns Row>
 std::optional<ModeEvidence> read_evidence(const Row& row, int first_column) {
   if (row.column_integer(first_column) == 0)
@@ -165,7 +165,7 @@ TaskRobotSummary read_task_robot(const Row& row, const Digest& robot, std::strin
           read_evidence(row, kControl)};
 }
 
-/// A task of its robots, by their labels.
+/// The summary of a task from those of its robots, in order of labels.
 TaskSummary summary_of(std::string_view task, std::vector<TaskRobotSummary> robots);
 
 }  // namespace kinship::store

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kShareOfRows = 0.9;  // of the progress; the rest is writing the file
 
-/// A table of SQLite, and where its rows are. What refers to another one comes after it.
+/// A table of SQLite and the place of its rows. It comes after the tables that it refers to.
 struct CopiedTable {
   std::string name;
   bool has_id = true;  ///< by which it is read in parts; others are small
@@ -62,7 +62,7 @@ std::vector<Column> columns_of(Database& target, const std::string& table) {
   return columns;
 }
 
-/// How PostgreSQL gives what SQLite keeps in a column. SQLite's mark of damage is unused.
+/// PostgreSQL's expression for a column of SQLite. SQLite's mark of damage is unused.
 std::string source_of(const CopiedTable& table, const Column& column) {
   return table.name == "path" && column.name == "damaged" ? "0::bigint" : column.name;
 }
@@ -154,7 +154,7 @@ class RowCopy {
       insert.bind(column + 1, row.column_blob(column));
   }
 
-  /// What the rows themselves say of damage is a table of its own in SQLite.
+  /// Marks of damage are columns in PostgreSQL and a table of its own in SQLite.
   void copy_damage() {
     Statement insert(target_->connection(), "INSERT INTO set_aside VALUES (?, ?, ?, ?, ?, ?)");
     const std::vector<Column> columns = columns_of(*target_, "set_aside");

@@ -20,8 +20,8 @@ struct pg_conn;
 
 namespace kinship::store::postgres {
 
-/// Ends what waits for a database: once raised, every wait of the connections that were given it
-/// ends at once. May be shared between threads.
+/// Ends waits for a database: once raised, every wait of the connections that have it ends at once.
+/// May be shared between threads.
 class Interrupt {
  public:
   /// \throws Failure(Internal) if the system has no descriptor left.
@@ -45,10 +45,10 @@ struct Request {
 };
 
 struct ConnectionOptions {
-  /// Of one statement, or of a pipeline of them; then the connection is given up.
+  /// Time limit of one statement, or of a pipeline of them, after which the connection is given up.
   std::chrono::milliseconds patience{10'000};
   const Interrupt* interrupt = nullptr;  ///< ends every wait; outlives the connection
-  /// Set once a pooler turns out to be between, which gives each transaction another session: then
+  /// Set once a connection pooler is found, which gives each transaction another session: then
   /// statements are not kept prepared. Null: they always are.
   std::atomic<bool>* is_pooled = nullptr;
 };
@@ -58,7 +58,7 @@ struct ConnectionOptions {
 /// password; after one of kind Lost the connection is of no use any more.
 class Connection : public Session {
  public:
-  /// Waits a few seconds at most for each host.
+  /// Waits at most a few seconds for each host.
   explicit Connection(const ConnectionString& where, const ConnectionOptions& options = {});
   ~Connection() override;
 
@@ -84,17 +84,17 @@ class Connection : public Session {
   /// COMMIT, however long it takes: only the interrupt ends the wait.
   Rows query_without_limit(std::string_view sql);
 
-  /// Where it leads, for people, without a password.
+  /// Host and database, for messages, without a password.
   const std::string& description() const noexcept { return where_.description(); }
   bool is_alive() const noexcept;  ///< as far as libpq knows
   bool in_transaction() const noexcept;
   int server_version() const noexcept;            ///< 150004 for 15.4
-  std::string parameter(const char* name) const;  ///< that the server reports; empty: none
+  std::string parameter(const char* name) const;  ///< reported by the server; empty: none
 
   /// The first WARNING since the last call; empty: none.
   std::string take_warning();
 
-  /// Closes the socket, whatever is on its way.
+  /// Closes the socket, even during a statement.
   void abandon() noexcept;
 
  private:
@@ -104,7 +104,7 @@ class Connection : public Session {
     void operator()(pg_conn* connection) const noexcept;
   };
 
-  /// What one answer of a pipeline belongs to.
+  /// The statement of one answer of a pipeline.
   struct Command {
     std::string_view sql;
     bool is_preparation = false;

@@ -29,16 +29,15 @@ class ConnectionPool {
     return write(*lease);
   }
 
-  /// Runs `read(Connection&)`, each statement of which sees what is committed when it begins. Where
-  /// the connection turns out to be dead, as after a failover, once more on a new one: it must not
-  /// write.
+  /// Runs `read(Connection&)`; each statement sees the data committed when it begins. On a dead
+  /// connection, as after a failover, it runs once more on a new one: it must not write.
   /// \throws PostgresError.
   template <typename Read>
   auto read(Read read) {
     return try_twice([&](Connection& connection) { return read(connection); });
   }
 
-  /// The same, all statements of which see one state of the database.
+  /// The same; all statements see one state of the database.
   template <typename Read>
   auto read_snapshot(Read read) {
     return try_twice([&](Connection& connection) {
@@ -47,8 +46,7 @@ class ConnectionPool {
     });
   }
 
-  /// Connections that were made until now are not lent any more: the server behind them is not the
-  /// primary any more.
+  /// Stops lending the connections made until now: their server is not the primary any more.
   void forget();
 
  private:
@@ -81,7 +79,7 @@ class ConnectionPool {
     return read(*lease);
   }
 
-  /// \param version  is set to that of the connection.
+  /// \param version  set to that of the connection.
   std::unique_ptr<Connection> take(std::uint64_t& version);
   void give_back(std::unique_ptr<Connection> connection, std::uint64_t version) noexcept;
 

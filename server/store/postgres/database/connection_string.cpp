@@ -58,7 +58,7 @@ ConnectionString::ConnectionString(const std::string& text) {
     if (option->val == nullptr)
       continue;
     parameters_.emplace_back(option->keyword, option->val);
-    // libpq marks with a star what is not to be shown while it is typed.
+    // libpq marks options with a star whose values are hidden while they are typed.
     if (std::string_view(option->dispchar) == "*" && *option->val != '\0')
       secrets_.emplace_back(option->val);
   }

@@ -10,8 +10,8 @@ namespace kinship::store::postgres {
 /// Whether a text names a PostgreSQL database: it begins with postgresql:// or postgres://.
 bool is_connection_string(std::string_view text);
 
-/// A connection string, taken apart by libpq. Only this object knows its passwords: what is said to
-/// people is description().
+/// A connection string, taken apart by libpq. Only this object knows its passwords: messages use
+/// description().
 class ConnectionString {
  public:
   /// \throws Failure(InvalidInput), which does not repeat the text, if libpq cannot read it.
@@ -21,19 +21,19 @@ class ConnectionString {
   /// gives it; never a password, nor other parameters.
   const std::string& description() const noexcept { return description_; }
 
-  /// libpq's keywords and values, ours where the string says nothing: time limits for a connection
-  /// that is made or has died, and the encoding.
+  /// libpq's keywords and values, with defaults of ours: time limits for connecting and for dead
+  /// connections, and the encoding.
   const std::vector<std::pair<std::string, std::string>>& parameters() const noexcept {
     return parameters_;
   }
 
-  /// The same for each of its hosts alone; itself if it has one.
+  /// A connection string for each of its hosts; itself if it has one.
   std::vector<ConnectionString> each_host() const;
 
-  /// The same, whether its host takes writes or not (target_session_attrs).
+  /// The same for hosts that take writes or not (target_session_attrs).
   ConnectionString to_any_role() const;
 
-  /// A message without any of the passwords of this string.
+  /// The message without the passwords of this string.
   std::string without_secrets(std::string message) const;
 
  private:

@@ -12,7 +12,7 @@ namespace kinship::store::postgres {
 
 /// The parameters of a statement, in libpq's binary format: $1, $2, ... in the order in which they
 /// are added. Their types are those of the C++ values: bigint, double precision, boolean, text,
-/// bytea, and arrays of these (for unnest and = ANY). Copies what it is given.
+/// bytea, and arrays of these (for unnest and = ANY). Copies its values.
 class Parameters {
  public:
   Parameters() = default;
@@ -62,7 +62,7 @@ class Parameters {
   void begin(unsigned type);
   void end();
   Parameters& make_null();
-  /// \param put_element  puts the bytes of an element, with its size before it.
+  /// \param put_element  writes the size and the bytes of an element.
   template <typename Values, typename PutElement>
   Parameters& add_array(unsigned type, unsigned element, const Values& values,
                         PutElement put_element);

@@ -7,7 +7,7 @@
 
 namespace kinship::store::postgres {
 
-/// What a failed statement says about what to do next.
+/// Kinds of failures of a statement, by the action they call for.
 enum class ErrorKind {
   Lost,       ///< the connection, or the server, is gone: connect again
   Conflict,   ///< a deadlock or a serialization failure: the same transaction may be tried again
@@ -22,8 +22,7 @@ enum class ErrorKind {
 /// The kind of an SQLSTATE; empty: the connection died without one.
 ErrorKind kind_of(std::string_view sqlstate);
 
-/// What PostgreSQL or libpq said when a call failed: a Failure(Storage) that remembers the
-/// SQLSTATE.
+/// The error of a failed call of PostgreSQL or libpq: a Failure(Storage) with the SQLSTATE.
 class PostgresError : public Failure {
  public:
   /// \param sqlstate  empty: the connection died without one.

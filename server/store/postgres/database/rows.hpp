@@ -12,8 +12,7 @@ struct pg_result;
 namespace kinship::store::postgres {
 
 /// One row of a result, borrowed from its Rows. Columns count from 0. A NULL is 0 or empty, as in
-/// SQLite. A column of another type than what is asked for is a mistake in the statement:
-/// std::logic_error.
+/// SQLite. A column of another type than requested is a mistake in the statement: std::logic_error.
 class Row {
  public:
   Row(const pg_result& result, int row) : result_(&result), row_(row) {}
@@ -29,7 +28,7 @@ class Row {
   int row_;
 };
 
-/// The rows that a statement gave: the owner of one PGresult, in binary format. Move-only.
+/// The rows of a statement: the owner of one PGresult, in binary format. Move-only.
 class Rows {
  public:
   explicit Rows(pg_result* result) : result_(result) {}

@@ -7,11 +7,11 @@
 
 namespace kinship::store::postgres {
 
-/// What is known of a transaction after its COMMIT.
+/// The known outcome of a transaction after its COMMIT.
 enum class Certainty {
-  Committed,     ///< it is there, and as durable as its connection asks for
-  NotCommitted,  ///< nothing of it is there
-  InDoubt        ///< it may be there: the connection died, or the wait for a standby was ended
+  Committed,     ///< done, and as durable as its connection asks for
+  NotCommitted,  ///< undone
+  InDoubt        ///< either: the connection died, or the wait for a standby was ended
 };
 
 struct CommitOutcome {
@@ -24,20 +24,19 @@ class Transaction {
  public:
   enum class Kind {
     Snapshot,  ///< reads one state of the database, writes nothing (REPEATABLE READ)
-    Write,     ///< READ COMMITTED: each statement sees what is committed when it begins
+    Write,     ///< READ COMMITTED: each statement sees the data committed when it begins
     Local      ///< the same, but its COMMIT waits for no standby
   };
-  /// A writing one waits for a lock some seconds at most, and its statements and its COMMIT have no
-  /// limit of time in the server: nothing there ends a COMMIT that waits for a standby. Durable
-  /// means synchronous_commit = on, whatever the server or the role say, or remote_apply if they
-  /// say so.
+  /// A writing transaction waits for a lock some seconds at most; its statements and its COMMIT
+  /// have no time limit in the server, which would end a COMMIT that waits for a standby. For
+  /// Write, synchronous_commit is on, or remote_apply if the server or the role say so.
   Transaction(Connection& connection, Kind kind);
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
   ~Transaction();
 
-  /// Waits until it is certain, as long as that takes: for a standby that is down without end,
-  /// unless the interrupt of the connection is raised. Throws nothing.
+  /// Waits without limit until the outcome is certain, as for a standby that is down, unless the
+  /// interrupt of the connection is raised. Never throws.
   CommitOutcome commit() noexcept;
 
  private:

@@ -20,7 +20,7 @@ constexpr std::string_view kForgottenRun = "forgotten_run";
 constexpr std::string_view kTimeline = "timeline";
 constexpr std::int64_t kMoreThanWereLost = 1'000'000;
 
-/// What another server wrote before counts.
+/// A key that another server wrote before counts.
 Digest ensure_key(Connection& connection) {
   if (const std::optional<Digest> key = Digest::from_hex(read_setting(connection, kKey)))
     return *key;
@@ -63,7 +63,7 @@ Uuid begin_epoch(Connection& connection, std::string_view reason) {
   connection.query("INSERT INTO epoch VALUES ($1, $2, $3, $4)", before.number + 1,
                    Bytes(epoch.bytes), now_ms(), reason);
   if (before.number > 0) {
-    // What was lost had generations that come again now, with other paths.
+    // The generations of lost paths come again now, with other paths.
     connection.query("SELECT 1 FROM experience ORDER BY task_id, robot_id FOR NO KEY UPDATE");
     connection.query(
         "UPDATE experience SET changed_in = pg_current_xact_id(),"
@@ -117,8 +117,8 @@ std::string identity_of(Connection& connection) {
   return std::string(rows.front().column_text(0));
 }
 
-/// \return why what was committed before cannot be there; empty: it is, or another server began an
-///         epoch because of it.
+/// \return why earlier commits cannot be there; empty: they are, or another server began an epoch
+///         because of the loss.
 std::string History::find_loss(Connection& connection, const State& before,
                                const Uuid& newest) const {
   const std::string stored = read_setting(connection, kIdentity);
@@ -146,8 +146,8 @@ void History::begin_run(Connection& connection) {
     const std::lock_guard lock(mutex_);
     next = state_;
   }
-  // Waits for no standby: who begins a run has given no receipt yet, and those of the run are given
-  // when what comes after it is replicated.
+  // Waits for no standby: a run that begins has given no receipt yet, and gives them once later
+  // commits are replicated.
   Transaction transaction(connection, Transaction::Kind::Local);
   lock_epochs(connection);
   const NewestEpoch newest = newest_epoch(connection);
@@ -158,7 +158,7 @@ void History::begin_run(Connection& connection) {
     next.epoch = loss.empty() ? newest.epoch : begin_epoch(connection, loss);
   write_setting(connection, kIdentity, identity_of(connection));
   const std::string timeline = std::to_string(timeline_of(connection));
-  // What a standby had not got when it was promoted may be of servers that nobody can ask.
+  // Commits that a standby lacked when it was promoted may be of servers that cannot be asked.
   if (const std::string before = read_setting(connection, kTimeline);
       !before.empty() && before != timeline)
     skip_lost_ids(connection);

@@ -12,26 +12,27 @@
 
 namespace kinship::store::postgres {
 
-/// Of the cluster and the database: a standby has the same, a copy that was restored has not.
+/// Identity of the cluster and the database: equal for a standby, different for a restored copy.
 std::string identity_of(Connection& connection);
 
-/// Which epoch a store is in, how far this server's commits have come, and whether a point that
-/// somebody was told of is still there. Several servers write; each connection that writes reports
-/// is a run, whose position its transactions raise by one in a row of their own. A mark names a run
-/// and a position. It vouches for all that was committed before: the log of PostgreSQL is one
-/// sequence, of which a promoted standby, or a database that was put back, has a beginning; so what
-/// was committed before is there if that one is. The row of the run says whether it is.
+/// The epoch of a store, the position of this server's commits, and whether the point of a client's
+/// consistency token (HistoryMark) is still in the database. Several servers write; each connection
+/// that writes reports is a run, whose position its transactions raise by one in a row of their
+/// own. A mark names a run and a position. It covers all earlier commits: the log of PostgreSQL is
+/// one sequence, and a promoted standby, or a database that was rolled back, has a prefix of it; so
+/// if that commit exists, all earlier ones do. The row of the run tells whether it exists.
 ///
-/// May be shared between threads, except where it takes a connection, which is the caller's.
+/// May be shared between threads, except methods that take a connection, which belongs to the
+/// caller.
 class History {
  public:
-  /// A run begins on a connection that was just made. If the database is not the one that it was,
-  /// or lacks what this object saw committed, a new epoch begins, unless another server noticed it
-  /// before. \throws PostgresError, Failure(Storage).
+  /// Begins a run on a new connection. If the database has another identity than the stored one, or
+  /// lacks commits of this object, a new epoch begins, unless another server noticed it before.
+  /// \throws PostgresError, Failure(Storage).
   void begin_run(Connection& connection);
 
-  /// In the transaction of a batch: writes how far the run has come with it, and reads which epoch
-  /// it is. What it returns is for committed(), once that is certain.
+  /// In the transaction of a batch: writes the next position of the run and reads the epoch. Pass
+  /// the result to committed() once the commit is certain.
   struct Step {
     Uuid epoch;
     std::uint64_t position = 0;
@@ -39,19 +40,20 @@ class History {
   Step advance(Connection& connection) const;
   void committed(const Step& step);
 
-  /// Looks whether another server began an epoch.
+  /// Reads whether another server began an epoch.
   void refresh(Connection& connection);
 
   Uuid epoch() const;
-  Uuid run() const;  ///< of this server now
+  Uuid run() const;  ///< the current run of this server
   StorePoint point() const;
 
-  /// The point that a mark names, if it is one of this epoch, and what is not known to be there.
+  /// The point of a mark, if it is of this epoch and not known to be in the database.
   std::optional<HistoryPoint> find_doubtful(const HistoryMark& mark) const;
-  /// Whether a doubtful point is gone. What is there is remembered.
+  /// Whether a doubtful point is lost. Remembers how far its run is known.
   bool is_gone(Connection& connection, const HistoryPoint& point) const;
 
-  /// A new epoch if a mark is lost, in a writing transaction. \return it, for adopt().
+  /// Begins a new epoch if a mark is lost, in a writing transaction. \return the epoch, for
+  /// adopt().
   struct Begun {
     Uuid epoch;
     std::string why;
@@ -60,7 +62,7 @@ class History {
   void adopt(const Begun& begun);
 
   std::uint64_t rollbacks() const;  ///< noticed by this object
-  std::string trouble() const;      ///< what was noticed last, for people; empty: nothing
+  std::string trouble() const;      ///< the last rollback, as text; empty: none
 
  private:
   struct State {

@@ -18,11 +18,11 @@ struct Migration {
 /// All migrations that this binary knows, by version (written by cmake/embed_texts.cmake).
 std::span<const Migration> embedded_migrations();
 
-/// Applies those of `migrations` that a database lacks, all in one transaction, while no other
-/// server does; that of a store that was there has an entry in the audit log. Where nothing is to
-/// be done nothing is written. \throws Failure(Storage) if the database is newer than `migrations`,
-/// or was made by a migration
-///         of another text, or has tables of our names that are not ours.
+/// Applies the missing ones of `migrations` to a database, all in one transaction, while no other
+/// server does; the migration of an existing store gets an entry in the audit log. Writes nothing
+/// if none is missing.
+/// \throws Failure(Storage) if the database is newer than `migrations`, or was made by a migration
+///         of another text, or has other tables with the names of a store's.
 void migrate(Connection& connection, std::span<const Migration> migrations);
 
 }  // namespace kinship::store::postgres

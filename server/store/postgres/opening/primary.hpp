@@ -14,9 +14,9 @@
 
 namespace kinship::store::postgres {
 
-/// Which primary it is of those that a cluster had: a standby that is promoted has a greater one.
-/// It is in the name of the file that is being written; the control file tells it later. \throws
-/// PostgresError, also of a standby.
+/// The timeline of a primary: a promoted standby has a greater one than the primary before. Read
+/// from the name of the current WAL file, as the control file shows it later.
+/// \throws PostgresError, also on a standby.
 inline std::int64_t timeline_of(Connection& connection) {
   return connection
       .query(
@@ -33,22 +33,21 @@ struct StandbyState {
 };
 StandbyState standby_state(Connection& connection, const Uuid& run);
 
-/// Makes connections to the server that takes writes: of several hosts the one whose timeline is
-/// the greatest. An old primary that came back after another one was promoted is not taken, not
-/// even while it is the only one that answers: what it says was overtaken. May be shared between
-/// threads.
+/// Makes connections to the server that takes writes: of several hosts the one with the greatest
+/// timeline. An old primary that returns after a promotion is never used, even while it alone
+/// answers: its data is outdated. May be shared between threads.
 class Primary {
  public:
   Primary(ConnectionString where, const ConnectionOptions& options);
 
-  /// \throws PostgresError if no host is of use: gone, a standby, too old, or of an older timeline
-  ///         than one that was met before; the message says what each of them said.
+  /// \throws PostgresError if no host can be used: gone, a standby, too old, or of an older
+  ///         timeline than one seen before; with the message of each host.
   std::unique_ptr<Connection> connect();
 
   const std::string& description() const noexcept { return where_.description(); }
   const std::vector<ConnectionString>& hosts() const noexcept { return hosts_; }
   const ConnectionOptions& connection_options() const noexcept { return options_; }
-  std::int64_t timeline() const;  ///< the greatest that was met
+  std::int64_t timeline() const;  ///< the greatest seen
 
  private:
   /// A connection to a host that takes writes, and its timeline.

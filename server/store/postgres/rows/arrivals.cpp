@@ -9,7 +9,7 @@
 namespace kinship::store::postgres {
 namespace {
 
-/// Of an attempt, its robot and task, and its path or what replaced that one.
+/// Of an attempt, its robot and task, and its path or the replacement of that.
 constexpr std::string_view kArrivedColumns =
     "SELECT attempt.arrived_in::text::bigint, attempt.id,"
     " attempt.arrived_in < pg_snapshot_xmin(pg_current_snapshot()), attempt.report_uuid,"

@@ -15,58 +15,58 @@
 #include "server/store/tables/pages.hpp"
 
 /// Attempts in the order in which their transactions began. Several servers commit at once, so an
-/// attempt may become visible behind one that was seen before; it cannot any more where every
-/// transaction that began earlier has ended.
+/// attempt may become visible before one that was read already, until every transaction that began
+/// earlier has ended.
 namespace kinship::store::postgres {
 
-/// Where an attempt stands in that order.
+/// The place of an attempt in that order.
 struct Arrival {
   std::int64_t transaction = 0;
   std::int64_t id = 0;
-  bool is_settled = true;  ///< nothing becomes visible before it any more
+  bool is_settled = true;  ///< no attempt becomes visible before it any more
 };
 
-/// \throws Failure(InvalidInput) for what is no cursor of it; empty: the beginning.
+/// Empty: the beginning. \throws Failure(InvalidInput) for another cursor.
 Arrival parse_arrival_cursor(std::string_view cursor);
 std::string cursor_of(const Arrival& arrival);
 
-/// An attempt and what it names.
+/// An attempt, and the rows it refers to.
 struct ArrivedAttempt {
   Arrival arrival;
   Attempt attempt;  ///< without its path and scene
   std::string label = {};
   std::int64_t received_ms = 0;
-  std::optional<std::int64_t> path_id = {};  ///< or of what replaced it
+  std::optional<std::int64_t> path_id = {};  ///< or of its replacement
   bool is_path_in_use = false;               ///< neither retired, dropped nor damaged
   std::size_t waypoint_bytes = 0;            ///< of its path, 8 a waypoint and joint
   std::optional<std::int64_t> scene_id = {};
   bool is_robot_removed = false;
-  // Where it was asked for by its report:
+  // Only when selected by reports:
   Digest body = {};
   bool is_retired = false;
   std::size_t scene_bytes = 0;
 };
 
-/// The next ones of some robots and tasks, at most `count`.
+/// The next attempts of the filter's robot and task, at most `count`.
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFilter& filter,
                                            const Arrival& after, std::int64_t count);
 
-/// Those of some reports that are known, in no order.
+/// The attempts of the known ones of some reports, in no order.
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, std::span<const Uuid> reports);
 std::set<Uuid> select_known(Connection& connection, std::span<const Uuid> reports);
 std::vector<Bytes> bytes_of(std::span<const Uuid> reports);
 
-/// Reports as another store is told of them, see Store. A feed ends before the first transaction
-/// that is still open: nothing becomes visible behind a cursor that was given.
-/// \throws Failure(InvalidInput) for a cursor of something else.
+/// Reports for another store, see Store::list_arrivals(). A feed ends before the first transaction
+/// that is still open: a report never becomes visible before a cursor that was returned.
+/// \throws Failure(InvalidInput) for a cursor of another list.
 Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view task,
                                      std::string_view cursor, std::size_t limit);
 Feed<Uuid> feed_of_retirements(Connection& connection, std::string_view cursor, std::size_t limit);
 
-/// Fills a page with attempts as they arrived, so that the cursor behind it misses none: where a
-/// page follows it ends before what is not settled. Only where more than a page is not settled,
-/// which takes a transaction that is kept open, it ends in its midst; then what others are
-/// committing may be missed, as if it had come after the end.
+/// Fills a page with attempts in order of arrival, so that its cursor misses none: if a page
+/// follows, it ends before the first attempt that is not settled. Only if more than a page is not
+/// settled, because a transaction stays open, it ends among them; then attempts being committed may
+/// be missed, as if they had arrived after the end.
 template <typename Entry>
 class ArrivalPage {
  public:
@@ -85,7 +85,7 @@ class ArrivalPage {
   }
   /// No more attempts follow.
   Page<Entry> last() { return std::move(page_); }
-  /// Another one follows for which there is no room.
+  /// Another attempt follows, without room for it.
   Page<Entry> full() {
     if (settled_rows_ > 0)
       page_.rows.erase(page_.rows.begin() + static_cast<std::ptrdiff_t>(settled_rows_),

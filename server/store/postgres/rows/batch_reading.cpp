@@ -64,8 +64,8 @@ constexpr std::string_view kScenes =
 constexpr std::string_view kPathIds =
     "SELECT nextval(pg_get_serial_sequence('path', 'id')) FROM generate_series(1, $1)";
 
-// Of the pairs that may have more than $4 paths in the end, those with the largest digests: all
-// that the batch can drop, and the one after, which is the threshold.
+// For pairs that may end with more than $4 paths, the paths with the largest digests: all that the
+// batch can drop, and the next one, which is the threshold.
 constexpr std::string_view kLargest =
     "SELECT robot.digest, task.name, kept.id, kept.content_sha256, kept.report_uuid,"
     " kept.T_task_base, kept.dof, kept.waypoint_count"
@@ -149,7 +149,7 @@ WantedContents contents_of(PreparedAttempts attempts, const BatchState& state) {
   return wanted;
 }
 
-/// What decides which pairs are to be locked.
+/// Reads the rows that decide which pairs are locked.
 void read_robots(Connection& connection, PreparedAttempts attempts, BatchState& state) {
   const std::array<Request, 3> requests = {Request{kBeforeReports},
                                            Request{kRobots, Parameters(robots_of(attempts))},
@@ -226,7 +226,7 @@ void read_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t
       {kMakeTasks, Parameters(pairs.tasks)},
       {kMakePairs, Parameters(pairs.tasks, pairs.robots)},
       {kLockPairs, Parameters(pairs.tasks, pairs.robots)},
-      // What follows sees what was committed before the locks were had.
+      // Later statements see all commits from before the locks were taken.
       {kReports, uuids},
       {of_reports, uuids},
       {kRetired, uuids},

@@ -29,7 +29,7 @@ constexpr std::string_view kSetAside =
     " replaced_by = coalesce(new.replaced_by, path.replaced_by)"
     " FROM unnest($2, $3) AS new (id, replaced_by) WHERE path.id = new.id";
 
-// What came with the damaged path, and what was answered with it, has the new one.
+// Reports that brought the damaged path, or were answered with it, get the new one.
 constexpr std::string_view kFollowReplacement =
     "UPDATE attempt SET path_id = new.replaced_by"
     " FROM unnest($1, $2) AS new (id, replaced_by) JOIN path ON path.id = new.id"
@@ -255,7 +255,7 @@ Parameters restored_in_columns(const BatchChanges& changes) {
   return Parameters(uuids, paths, statuses);
 }
 
-/// The columns of what a sampling mode cost.
+/// The columns of a sampling mode's costs.
 struct TotalsColumns {
   Integers attempts, solved;
   std::vector<double> checks, squared, of_solved;

@@ -20,7 +20,7 @@ class Contents {
   Contents(Connection& connection, DamagedRows& noticed)
       : connection_(&connection), noticed_(&noticed) {}
 
-  /// Reads what these attempts name, in place of the paths that were read before.
+  /// Reads the paths and scenes of these attempts, in place of the paths read before.
   void read(std::span<const ArrivedAttempt> attempts) {
     std::vector<std::int64_t> path_ids, scene_ids;
     for (const ArrivedAttempt& arrived : attempts) {
@@ -32,7 +32,7 @@ class Contents {
     read_paths(path_ids);
     read_scenes(scene_ids);
   }
-  /// An attempt with what it names and can be read.
+  /// An attempt with its path and scene, if they can be read.
   Attempt whole(ArrivedAttempt arrived) const {
     if (arrived.path_id)
       if (const auto found = paths_.find(*arrived.path_id); found != paths_.end())
@@ -81,7 +81,7 @@ bool is_exported(const ArrivedAttempt& arrived) {
   return !arrived.is_robot_removed && (arrived.path_id ? arrived.is_path_in_use : !is_solved);
 }
 
-/// How many of these are read together: what their waypoints take stays within `max_bytes`.
+/// The number of these to read together: their waypoints stay within `max_bytes`.
 std::size_t size_of_portion(std::span<const ArrivedAttempt> attempts, std::size_t max_bytes) {
   std::size_t size = 0, bytes = 0;
   while (size < attempts.size() &&

@@ -22,8 +22,8 @@ Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& 
 std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_uuid,
                                     DamagedRows& noticed);
 
-/// As Store::export_attempts() says. What was acknowledged before its last page was read is in an
-/// export; see ArrivalPage.
+/// As Store::export_attempts() says. An export has every attempt acknowledged before its last page
+/// was read; see ArrivalPage.
 Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
                           std::size_t limit, std::size_t max_bytes, DamagedRows& noticed);
 

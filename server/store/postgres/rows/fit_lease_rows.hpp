@@ -8,21 +8,21 @@
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
 
-/// Which server fits a distribution, and which servers are alive. None of it has to survive: it is
-/// written without waiting for the disk or a standby.
+/// The rights to fit distributions, and the live servers. These rows need not survive a crash: they
+/// are written without waiting for the disk or a standby.
 namespace kinship::store::postgres {
 
-/// This server is alive for some seconds more. Call it again within 2 s.
+/// Marks a server as alive for some seconds. Call it again within 2 s.
 void note_alive(Connection& connection, const Uuid& server);
-/// It has ended in order.
+/// Removes a server that ends in order.
 void note_gone(Connection& connection, const Uuid& server);
 
-/// \return nothing while another server that is alive has it.
+/// \return nothing while another live server has the right.
 std::optional<FitRight> take_fit_right(Connection& connection, const Digest& id,
                                        const Uuid& server);
 void give_back_fit_right(Connection& connection, const Digest& id, const FitRight& right);
 
-/// Whether nobody took it since, until the transaction ends.
+/// Whether the right was not taken since; locks it until the transaction ends.
 bool has_fit_right(Connection& connection, const Digest& id, const FitRight& right);
 
 }  // namespace kinship::store::postgres

@@ -27,8 +27,8 @@ std::string newest_paths(const PairFilter& filter, std::vector<Parameter>& param
          " ORDER BY newest.id DESC LIMIT $2";
 }
 
-/// The same of distributions. In the order of one index alone, so that no other one is read to its
-/// end for what is not there: the rows below, of which those of others are left out.
+/// The same for distributions. In the order of one index alone, so that no other one is read to its
+/// end for rows that do not exist: the rows below, without the ones not asked for.
 std::string newest_distributions(const PairFilter& filter, std::vector<Parameter>& parameters) {
   std::string columns, ids, falling, are_asked_for;
   for (const PairFilter::Column& column : filter.columns(parameters)) {

@@ -47,7 +47,7 @@ void lock_pair(Connection& connection, const ExperienceKey& key) {
       key.task_id, key.robot_id);
 }
 
-/// What a retirement does to a locked row: both generations rise.
+/// Notes a retirement in a locked row: both generations rise.
 /// \param paths  that were counted until now.
 void note_retirement(Connection& connection, const ExperienceKey& key, std::int64_t paths) {
   connection.query(
@@ -84,7 +84,7 @@ std::int64_t retire(Connection& connection, const ExperienceKey& key,
   return retire(connection, key, "= ANY($2)", Parameters(now_ms(), paths));
 }
 
-/// The paths of reports, or what replaced them.
+/// Retires the paths of reports, or their replacements.
 std::int64_t retire_paths_of(Connection& connection, const ExperienceKey& key,
                              const std::vector<Bytes>& reports) {
   return retire(connection, key,
@@ -94,8 +94,8 @@ std::int64_t retire_paths_of(Connection& connection, const ExperienceKey& key,
                 Parameters(now_ms(), key.task_id, key.robot_id, reports));
 }
 
-/// Where some of these are not there: waits for whoever is writing reports (kBeforeReports), and
-/// keeps others from it. Of two that look for what the other one writes neither would find it.
+/// If some of these are missing: waits for transactions that write reports (kBeforeReports), and
+/// holds off others. Two transactions that look for each other's reports would find none.
 void wait_for_arrivals(Connection& connection, std::span<const Uuid> reports) {
   const std::set<Uuid> asked(reports.begin(), reports.end());
   if (select_known(connection, reports).size() < asked.size())
@@ -129,7 +129,7 @@ std::vector<Retirement> retire_reports(Connection& connection, std::span<const U
   const std::vector<Bytes> uuids = bytes_of(reports);
   wait_for_arrivals(connection, reports);
   std::map<std::string, Retirement> retired;  // by task
-  // Locked before anything is written, in the order of the key as everybody does.
+  // Locked before anything is written, in the order of the key as everywhere.
   const Rows pairs = connection.query(
       "SELECT attempt.task_id, attempt.robot_id, task.name, robot.digest FROM attempt"
       " JOIN task ON task.id = task_id JOIN robot ON robot.id = robot_id"
@@ -137,7 +137,7 @@ std::vector<Retirement> retire_reports(Connection& connection, std::span<const U
       uuids);
   for (const Row pair : pairs)
     lock_pair(connection, {pair.column_integer(0), pair.column_integer(1)});
-  // Also what was there is written, so that the answer waits for a standby.
+  // Known reports are written, too, so that the answer waits for a standby.
   connection.query(
       "INSERT INTO retired_report (report_uuid, retired_ms)"
       " SELECT DISTINCT unnest($1::bytea[]), $2::bigint ON CONFLICT (report_uuid)"

@@ -10,7 +10,7 @@
 
 namespace kinship::store {
 
-/// A function on the write batch whose result somebody waits for.
+/// A function on the write batch whose result a caller waits for.
 template <typename Function>
 class CallItem : public WriteItem {
  public:
@@ -33,8 +33,8 @@ class CallItem : public WriteItem {
   std::promise<Value> promise_;
 };
 
-/// A function on the connection between two batches, outside of any transaction, whose result
-/// somebody waits for. Reports wait as long as it runs.
+/// A function on the connection between two batches, outside of any transaction, whose result a
+/// caller waits for. Reports wait while it runs.
 template <typename Function>
 class AfterCommitItem : public WriteItem {
  public:

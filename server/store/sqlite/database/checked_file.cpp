@@ -24,7 +24,7 @@ namespace {
 
 using ConstPage = std::span<const std::uint8_t>;
 
-/// What the connections of this process share about one database.
+/// State that the connections of this process share about one database.
 struct SharedRecord {
   std::shared_ptr<PageDamage> damage = std::make_shared<PageDamage>();
   WalFrames wal;
@@ -41,7 +41,7 @@ std::shared_ptr<SharedRecord> record_of(const std::string& database) {
   return record;
 }
 
-/// What this thread is doing.
+/// The current work of this thread.
 thread_local bool copies_wal = false;   // a checkpoint runs
 thread_local bool spoils_next = false;  // it has just read a page that is damaged in the WAL
 thread_local int holes_allowed = 0;
@@ -72,7 +72,7 @@ Below& below(sqlite3_file* file) { return *reinterpret_cast<CheckedFile*>(file)-
 constexpr std::size_t kHeaderBytes = 100;
 constexpr std::size_t kReserveAt = 20;
 
-/// What the header of a database says; nothing if it is none.
+/// Whether a database's header says that its pages bear checksums; nothing if it is no header.
 std::optional<bool> sealed_by_header(ConstPage header) {
   constexpr std::string_view kMagic("SQLite format 3\0", 16);
   if (header.size() < kHeaderBytes || std::memcmp(header.data(), kMagic.data(), kMagic.size()) != 0)
@@ -110,7 +110,7 @@ int write_wal(Below& file, ConstPage bytes, std::int64_t offset) {
   return code;
 }
 
-/// Writes what was gathered. It is given up if that fails: so is the commit that it belongs to.
+/// Writes the gathered bytes. They are dropped if that fails: so is their commit.
 int write_gathered(Below& file) {
   if (file.gathered.empty())
     return SQLITE_OK;

@@ -8,7 +8,7 @@ struct sqlite3_vfs;
 /// The files that checked_vfs() opens.
 namespace kinship::store {
 
-extern const int kCheckedFileBytes;  ///< that SQLite has to set aside for one
+extern const int kCheckedFileBytes;  ///< that SQLite has to allocate for one
 
 /// Questions to an open database file, for sqlite3_file_control(); SQLite's own are below 100.
 inline constexpr int kSealIfEmpty = 7501;  ///< SQLITE_OK if it was empty and will be sealed

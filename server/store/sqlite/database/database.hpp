@@ -43,7 +43,7 @@ class Database : public Session {
   std::int64_t changed_rows() const noexcept;  ///< by the last INSERT, UPDATE or DELETE
   bool in_transaction() const noexcept;
   sqlite3& connection() noexcept { return *connection_; }
-  /// A backup that reads from this connection, or nothing; it ends before the connection closes.
+  /// A backup that reads from this connection, or null; it ends before the connection closes.
   std::unique_ptr<OnlineBackup>& backup() noexcept { return backup_; }
 
  private:

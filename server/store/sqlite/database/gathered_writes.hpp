@@ -7,14 +7,14 @@
 
 namespace kinship::store {
 
-/// Bytes on their way to a file, gathered as long as each piece begins where the last one ended:
-/// SQLite writes a commit to the WAL in two calls for each page.
+/// Bytes for a file, gathered while each piece begins where the last one ended: SQLite writes a
+/// commit to the WAL in two calls per page.
 class GatheredWrites {
  public:
-  /// Room for all that will ever be gathered: taking a piece then needs no heap.
+  /// Allocates the maximum, so that take() needs no heap.
   void reserve() { bytes_.reserve(kMaxBytes); }
 
-  /// \return whether the piece was taken. If not, what is here has to be written first.
+  /// \return whether the piece was taken. If not, the gathered bytes must be written first.
   bool take(std::int64_t offset, std::span<const std::uint8_t> bytes) {
     if (!empty() && (offset != end() || bytes_.size() + bytes.size() > kMaxBytes))
       return false;

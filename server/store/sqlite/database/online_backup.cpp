@@ -16,7 +16,7 @@ void OnlineBackup::Finish::operator()(sqlite3_backup* backup) const noexcept {
 
 OnlineBackup::OnlineBackup(Database& source, const std::filesystem::path& target)
     : target_(target, Access::ReadWrite) {
-  // Whoever publishes the copy syncs it; half a copy is of no use to anybody.
+  // The caller that publishes the copy syncs it; half a copy is of no use.
   target_.execute("PRAGMA synchronous = OFF; PRAGMA journal_mode = MEMORY");
   set_sealed(target_.connection(), is_sealed(source.connection()));  // pages are copied as they are
   backup_.reset(sqlite3_backup_init(&target_.connection(), "main", &source.connection(), "main"));

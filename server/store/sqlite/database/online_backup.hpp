@@ -11,7 +11,7 @@ struct sqlite3_backup;
 namespace kinship::store {
 
 /// A copy of a database, made in steps between which the source's own connection may write: SQLite
-/// copies again what changes. (A write through another connection would make it begin anew.) The
+/// copies changed pages again. (A write through another connection would restart the copy.) The
 /// copy is as of the last step. Every method throws SqliteError.
 class OnlineBackup {
  public:
@@ -22,7 +22,7 @@ class OnlineBackup {
   OnlineBackup& operator=(const OnlineBackup&) = delete;
   ~OnlineBackup();
 
-  /// Copies the next pages. Not within a write transaction of the source.
+  /// Copies the next pages. Not to be called within a write transaction of the source.
   /// \return whether the copy is complete.
   bool step(int pages);
   double progress() const;  ///< 0 to 1
@@ -38,7 +38,7 @@ class OnlineBackup {
 /// Makes a finished copy one plain file, without a WAL beside it.
 void make_plain(const std::filesystem::path& copy);
 
-/// Copies a whole database that nobody writes to into an empty file, and makes it plain.
+/// Copies a whole database, not written meanwhile, into an empty file and makes it plain.
 void copy_database(Database& source, const std::filesystem::path& target,
                    const std::function<void(double)>& progress);
 

@@ -39,7 +39,7 @@ inline std::uint64_t varint(PageBytes bytes, std::size_t& at) {
   return value;
 }
 
-/// How many bytes of a payload lie in its cell; the rest is on overflow pages.
+/// Bytes of a payload in its cell; the rest is on overflow pages.
 inline std::uint64_t local_bytes(std::size_t page_size, std::uint64_t payload, bool table) {
   const std::uint64_t usable = page_size - kSealBytes;
   const std::uint64_t most = table ? usable - 35 : (usable - 12) * 64 / 255 - 23;
@@ -50,7 +50,7 @@ inline std::uint64_t local_bytes(std::size_t page_size, std::uint64_t payload, b
   return fitting <= most ? fitting : least;
 }
 
-/// The page where a payload goes on that does not fit into its cell; 0: it fits.
+/// The first overflow page of a payload; 0: it fits into its cell.
 /// \param at  of the payload's first byte.
 inline std::uint64_t overflow_of(PageBytes page, std::size_t at, std::uint64_t payload,
                                  bool table) {

@@ -12,7 +12,7 @@
 namespace kinship::store {
 namespace {
 
-/// Goes through one b-tree and asks of each page whether it is one of those looked for.
+/// Walks one b-tree and asks of each page whether it is wanted.
 class Walk {
  public:
   Walk(PageReader& reader, const std::vector<std::uint64_t>& wanted,
@@ -92,7 +92,7 @@ class Walk {
   std::vector<std::pair<std::uint64_t, Form>> next_;
 };
 
-/// The schema and what it names. A snapshot is not kept: a large file takes a while to walk.
+/// The schema and its b-trees. No snapshot is kept: a large file takes a while to walk.
 std::vector<std::pair<std::uint64_t, PageOwner>> roots_of(Database& database) {
   std::vector<std::pair<std::uint64_t, PageOwner>> roots = {{1, {"sqlite_schema", "the schema"}}};
   {

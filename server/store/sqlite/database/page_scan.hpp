@@ -12,7 +12,7 @@
 
 struct sqlite3_file;
 
-/// Pages of a database file as they lie there, without SQLite's own way through them.
+/// Pages of a database file, read without SQLite's b-trees.
 namespace kinship::store {
 
 /// Reads pages of a sealed file past SQLite's cache. A page that is being written meanwhile may
@@ -36,16 +36,17 @@ class PageReader {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// What a page belongs to.
+/// The owner of a page.
 struct PageOwner {
   std::string table;  ///< empty: unknown
   std::string words;  ///< "table path", "index path_by_content", "free"
 };
 
-/// Looks for those who refer to some pages, through every page of the file if need be. What lies
-/// below a damaged page stays unknown, and what is not found in time. Holds no snapshot while it
-/// looks.
-/// \param pages  in order. \return one for each.
+/// Finds the owners of some pages, reading every page of the file if need be. The owner of a page
+/// below a damaged one, or not found before the deadline, stays unknown. Holds no snapshot
+/// meanwhile.
+/// \param pages  in order.
+/// \return one owner for each.
 std::map<std::uint64_t, PageOwner> owners_of(
     Database& database, const std::vector<std::uint64_t>& pages,
     std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max());

@@ -7,9 +7,9 @@
 /// The checksum at the end of each page of a store's file.
 namespace kinship::store {
 
-/// Bytes at the end of a page that SQLite leaves alone (byte 20 of the file's header): four that
-/// say what they are, and the CRC-32C of all before them and of the page's number, so that a page
-/// written to the place of another one is found too.
+/// Bytes at the end of a page that SQLite leaves unused (byte 20 of the file's header): a magic of
+/// four bytes, and the CRC-32C of all bytes before it and of the page's number, which also finds a
+/// page written to the place of another.
 inline constexpr std::size_t kSealBytes = 8;
 
 /// Whether `size` bytes at `offset` of a database file are one whole page.
@@ -19,16 +19,16 @@ bool is_page(std::size_t size, std::int64_t offset) noexcept;
 /// \param number  counted from 1, as SQLite does.
 void seal_page(std::span<std::uint8_t> page, std::uint64_t number) noexcept;
 
-/// Makes the seal a wrong one, for a page whose content is known to be wrong.
+/// Makes the checksum wrong, for a page whose content is known to be wrong.
 void spoil_seal(std::span<std::uint8_t> page) noexcept;
 
-/// Whether the seal says that the page is as it was written.
+/// Whether the checksum fits the page and its number.
 bool is_sealed(std::span<const std::uint8_t> page, std::uint64_t number) noexcept;
 
-/// Whether there is a seal at all, right or wrong.
+/// Whether the page has a checksum, right or wrong.
 bool bears_seal(std::span<const std::uint8_t> page) noexcept;
 
-/// A page that was never written: a hole in the file.
+/// Whether the page was never written: a hole in the file.
 bool is_hole(std::span<const std::uint8_t> page) noexcept;
 
 }  // namespace kinship::store

@@ -10,7 +10,7 @@
 namespace kinship::store {
 namespace {
 
-/// SQLite says "disk is full" of its databases only, of what it lays beside them "disk I/O error".
+/// SQLite reports "disk is full" for its databases only, for files beside them "disk I/O error".
 std::string lack_of_room(sqlite3& connection) {
   const int reason = sqlite3_system_errno(&connection);
   const bool is_io_error = (sqlite3_extended_errcode(&connection) & 0xFF) == SQLITE_IOERR;

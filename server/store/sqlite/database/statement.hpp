@@ -14,8 +14,8 @@ struct sqlite3_stmt;
 
 namespace kinship::store {
 
-/// A prepared statement: the owner of one sqlite3_stmt, and the row that it is at. Move-only; used
-/// by one thread at a time.
+/// A prepared statement: the owner of one sqlite3_stmt, and its current row. Move-only; used by one
+/// thread at a time.
 ///
 /// Every method throws SqliteError with SQLite's own message on an unexpected return code.
 class Statement final : public Row {
@@ -34,7 +34,7 @@ class Statement final : public Row {
     return value ? bind(index, *value) : bind(index, std::nullopt);
   }
 
-  /// Binds what stands in a column of another statement's row.
+  /// Binds the value of a column of another statement's row.
   Statement& bind_column(int index, const Statement& row, int column);
 
   /// Binds the first parameters in order.

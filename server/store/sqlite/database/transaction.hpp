@@ -23,7 +23,7 @@ class Transaction {
 };
 
 /// A part of a write transaction that can be undone alone; undone on destruction unless kept.
-/// Does not nest under itself with gaps: the youngest one is ended first.
+/// Nested savepoints must end in reverse order: the youngest first.
 class Savepoint {
  public:
   explicit Savepoint(Database& database);

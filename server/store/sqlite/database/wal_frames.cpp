@@ -59,7 +59,7 @@ void WalFrames::continue_page(std::int64_t offset, std::span<const std::uint8_t>
   const auto frame_size = static_cast<std::int64_t>(page_size_) + kFrameHeaderBytes;
   const std::int64_t within = (offset - kWalHeaderBytes) % frame_size;
   if (within + std::ssize(bytes) <= kFrameHeaderBytes)
-    return;  // of a frame's header, which nobody reads but a recovery
+    return;  // of a frame's header, which only a recovery reads
   const auto frame = static_cast<std::size_t>((offset - kWalHeaderBytes) / frame_size);
   crc_at(frame).reset();
   if (within == kFrameHeaderBytes)

@@ -9,23 +9,23 @@
 
 namespace kinship::store {
 
-/// What this process knows of the pages that lie in a WAL file: the CRC-32C of each as it was
-/// written. SQLite's own checksums of frames are looked at when a WAL is recovered, never when a
-/// page is read from it. May be shared between threads.
+/// The CRC-32C of each page in a WAL file, as this process wrote or first read it. SQLite verifies
+/// its own checksums of frames when it recovers a WAL, never when it reads a page from it. May be
+/// shared between threads.
 class WalFrames {
  public:
-  /// Bytes that are being written to the file: a header, a page, or a part of one.
+  /// Notes bytes being written to the file: a header, a page, or a part of one.
   void written(std::int64_t offset, std::span<const std::uint8_t> bytes);
-  /// Nothing is known any more of what these bytes belong to: they could not be written.
+  /// Forgets the pages of these bytes, which could not be written.
   void forget(std::int64_t offset, std::size_t size);
   void truncated(std::int64_t size);
 
   /// \param bytes  as read: a page, or a frame with its header.
-  /// \return whether they may be what was written: yes, too, if nothing is known of them; from then
-  ///         on it is known.
+  /// \return whether the bytes may be as written: true also for an unknown page, whose CRC is known
+  ///         from then on.
   bool is_right(std::int64_t offset, std::span<const std::uint8_t> bytes);
 
-  /// A file is opened or closed; when the last one is closed everything is forgotten.
+  /// Notes that a file is opened or closed; closing the last one forgets everything.
   void opened();
   void closed();
 

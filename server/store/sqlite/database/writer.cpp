@@ -169,7 +169,7 @@ void Writer::write(Items& items) {
 
 /// Writes one item without savepoints.
 /// \return whether it is durable. If not, it did not happen, and is to be written with savepoints,
-///         which find out what is wrong with it.
+///         which find the fault.
 bool Writer::write_whole(WriteItem& item) {
   Transaction transaction(*database_, Transaction::Kind::Write);
   Batch batch(*database_, true);
@@ -187,8 +187,8 @@ bool Writer::write_whole(WriteItem& item) {
   return true;
 }
 
-/// After damage that undid the batch: each item in a transaction of its own, so that the one that
-/// needs what is damaged fails alone. The rest of the file is fine, nothing is opened again.
+/// After damage that undid the batch: each item in a transaction of its own, so that only the one
+/// that needs damaged pages fails. The rest of the file is fine, nothing is opened again.
 void Writer::write_apart(Items& items) {
   for (auto& item : items) {
     std::optional<Error> error;

@@ -30,15 +30,15 @@ class Batch {
 
   Database& database() const noexcept { return *database_; }
 
-  /// Whether whoever has to undo a part of it may throw instead: the transaction is undone, and
-  /// written again by parts. A savepoint copies each page that is changed after it.
+  /// Whether an item may throw instead of undoing a part: then the whole transaction is undone and
+  /// written again with savepoints. A savepoint costs a copy of each page changed after it.
   bool is_undone_whole() const noexcept { return undone_whole_; }
 
-  /// Says that the paths of a robot and task changed; the batch raises their generation once.
+  /// Notes that the paths of a robot and task changed; the batch raises their generation once.
   void paths_changed(std::int64_t task_id, std::int64_t robot_id) {
     changed_.try_emplace({task_id, robot_id}, false);
   }
-  /// The same, and the new generation is that of the last retirement too.
+  /// The same; the new generation is also that of the last retirement.
   void paths_retired(std::int64_t task_id, std::int64_t robot_id) {
     changed_[{task_id, robot_id}] = true;
   }
@@ -50,16 +50,16 @@ class Batch {
   std::map<std::pair<std::int64_t, std::int64_t>, bool> changed_;  // task, robot -> retired
 };
 
-/// Something to be written. Both methods run on the writer's thread.
+/// A write in the queue. apply() and finish() run on the writer's thread.
 class WriteItem {
  public:
   virtual ~WriteItem() = default;
 
   virtual std::size_t weight() const { return 1; }  ///< counts towards the cap of a batch
-  virtual std::size_t bytes() const { return 0; }   ///< that it occupies while it waits
+  virtual std::size_t bytes() const { return 0; }   ///< of memory while it waits
 
-  /// Writes into the batch. What it throws undoes this item alone, except an SqliteError that does
-  /// not spare the transaction: that one undoes the batch. May be called again for another batch.
+  /// Writes into the batch. An exception undoes this item alone, except an SqliteError that does
+  /// not spare the transaction, which undoes the batch. May be called again for another batch.
   virtual void apply(Batch& batch) = 0;
 
   /// Called once, when the item is durable (no error) or undone, outside of any transaction. Must
@@ -74,17 +74,18 @@ struct WriterOptions {
   std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;    ///< see Writer::wal_full()
 };
 
-/// What went wrong with the disk so far.
+/// Failures of the disk so far.
 struct WriterFailures {
   std::uint64_t count = 0;
-  std::string last;  ///< what the last one said
+  std::string last;  ///< message of the last one
 };
 
-/// The thread that owns the only writing connection. It takes whatever is queued as one
-/// transaction and finishes the items after the commit is durable; nobody waits for a timer. When
-/// the WAL is long enough it checkpoints after that, so that no item waits for it.
+/// The thread that owns the only writing connection. It writes all queued items in one transaction,
+/// up to the cap, and finishes them after the commit is durable, without a timer. When the WAL is
+/// long enough it checkpoints after that, so that no item waits for it.
 ///
-/// Where something is damaged the items are written one by one, and those that need it fail alone.
+/// If a batch meets damage, its items are written one by one, and only the items that need the
+/// damaged data fail.
 ///
 /// Fail-stop: on an I/O error or a full disk, in a checkpoint too, it undoes the batch, finishes
 /// every item with the error, closes the connection and opens it again with checks, but never
@@ -99,20 +100,20 @@ class Writer {
   Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options = {});
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
-  /// Writes what is queued, checkpoints, and closes the connection.
+  /// Writes the queued items, checkpoints, and closes the connection.
   ~Writer();
 
   void submit(std::unique_ptr<WriteItem> item);
 
-  std::size_t queued() const;        ///< weight of what waits
-  std::size_t queued_bytes() const;  ///< and its size
-  /// Empty while all is well; else why nothing is written.
+  std::size_t queued() const;        ///< weight of the waiting items
+  std::size_t queued_bytes() const;  ///< their size
+  /// Empty while items are written; else the reason why not.
   std::string trouble() const;
   WriterFailures failures() const;  ///< since the writer began
 
   std::uint64_t wal_bytes() const noexcept { return wal_bytes_; }  ///< in use, not of the file
-  /// Whether the WAL is longer than it may be, because readings pin it. Items are written all the
-  /// same. The writer tries every `retry_after` to empty it.
+  /// Whether the WAL exceeds its limit, because readings pin it. Items are still written. The
+  /// writer tries every `retry_after` to empty it.
   bool wal_full() const noexcept { return wal_bytes_ > options_.max_wal_bytes; }
 
  private:

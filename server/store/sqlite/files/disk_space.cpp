@@ -85,7 +85,7 @@ bool DiskSpace::may_take_ballast() const {
   if (ballast_bytes_ == 0 || has_ballast_)
     return false;
   const std::optional<std::uint64_t> free = free_bytes();
-  // What a checkpoint frees for a moment is not room: it would come and go with each of them.
+  // Room freed by a checkpoint for a moment does not count: the ballast would come and go.
   return free && *free >= watermark_bytes_ + 2 * ballast_bytes_;
 }
 

@@ -46,7 +46,7 @@ void require_local_filesystem(const std::filesystem::path& file,
                               const std::filesystem::path& directory) {
   struct statfs found {};
   if (statfs(directory.c_str(), &found) != 0)
-    return;  // who opens the file learns why
+    return;  // opening the file tells why
   const std::string name = network_filesystem_of(static_cast<long>(found.f_type));
   if (!name.empty())
     throw Failure(

@@ -97,8 +97,8 @@ fs::path locate_store(const fs::path& file) {
   require(error, file);
   if (names > 1)
     refuse_store(file, "has " + std::to_string(names) + " names (hard links), must have 1");
-  // Where a lock is, somebody may hold it, perhaps this process: to close any descriptor of a file
-  // drops all locks that the process has on it, SQLite's too. Then SQLite judges the header.
+  // Beside a lock file, a process may hold the lock, perhaps this one: closing any descriptor of a
+  // file drops all locks of the process on it, SQLite's too. Then SQLite judges the header.
   if (!fs::exists(located.string() + ".lock", error))
     check_header(located);
   return located;

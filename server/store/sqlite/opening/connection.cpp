@@ -23,7 +23,7 @@ void configure_writer(Database& database) {
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
       "PRAGMA wal_autocheckpoint = 0; PRAGMA journal_size_limit = 67108864;"
       "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;"
-      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes what it finds
+      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes all it finds
   gather_wal_writes(database.connection());
 }
 
@@ -38,7 +38,7 @@ void require_not_moving(Database& database, const std::filesystem::path& file) {
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   make_for_owner(file);
   make_wal_durable(file);
-  // A file of somebody else is refused before anything is written to it.
+  // A foreign file is refused before anything is written to it.
   std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
   require_not_moving(*database, file);
   configure_writer(*database);
@@ -66,7 +66,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
 
 std::unique_ptr<Database> open_reader(const std::filesystem::path& file) {
   auto database = std::make_unique<Database>(file, Access::ReadOnly);
-  // Readers wait for nobody but a recovery of the WAL.
+  // Readers wait only for a recovery of the WAL.
   database->execute(
       "PRAGMA query_only = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA mmap_size = 0;"
       "PRAGMA busy_timeout = 5000; PRAGMA cell_size_check = ON");

@@ -50,7 +50,7 @@ std::uint64_t position_of(Database& database) {
 
 History::History(const std::filesystem::path& file) : file_(file), witness_(file) {}
 
-/// \return why the file cannot be what it was when it was written last; empty: it can.
+/// \return why the file cannot be as it was last written; empty: it can.
 std::string History::find_rollback(const State& before, const RunLog& log, std::uint64_t position,
                                    const std::string& stored_identity) const {
   const std::string identity = identity_of(file_);

@@ -16,29 +16,29 @@
 
 namespace kinship::store {
 
-/// Writes a new epoch, with no run yet, and which file it is of, into a store. In a transaction of
-/// the caller.
+/// Writes a new epoch, without a run, and the identity of the file into a store, in the caller's
+/// transaction.
 Uuid write_new_epoch(Database& database, const std::filesystem::path& file);
 
-/// The largest id of an attempt: the position of what a connection sees.
+/// The largest id of an attempt: the position of the state that a connection sees.
 std::uint64_t position_of(Database& database);
 
-/// Which epoch a store is in, how far its history has come, and whether a point that somebody was
-/// told of lies on it. May be shared between threads, except where it takes a connection, which
-/// belongs to the caller's thread.
+/// The epoch of a store, the position of its history, and whether a client's consistency token
+/// (HistoryMark) lies on it. May be shared between threads, except methods that take a connection,
+/// which belongs to the caller's thread.
 class History {
  public:
   explicit History(const std::filesystem::path& file);
 
-  /// A run begins on a connection that was just opened for writing. If the file is not the one
-  /// that it was written as, or lies behind its witness, or behind what this object saw committed,
-  /// it was copied or rolled back: a new epoch begins. Otherwise nothing is written: a store on a
-  /// full disk can be opened.
+  /// Begins a run on a connection just opened for writing. If the file has another identity than
+  /// the stored one, or lies behind its high-water mark or the last commit of this object, it was
+  /// copied or rolled back: a new epoch begins. Otherwise nothing is written, except in a new
+  /// epoch, so that a store on a full disk can be opened.
   /// \throws Failure(Storage) if it cannot be written.
   void begin_run(Database& database);
 
-  /// Writes the run with its first attempts, into the same transaction. On the writer's thread,
-  /// like committed(), which is to be told of each position once it is durable.
+  /// Writes the run in the transaction of its first attempts. Call it on the writer's thread, like
+  /// committed(), which takes each position once it is durable.
   void write_run(Database& database);
   void committed(std::uint64_t position);
 
@@ -47,10 +47,10 @@ class History {
   bool has_lost(const HistoryMark& mark) const;
 
   std::uint64_t rollbacks() const;  ///< noticed by this object
-  std::string trouble() const;      ///< what was noticed last, for people; empty: nothing
+  std::string trouble() const;      ///< the last rollback, as text; empty: none
 
-  /// A new epoch through the writer's queue, because of what a client knows. Does nothing if
-  /// nothing is lost any more.
+  /// Begins a new epoch through the writer's queue, because of a client's token. Does nothing if
+  /// the token is not lost any more.
   class Renewal;
 
  private:
@@ -75,7 +75,7 @@ class History {
 
 class History::Renewal : public WriteItem {
  public:
-  /// \param history, mark  outlive the item, which is done when its result is there.
+  /// \param history, mark  outlive the item, which is done when its result is set.
   Renewal(History& history, const HistoryMark& mark) : history_(history), mark_(mark) {}
 
   std::future<bool> result() { return promise_.get_future(); }  ///< whether an epoch began

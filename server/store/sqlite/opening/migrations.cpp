@@ -117,7 +117,7 @@ std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
                                         std::span<const Migration> migrations, Keep keep) {
   auto database = std::make_unique<Database>(file, Access::ReadWrite);
   const std::int64_t version = known_schema(*database, file, migrations);
-  if (!is_sealed(database->connection()))  // what a killed process began is rolled back by now
+  if (!is_sealed(database->connection()))  // a killed process's transaction is rolled back by now
     database = std::make_unique<Database>(file, Access::ReadWrite);
   if (!is_sealed(database->connection()))
     refuse_store(file, "is an empty database of another program");
@@ -125,8 +125,8 @@ std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
     keep_copy_of(*database, file, version);
   // The size of pages counts for a new file only.
   database->execute("PRAGMA page_size = 4096; PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-  // A rollback journal does not keep what free pages held: a cut in the middle would leave them
-  // torn, with checksums that are wrong.
+  // A rollback journal does not keep the content of free pages: a cut in the middle would leave
+  // them torn, with wrong checksums.
   if (keep == Keep::Copy)
     database->execute("PRAGMA journal_mode = WAL");
   for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))

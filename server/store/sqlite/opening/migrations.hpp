@@ -31,9 +31,9 @@ enum class Keep {
   Nothing  ///< the file is a copy itself
 };
 
-/// Opens a store for the one who writes to it, a new one too, and applies those of `migrations`
-/// that it lacks, each in one transaction. Each is recorded with the SHA-256 of its text, and in
-/// the audit log of a store that was there before.
+/// Opens a store, also a new one, for its only writer, and applies the missing ones of
+/// `migrations`, each in one transaction. Each is recorded with the SHA-256 of its text, and in the
+/// audit log unless the store is new.
 ///
 /// \param file  may be empty.
 /// \throws Failure(Storage) as known_schema() does; nothing is changed then.
@@ -41,11 +41,11 @@ std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
                                         std::span<const Migration> migrations,
                                         Keep keep = Keep::Copy);
 
-/// Where a database of this version is copied to before it is migrated. Under that name there is
-/// never half a copy.
+/// The file of the copy of a database of this version, made before a migration. Only a complete
+/// copy has that name.
 std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version);
 
-/// That nothing is to be changed: ours, at the newest version, same texts.
+/// Checks that a database is a Kinship store at the newest version, made by the same migrations.
 /// \throws Failure(Storage) if not.
 void check_schema(Database& database, const std::filesystem::path& file,
                   std::span<const Migration> migrations);

@@ -21,8 +21,8 @@ class ReaderPool {
  public:
   explicit ReaderPool(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// A connection with a snapshot of the database, while it lives. Keep it short: the WAL cannot
-  /// be reset as long as somebody reads from it.
+  /// A connection with a snapshot of the database, while the lease lives. Keep it short: the WAL
+  /// cannot be reset while a connection reads from it.
   class Lease {
    public:
     /// \throws SqliteError if no snapshot can be taken; the connection is closed then.
@@ -41,11 +41,11 @@ class ReaderPool {
   };
 
   /// Waits while all connections are lent.
-  /// \throws Failure(Storage) if the pool is suspended and not resumed within a second: who serves
-  ///         readings can say so instead of keeping everybody waiting for a disk that hangs.
+  /// \throws Failure(Storage) if the pool is suspended and not resumed within a second: so a server
+  ///         answers with an error while the disk hangs.
   Lease lease();
 
-  /// How long the reading that began first has been going on; nothing if there is none.
+  /// Age of the oldest running reading; nothing if there is none.
   std::optional<Clock::duration> longest_reading() const;
 
   /// Waits for the leases to end and closes every connection; lease() waits until resume().
@@ -55,7 +55,7 @@ class ReaderPool {
  private:
   static constexpr std::size_t kMaxConnections = 4;
 
-  /// \param since  is set to when the connection was lent.
+  /// \param since  set to the time of the loan.
   std::unique_ptr<Database> take(Clock::time_point& since);
   void give_back(std::unique_ptr<Database> database, Clock::time_point since);
 

@@ -11,11 +11,11 @@
 
 namespace kinship::store {
 
-/// The runs of a store (positions: the largest id of an attempt by then), oldest first: each wrote
-/// what lies between its start and the start of the next one. Once a file is rolled back and
-/// written anew, points of the lost runs, and those of the run that was cut off which lie behind
-/// the cut, are not on it any more, whatever its position is by now. (Like the timelines of
-/// PostgreSQL.)
+/// The timeline of a store: its runs, oldest first. A position is the largest id of an attempt;
+/// each run wrote the positions between its start and the start of the next run. Once a file is
+/// rolled back and written again, points of the lost runs, and points behind the cut of the run
+/// that was cut off, are not on the timeline any more, for every later position. (Like the
+/// timelines of PostgreSQL.)
 class RunLog {
  public:
   explicit RunLog(const Uuid& epoch) : epoch_(epoch) {}
@@ -23,18 +23,18 @@ class RunLog {
   const Uuid& epoch() const noexcept { return epoch_; }
   bool is_empty() const noexcept { return runs_.empty(); }
 
-  /// A run begins. One before it that wrote nothing is forgotten, for no point names it; of more
-  /// than 256 runs the oldest are.
+  /// Begins a run. A previous run that wrote nothing is forgotten, as points never name it; of more
+  /// than 256 runs the oldest are forgotten.
   void begin(const Uuid& run, std::uint64_t position);
 
-  /// The name of a position: the run that wrote it, which is there if there is any run.
+  /// The point of a position: with the run that wrote it; empty only without runs.
   HistoryPoint at(std::uint64_t position) const;
 
-  /// Whether what was there at a point is there at `position`, which is that of now.
+  /// Whether the history up to a point is part of the store at `position`, the current one.
   bool contains(const HistoryPoint& point, std::uint64_t position) const;
 
   std::string text() const;
-  static std::optional<RunLog> parse(std::string_view text);  ///< empty if it is no text of one
+  static std::optional<RunLog> parse(std::string_view text);  ///< empty: no result of text()
 
  private:
   struct Run {
@@ -43,7 +43,7 @@ class RunLog {
   };
 
   Uuid epoch_;
-  std::uint64_t forgotten_until_ = 0;  ///< positions up to this may be of runs that were forgotten
+  std::uint64_t forgotten_until_ = 0;  ///< positions up to this may be of forgotten runs
   std::vector<Run> runs_;
 };
 

@@ -8,9 +8,10 @@
 
 namespace kinship::store {
 
-/// FILE.witness: how far the store beside it had come, so that the next server notices if the file
-/// was put back meanwhile. Written after each commit and never synced: it may fall behind the store
-/// in a power cut, never ahead of it. One that cannot be written is no failure.
+/// FILE.witness, the high-water mark: the last point of the store beside it, so that the next
+/// server notices if the file was rolled back meanwhile. Written after each commit and never
+/// synced: after a power cut it may be behind the store, never ahead of it. A failed write is
+/// ignored.
 class WitnessFile {
  public:
   struct Testimony {
@@ -20,10 +21,10 @@ class WitnessFile {
 
   explicit WitnessFile(const std::filesystem::path& store_file);
 
-  std::optional<Testimony> read() const;  ///< empty if there is none, or it is damaged
+  std::optional<Testimony> read() const;  ///< empty if it is missing or damaged
   void write(const Testimony& testimony) const;
 
-  /// For who puts another store in the place of one.
+  /// To be called before another store takes the file's place.
   static void remove(const std::filesystem::path& store_file);
 
  private:

@@ -14,10 +14,10 @@ namespace kinship::store {
 std::int64_t insert_attempt(Database& database, const NewAttempt& added,
                             std::optional<std::int64_t> scene_id, std::int64_t now_ms);
 
-/// The rows of one report, as the index has them.
+/// The rows of one report, from the index.
 struct ReportRows {
-  std::optional<std::int64_t> row;    ///< not set aside; it may turn out to be damaged
-  std::vector<std::int64_t> damaged;  ///< set aside, and nothing replaced it yet
+  std::optional<std::int64_t> row;    ///< not quarantined; it may turn out to be damaged
+  std::vector<std::int64_t> damaged;  ///< quarantined and not replaced yet
 };
 ReportRows find_report(Database& database, const Uuid& report_uuid);
 
@@ -31,7 +31,7 @@ struct AttemptRow {
   std::int64_t received_ms = 0;
   bool is_robot_removed = false;
 };
-/// Without the names of its robot and task, which stand in other tables. \throws SqliteError: if
+/// Without the names of its robot and task, which are in other tables. \throws SqliteError: if
 /// is_damage(), the row is damaged.
 AttemptRow select_attempt(Database& database, std::int64_t id);
 /// With the names. Nothing if there is none, or it lies on a damaged page.

@@ -11,10 +11,10 @@
 #include "server/store/store.hpp"
 #include "server/store/tables/pages.hpp"
 
-/// One row per robot and task that somebody reported: its generations and its sums.
+/// One row per robot and task with reported attempts: its generations and its sums.
 namespace kinship::store {
 
-/// Makes the row of a robot and task unless it is there. \return how many paths are in use.
+/// Makes the row of a robot and task unless it exists. \return number of paths in use.
 std::uint64_t ensure_experience(Database& database, const ExperienceKey& key);
 
 /// Adds all but the generation, which the batch raises.
@@ -23,7 +23,7 @@ void add_to_experience(Database& database, const ExperienceKey& key, const PairC
 /// Takes paths out of the count.
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths);
 
-/// The rows of a robot and a task, each empty for all, by task and robot.
+/// The rows that a filter selects, in order of task and robot.
 std::vector<ExperienceKey> select_experience(Database& database, const PairFilter& filter);
 
 }  // namespace kinship::store

@@ -63,7 +63,7 @@ std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
   }
 }
 
-/// The next attempts by id, those that are not set aside: of a robot, a task, both, or all of them.
+/// The next attempts by id, without quarantined ones: of a robot, a task, both, or all of them.
 std::vector<std::int64_t> next_attempts(Database& database, const PairFilter& filter,
                                         std::int64_t after_id, std::int64_t count) {
   return filter.is_empty()
@@ -105,7 +105,7 @@ std::optional<AttemptRow> read_row(Database& database, std::int64_t id, DamagedR
   return row;
 }
 
-/// Reads the path and the scene that an attempt names; what is found damaged now is noted.
+/// Reads the path and the scene that an attempt names; notes newly found damage.
 void read_contents(Database& database, AttemptRow& row, DamagedRows& noted) {
   if (row.path_id) {
     PathsRead read = select_path(database, *row.path_id);

@@ -12,7 +12,7 @@
 
 namespace kinship::store {
 
-/// Attempts with their paths and scenes, and those of them that turned out damaged on the way.
+/// Attempts with their paths and scenes, and the damaged rows found.
 struct ExportRead {
   Page<Attempt> page;
   DamagedRows damaged;
@@ -23,18 +23,18 @@ struct ExportRead {
 ExportRead export_page(Database& database, const PairFilter& filter, std::string_view cursor,
                        std::size_t limit, std::size_t max_bytes);
 
-/// A page of Store::list_attempts(), with a cursor of the same kind. Those that cannot be read are
-/// left out.
+/// A page of Store::list_attempts(), with a cursor of the same kind. Unreadable attempts are left
+/// out.
 /// \throws Failure(InvalidInput) for a cursor of another listing.
 Page<AttemptSummary> page_of_attempts(Database& database, const PairFilter& filter,
                                       std::string_view cursor, std::size_t limit);
 
-/// An attempt with its path and scene, as far as they can be read.
+/// An attempt with its path and scene, if they can be read.
 /// \return NotFound if it is not known; Storage if its row is damaged.
 Result<Attempt> find_attempt(Database& database, const Uuid& report_uuid, DamagedRows& noted);
 
-/// Reports as another store is told of them, see Store. Those that cannot be read are left out.
-/// \throws Failure(InvalidInput) for a cursor of something else.
+/// Reports for another store, see Store::list_arrivals(). Unreadable ones are left out.
+/// \throws Failure(InvalidInput) for a cursor of another list.
 Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
                                      std::string_view cursor, std::size_t limit);
 std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports);

@@ -161,7 +161,7 @@ void count_rows(Database& database, StoreStatus& status) {
         " (SELECT page_size FROM pragma_page_size)");
   status.schema_version = static_cast<std::uint32_t>(schema);
   for (const AsideCount& aside : count_aside(database))
-    // Distributions are fitted again; what lost its attempt is in use.
+    // Distributions are fitted again; a path that lost its attempt is in use.
     if (aside.kind != AsideKind::Distribution && aside.kind != AsideKind::Orphan)
       status.message += std::to_string(aside.rows) + " damaged " +
                         std::string(name_of(aside.kind, aside.rows)) + " set aside; ";

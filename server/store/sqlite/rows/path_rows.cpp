@@ -22,7 +22,7 @@ bool is_intact(const Statement& row) {
 constexpr std::string_view kNotAside =
     " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
 
-/// Runs what reads one row. \return false if the row cannot be read.
+/// Runs a function that reads one row. \return false if the row cannot be read.
 template <typename Read>
 bool can_read(Read read) {
   try {
@@ -87,7 +87,7 @@ void take_path(Database& database, std::int64_t id, PathsRead& read) {
     read.damaged.push_back(id);
 }
 
-/// The ids of paths in use, and those retired, as the indexes have them.
+/// The ids of paths in use and of retired ones, from the indexes.
 constexpr std::string_view kIdsOfIndexes =
     "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE retired_ms IS NULL "
     "UNION ALL SELECT id FROM path INDEXED BY path_retired WHERE retired_ms IS NOT NULL) AS path ";

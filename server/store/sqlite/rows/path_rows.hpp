@@ -16,43 +16,44 @@
 
 namespace kinship::store {
 
-/// Reads what it finds, and looks at its checksum.
+/// Finds the paths with this content, and reads them to verify their checksums.
 SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content);
 
-/// Whether a path, or what replaced it, can be read, or was retired, so that nobody wants it.
+/// Whether a path or its replacement can be read, or need not be, because it is retired.
 bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id);
 
-/// From an index: the paths in use of the largest digests, at most `limit`.
+/// The paths in use with the largest digests, at most `limit`. From an index.
 std::set<KeptPath> select_largest(Database& database, const ExperienceKey& key,
                                   std::uint64_t limit);
 
-/// Under an id of its own. \return that.
+/// Inserts a path under a new id. \return the id.
 std::int64_t insert_path(Database& database, const NewPath& path,
                          std::optional<std::int64_t> scene_id, std::int64_t now_ms);
 
-/// The path with this id, or what replaced it, also a retired one: none if it is set aside, or
+/// The path with this id or its replacement, also a retired one: none if it is quarantined or
 /// dropped.
 PathsRead select_path(Database& database, std::int64_t id);
 
-/// From an index: whether a path is retired, its row need not be readable.
+/// Whether a path is retired. From an index: its row need not be readable.
 bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id);
 
-/// The retired path that a report brought, looked for among all of its robot and task.
+/// The retired path of a report, searched among all of its robot and task.
 std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
                                          const Uuid& report_uuid);
 
-/// Sets paths aside: out of the counts and of every reading, and the generation is raised. One that
-/// is aside already stays so; one that is retired was out of the counts before. Their rows are not
-/// touched, they may lie on a damaged page.
+/// Quarantines paths: takes them out of the counts and of every reading, and raises the generation.
+/// A quarantined path stays so; a retired one was out of the counts before. Their rows are not
+/// touched, as they may lie on a damaged page.
 void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
-/// Sets one aside as retired: it could not be written.
+/// Quarantines a path as retired, because its row could not be written.
 void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
 
-/// Sets one aside as rules/batch_changes says, which has the counts too; not replaced: as retired.
+/// Quarantines a path as rules/batch_changes says, which also has the counts; if it is not
+/// replaced, as retired.
 void write_damaged(Database& database, const ExperienceKey& key, const DamagedPath& path);
 
-/// Takes a path out of use for good: its row stays, retired, its waypoints do not. One that cannot
-/// be written is set aside as retired. The counts are in rules/batch_changes.
+/// Drops a path: its row stays, retired, without its waypoints. If the row cannot be written, the
+/// path is quarantined as retired. The counts are in rules/batch_changes.
 void drop_path(Database& database, const ExperienceKey& key, std::int64_t id);
 
 /// A part of a full check.
@@ -62,11 +63,11 @@ struct PathsChecked {
   std::vector<std::int64_t> damaged;
 };
 
-/// Decodes the next paths with id > after_id, at most `limit`, retired ones too; those set aside
-/// are left out.
+/// Decodes the next paths with id > after_id, at most `limit`, retired ones too, without
+/// quarantined ones.
 PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit);
 
-/// Those of the newest `count` paths of all that are damaged and not set aside yet.
+/// The damaged ones, not quarantined yet, of the newest `count` paths of the store.
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);
 
 }  // namespace kinship::store

@@ -26,7 +26,7 @@ namespace {
 /// Stands for the id of the new path, which is known when its row is written; no row has it.
 constexpr std::int64_t kNewPathId = 0;
 
-/// What the rules of reports ask about one report, read as far as they ask.
+/// The answers to the rules' questions about one report, read as far as they ask.
 struct ReportReading {
   BatchState state;
   ExperienceKey key;                                  ///< of an acceptable one
@@ -94,7 +94,7 @@ void read_paths(Database& database, const PreparedAttempt& prepared, std::uint64
   pair.largest = select_largest(database, pair.key, excess + 1);
 }
 
-/// What decides whether it is acceptable: its robot, and the report that came under its UUID.
+/// Reads the data that accept or refuse it: its robot, and an earlier report with its UUID.
 ReportReading read_report(Database& database, const PreparedAttempt& prepared) {
   const Attempt& attempt = prepared.attempt;
   ReportReading reading;
@@ -126,7 +126,7 @@ void read_pair(Database& database, const PreparedAttempt& prepared, std::uint64_
     read_paths(database, prepared, max_paths, state, pair);
 }
 
-/// \param read  what the changes were resolved from; its state is not used.
+/// \param read  the source of the changes; its state is not used.
 void write_changes(Batch& batch, const BatchChanges& changes, const ReportReading& read,
                    std::int64_t now_ms) {
   Database& database = batch.database();

@@ -8,10 +8,10 @@
 
 namespace kinship::store {
 
-/// Writes one report into the batch as server/store/rules resolves it. What a receipt vouches for
-/// and cannot be read any more is set aside and written anew.
+/// Writes one report into the batch as server/store/rules resolves it. A path or scene that an
+/// earlier receipt covers and that cannot be read any more is quarantined and written again.
 /// \param max_paths  of its robot and task; 0: no cap.
-/// \throws SqliteError; what was written by then is the caller's to undo.
+/// \throws SqliteError; the caller must undo the writes made by then.
 Receipt write_report(Batch& batch, const PreparedAttempt& prepared, std::uint64_t max_paths = 0);
 
 }  // namespace kinship::store

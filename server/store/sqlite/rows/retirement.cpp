@@ -18,7 +18,7 @@
 namespace kinship::store {
 namespace {
 
-/// What the query finds is added, as far as it can be read. \return whether all of it was.
+/// Adds the query's rows, as far as they can be read. \return whether all of them were.
 bool append_reports(Statement& query, std::vector<Uuid>& reports) {
   try {
     while (query.step())
@@ -49,7 +49,7 @@ bool stands_for_others(Database& database, std::int64_t path_id) {
   return query->bind(1, path_id).step();
 }
 
-// Of the paths: what is not retired, also if it is damaged.
+// Paths that are not retired, also damaged ones.
 constexpr std::string_view kNotRetired =
     " AND retired_ms IS NULL AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND"
     " set_aside.id = path.id AND set_aside.retired_ms IS NOT NULL) ";
@@ -62,7 +62,7 @@ bool note_retired_report(Database& database, const Uuid& report_uuid) {
   return database.changed_rows() > 0;
 }
 
-/// Notes every report whose path this is: the one that brought it, and those of the same content.
+/// Notes every report of this path: the one that brought it, and the ones of the same content.
 void note_retired_path(Database& database, const ExperienceKey& key, std::int64_t path_id) {
   std::vector<Uuid> reports;
   {
@@ -152,7 +152,7 @@ std::vector<Retirement> retire_reports(Batch& batch, std::span<const Uuid> repor
   for (const Uuid& report : reports) {
     if (!note_retired_report(batch.database(), report))
       continue;
-    // What is not here, has no path or cannot be read is remembered by its UUID alone.
+    // A report that is unknown, has no path or cannot be read is remembered by its UUID alone.
     const Result<Retirement> one = retire_path(batch, report, nullptr);
     if (!one || one->paths == 0)
       continue;

@@ -14,18 +14,18 @@ namespace kinship::store {
 /// The rows of one content.
 struct SceneRows {
   std::optional<std::int64_t> readable;
-  std::vector<std::int64_t> damaged;  ///< that nothing replaced yet
+  std::vector<std::int64_t> damaged;  ///< not replaced yet
 };
 SceneRows find_scene(Database& database, const Digest& content);
 
-/// A new row, which from then on stands for the damaged ones of its content. \return its id.
+/// Inserts a scene, which replaces the damaged rows of its content. \return its id.
 std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms,
                           const std::vector<std::int64_t>& damaged);
 
-/// The scene with this id, or what replaced it.
+/// The scene with this id, or its replacement.
 SceneRead select_current_scene(Database& database, std::int64_t id);
 
-/// Whether a scene, or what replaced it, can be read.
+/// Whether a scene, or its replacement, can be read.
 bool is_scene_readable(Database& database, std::int64_t id);
 
 /// A part of a full check.
@@ -35,7 +35,7 @@ struct ScenesChecked {
   std::vector<std::int64_t> damaged;
 };
 
-/// Decodes the next scenes with id > after_id, at most `limit`; those set aside are left out.
+/// Decodes the next scenes with id > after_id, at most `limit`, without quarantined ones.
 ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit);
 
 }  // namespace kinship::store

@@ -42,7 +42,7 @@ fs::path locate_present(const fs::path& file) {
   return locate_store(file);
 }
 
-/// Rolls back what a process killed outside of WAL mode left half done; no reader could do that.
+/// Rolls back the transaction of a process killed outside of WAL mode; no reader could do that.
 fs::path without_journal(const fs::path& located) {
   if (fs::exists(located.string() + "-journal"))
     Database(located, Access::ReadWrite).integer("PRAGMA user_version");
@@ -121,7 +121,7 @@ Repaired repair_store(const fs::path& file, const Progress& progress) {
     const fs::path located = fs::weakly_canonical(fs::absolute(file));
     const files::LockFile lock = lock_store(located);
     static_cast<void>(locate_present(file));
-    // The old store is its own backup here: what is read of it takes its place.
+    // The old store is its own backup here: the rows read from it replace it.
     Restoration restoration(located, located);
     Repaired repaired = restoration.repair(progress);
     repaired.restored = restoration.replace();

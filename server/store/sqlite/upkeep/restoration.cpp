@@ -53,7 +53,7 @@ void require(int error, const fs::path& file, const std::string& doing) {
     fail(file, doing, error);
 }
 
-/// What earlier restores left beside a store.
+/// Files that earlier restores left beside a store.
 std::vector<fs::path> replaced_stores(const fs::path& file) {
   const std::string prefix = file.filename().string() + ".replaced-";
   std::vector<fs::path> found;
@@ -64,13 +64,13 @@ std::vector<fs::path> replaced_stores(const fs::path& file) {
   return found;
 }
 
-/// What a restore replaces need not be a store.
+/// The file that a restore replaces need not be a store.
 bool has_audit(Database& database) {
   return database.integer("SELECT count(*) FROM sqlite_master WHERE name = 'audit'") > 0;
 }
 
-/// Adds the entries that the log of `other` has and that of `database` has not, in their order,
-/// with the times that they have. Of what is no store none.
+/// Adds the entries that the log of `other` has and that of `database` lacks, in their order, with
+/// their times. None if `other` is no store.
 void copy_missing_audit(Database& database, Database& other) {
   if (!has_audit(other))
     return;
@@ -132,7 +132,7 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
   }
 }
 
-/// What was done since the backup was made is not forgotten with the store that it was done to.
+/// Entries since the backup outlive the store that they are about.
 void Restoration::keep_audit_of_old(Database& database) const {
   if (!fs::exists(file_))
     return;
@@ -143,7 +143,7 @@ void Restoration::keep_audit_of_old(Database& database) const {
     copy_missing_audit(database, old);
   } catch (const SqliteError& error) {
     if (!error.is_damage())
-      throw;  // a restore is what a damaged store is for: as far as its log can be read
+      throw;  // a damaged store is restored, too: its log as far as it can be read
   }
   whole.commit();
 }
@@ -157,7 +157,7 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     Database source(file_, Access::ReadOnly);
     const std::unique_ptr<Database> target =
         open_migrated(copy_, embedded_migrations(), Keep::Nothing);
-    // Half a copy is of no use to anybody, and it is synced when it is whole.
+    // Half a copy is of no use, and a whole one is synced.
     target->execute("PRAGMA synchronous = OFF");
     Salvaged salvaged =
         salvage(source, *target, [&](double done) { progress(kSalvageShare * done); });
@@ -193,8 +193,8 @@ Restored Restoration::replace() {
   return restored;
 }
 
-/// Brings what a killed server left in the WAL into the old store, so that it is one file. One
-/// that SQLite cannot read is kept as it is.
+/// Brings the WAL of a killed server into the old store, so that it is one file. A store that
+/// SQLite cannot read is kept as it is.
 void Restoration::fold_old() {
   make_wal_durable(file_);
   try {
@@ -209,8 +209,8 @@ void Restoration::fold_old() {
   }
 }
 
-/// SQLite must not find them beside the new store, and not under a name where it would take them
-/// for those of another one.
+/// SQLite must not find them beside the new store, nor under a name where it would take them for
+/// files of another one.
 void Restoration::set_companions_aside(const fs::path& replaced) const {
   for (const std::string companion : kCompanions) {
     const fs::path from = file_.string() + companion;

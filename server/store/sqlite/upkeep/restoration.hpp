@@ -9,11 +9,11 @@
 
 namespace kinship::store {
 
-/// Puts a copy of a backup in the place of a store whose lock the caller holds.
+/// Replaces a store, whose lock the caller holds, by a copy of a backup.
 ///
-/// The copy grows as FILE.restoring, which the next restore removes. Once it is checked it is
-/// renamed to FILE.replaced-<time> and changes names with the store in one step: before that step
-/// FILE is the old store, after it the new one, and nothing that is whole is ever removed.
+/// The copy is written as FILE.restoring, which the next restore removes. Once checked it is
+/// renamed to FILE.replaced-<time> and exchanges names with the store in one step: before that step
+/// FILE is the old store, after it the new one, and a whole store is never removed.
 class Restoration {
  public:
   Restoration(std::filesystem::path backup, std::filesystem::path file);
@@ -25,8 +25,8 @@ class Restoration {
   /// \throws Failure(Storage) if it has a problem; nothing is left then.
   void prepare(const std::function<void(double)>& progress);
 
-  /// Writes the store itself anew, from what can be read of it.
-  /// \return with what was lost; nothing is replaced yet.
+  /// Writes a new store from all that can be read of the store itself.
+  /// \return the losses; nothing is replaced yet.
   Repaired repair(const std::function<void(double)>& progress);
 
   Restored replace();

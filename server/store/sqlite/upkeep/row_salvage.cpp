@@ -91,7 +91,7 @@ std::vector<Cell> cells_of(PageBytes page, std::size_t header) {
   return cells;
 }
 
-/// Reads what of a cell lies on other pages. \return false if one is damaged.
+/// Reads the part of a cell that lies on other pages. \return false if one is damaged.
 bool complete(PageReader& reader, Cell& cell) {
   constexpr std::size_t kNextBytes = 4;
   for (std::uint64_t next = cell.overflow; cell.bytes.size() < cell.payload;) {

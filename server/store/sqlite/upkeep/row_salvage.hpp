@@ -8,8 +8,8 @@
 
 #include "server/store/sqlite/database/page_scan.hpp"
 
-/// Rows as they lie in the pages of a file, without its schema, its indexes and the pages that lead
-/// to them: all of those may be damaged.
+/// Rows read directly from the pages of a file, without its schema, indexes and interior pages,
+/// which may all be damaged.
 namespace kinship::store {
 
 /// A value of a record: NULL, integer, real, text or blob.
@@ -21,8 +21,8 @@ struct RawRow {
   std::vector<RawValue> values;  ///< all columns of the record
 };
 
-/// Hands over every row on every page of a table that can be read wholly, in no order. Pages that
-/// are free hold none: the writer clears them (PRAGMA secure_delete).
+/// Passes every row that can be read completely, from every page of a table, in no order. Free
+/// pages hold none: the writer clears them (PRAGMA secure_delete).
 /// \param progress  called now and then with 0 to 1.
 /// \return the number of damaged pages.
 std::uint64_t for_each_row(PageReader& reader, const std::function<void(RawRow)>& take,

@@ -118,7 +118,7 @@ std::size_t Scrub::read_pages() {
   return bytes;
 }
 
-/// Between two batches, where nobody writes pages.
+/// Between two batches, where no page is written.
 void Scrub::confirm(const std::vector<std::uint64_t>& suspects) {
   if (suspects.empty())
     return;
@@ -148,7 +148,7 @@ void Scrub::name_pages() {
   findings_ = std::move(words);
 }
 
-/// Once for a burst: what is found soon after waits for the next line.
+/// Once for a burst: damage found soon after waits for the next line.
 void Scrub::log_news() {
   const auto now = std::chrono::steady_clock::now();
   if (!is_news_ || now < next_line_)

@@ -23,19 +23,19 @@ struct ScrubOptions {
   std::function<void(std::string_view)> log;  ///< a line when damage is found; may be empty
 };
 
-/// How far the search for damage is.
+/// Progress of the search for damage.
 struct ScrubProgress {
   double part = 0;            ///< of the file, 0 to 1
-  std::int64_t ended_ms = 0;  ///< when it was last through; 0: never
+  std::int64_t ended_ms = 0;  ///< end of the last complete search; 0: never
 };
 
-/// A thread of low priority that reads the pages of a store's file again and again, at a bounded
-/// rate, and looks up what the damaged ones belong to, whoever found them. It reads the file past
-/// SQLite's snapshots, so that it holds up no checkpoint; a page that looks damaged is read again
-/// by the writer's thread, which alone writes pages, before it counts.
+/// A thread of low priority that reads all pages of a store's file repeatedly, at a bounded rate,
+/// and finds the owners of damaged pages, including those that other readings found. It reads the
+/// file without an SQLite snapshot, so that it delays no checkpoint; the writer's thread, which
+/// alone writes pages, reads a suspect page again before it counts.
 class Scrub {
  public:
-  /// \param readers, writer  live longer.
+  /// \param readers, writer  outlive it.
   Scrub(ReaderPool& readers, Writer& writer, std::shared_ptr<PageDamage> damage,
         ScrubOptions options);
   Scrub(const Scrub&) = delete;
@@ -44,12 +44,12 @@ class Scrub {
 
   ScrubProgress progress() const;
 
-  /// What is damaged, in words: pages and what they belong to. Empty: nothing was found.
+  /// Describes the damage: pages and their owners. Empty: none found.
   std::string findings() const;
 
  private:
   void run();
-  /// \return how long to wait before the next step.
+  /// \return the pause before the next step.
   std::chrono::milliseconds step();
   std::size_t read_pages();
   void confirm(const std::vector<std::uint64_t>& suspects);

@@ -30,8 +30,8 @@ std::invoke_result_t<Function, Database&> between_batches(Writer& writer, Functi
   return result.get();
 }
 
-/// The steps of one backup. The connection owns what it is doing, so that it can close at any
-/// time; then the next step finds nothing to go on with.
+/// The steps of one backup. The connection owns their state, so that it can close at any time; then
+/// the next step finds nothing to go on with.
 class Steps {
  public:
   Steps(Writer& writer, const std::filesystem::path& target) : writer_(&writer) {

@@ -35,7 +35,7 @@ struct Rule {
 
 const std::string kPair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
 
-// What an experience says of its attempts in one sampling mode.
+// The sums that an experience has of its attempts in one sampling mode.
 Rule rule_of_sums(const std::string& mode, int code, const std::string& counted) {
   // Sums of doubles depend on their order in the last bits.
   const auto differs = [&](const std::string& sum) {
@@ -86,9 +86,9 @@ void add_rules_of_attempts(std::vector<Rule>& rules, const std::string& counted)
     rules.push_back(rule_of_sums(mode, code, counted));
 }
 
-/// Of what makes room: paths beyond a cap, distributions by their last use.
+/// Rules of making room: paths beyond a cap, distributions by their last use.
 void add_rules_of_room(std::vector<Rule>& rules, const std::string& counted) {
-  // What came again after damage may have been counted twice.
+  // Paths that came again after damage may have been counted twice.
   rules.push_back(
       {"experience",
        "SELECT " + kPair +
@@ -165,7 +165,7 @@ class Checker {
 
  private:
   void note(const std::string& table, const std::string& message);
-  /// What SQLite cannot read is a problem of the table, once; the rest is checked all the same.
+  /// A part that SQLite cannot read is one problem of the table; the rest is still checked.
   template <typename Part>
   void guarded(const std::string& table, Part part);
   void count_tables();

@@ -54,7 +54,7 @@ class Salvager {
   Salvaged run(PageReader& reader, const Progress& progress);
 
  private:
-  /// What of the source is read by SQL, as far as it goes: a damaged page ends it.
+  /// Reads the source by SQL, as far as it goes: a damaged page ends it.
   template <typename Take>
   void for_each_of_source(const std::string& sql, Take take) const;
   /// Copies a small table row by row, as far as it goes.
@@ -278,7 +278,7 @@ void Salvager::stand_in_for_lost_paths() {
     lose("path", pair, rows);
 }
 
-/// What the indexes of the source have beyond what was found.
+/// Counts the rows that an index of the source names and that were not found.
 void Salvager::count_lost(const std::string& table, const std::string& index) {
   std::map<Pair, std::uint64_t> lost;
   const bool paths = table == "path";
@@ -306,7 +306,7 @@ void Salvager::make_experience() const {
   target_->execute(
       "INSERT OR IGNORE INTO experience (task_id, robot_id) "
       "SELECT task_id, robot_id FROM path UNION SELECT task_id, robot_id FROM attempt");
-  // Nobody shall take what was fitted before for fresh, or what was retired for present.
+  // Nothing fitted before may pass for fresh, and nothing retired for present.
   for_each_of_source("SELECT task_id, robot_id, generation, retired_generation FROM experience",
                      [&](const Statement& row) {
                        target_
