@@ -25,7 +25,7 @@ class Fingerprint {
 
 void require_part(const char* what, double value) {
   if (!(value >= 0 && value <= 1))
-    throw std::invalid_argument(std::string("ArmChooser: ") + what + " is " +
+    throw std::invalid_argument(std::string("SamplingModeChooser: ") + what + " is " +
                                 std::to_string(value) + ", must be 0 to 1");
 }
 
