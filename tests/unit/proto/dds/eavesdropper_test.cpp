@@ -106,6 +106,7 @@ bool is_of_handshake(const test::CapturedMessage& message) {
 }
 
 /// Sends the requests of a session again under further numbers, with another text of that length.
+/// The client has used the first of them if it sent its request twice.
 void forge(const Messages& session, std::uint16_t port, const std::string& was,
            const std::string& text) {
   for (const test::CapturedMessage& message : session) {
@@ -114,8 +115,9 @@ void forge(const Messages& session, std::uint16_t port, const std::string& was,
       continue;
     test::CapturedMessage forged = message;
     forged.bytes.replace(at, text.size(), text);
-    if (const auto next = test::renumbered(std::move(forged), 1))
-      test::send_again(*next);
+    for (std::uint32_t more = 1; more < 4; ++more)
+      if (const auto next = test::renumbered(forged, more))
+        test::send_again(*next);
   }
 }
 
@@ -125,16 +127,20 @@ TEST_F(Eavesdropper, DisturbsNobodyWithPacketsThatHeChanged) {
     ASSERT_EQ(open_server_.read_line(), "ready");
     const Participant participant({.domain = open_.number()});
     AdminRequester requester(participant, Uuid::random());
-    capture_->take();
-    ASSERT_EQ(ask(requester, "before"), "before");
-    forge(capture_->take(), server_ports(open_.number())[1], "before", "forged");
+    Messages session;  // a capture loses packets while others flood the loopback interface
+    while (!has(session, "before")) {
+      capture_->take();
+      ASSERT_EQ(ask(requester, "before"), "before");
+      session = capture_->take();
+    }
+    forge(session, server_ports(open_.number())[1], "before", "forged");
     const Participant second({.domain = open_.number()});
     AdminRequester other(second, Uuid::random());
     const auto end = std::chrono::steady_clock::now() + 10s;  // it may still be on its way
     std::string log = ask(other, "log");
     while (count(log, "forged") == 0 && std::chrono::steady_clock::now() < end)
       log = ask(other, "log");
-    EXPECT_EQ(count(log, "forged"), 1U);
+    EXPECT_GT(count(log, "forged"), 0U);
   }
   capture_->take();
   const Participant participant = join(alice_);
