@@ -85,12 +85,12 @@ Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& req
 }
 
 Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
-  Result<std::vector<std::string>> rows = rows_of(server, request);
+  const Result<std::vector<std::string>> rows = rows_of(server, request);
   if (!rows)
     return rows.error();
   if (rows->empty())
     return Error{ErrorCode::Internal, "the server answered without a row"};
-  return std::move(rows->front());
+  return rows->front();
 }
 
 template <typename Row>
