@@ -122,12 +122,12 @@ std::optional<std::pair<std::string, std::string>> contact_of(World& world, cons
 bool edge_free_of(World& world, const Array& from, const Array& to, double clearance) {
   const Robot& robot = world.robot();
   const auto end = [&](const Array& q) {
-    const Configurations end =
+    const Configurations configuration =
         read_configurations(q, robot.chain().dof(), robot.description().label);
-    if (!end.is_one)
+    if (!configuration.is_one)
       throw std::invalid_argument(
           "edge_free: an edge lies between two configurations, (dof,) each");
-    return end.columns;
+    return configuration.columns;
   };
   Eigen::MatrixXd ends(robot.chain().dof(), 2);
   ends << end(from), end(to);
