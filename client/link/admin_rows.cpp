@@ -84,21 +84,14 @@ Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& req
   return rows;
 }
 
-Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
+template <typename Row>
+Result<Row> row_of(Client& server, const AdminRequest& request) {
   const Result<std::vector<std::string>> rows = rows_of(server, request);
   if (!rows)
     return rows.error();
   if (rows->empty())
     return Error{ErrorCode::Internal, "the server answered without a row"};
-  return rows->front();
-}
-
-template <typename Row>
-Result<Row> row_of(Client& server, const AdminRequest& request) {
-  const Result<std::string> text = first_row_of(server, request);
-  if (!text)
-    return text.error();
-  Result<Row> row = json::row_from_json<Row>(*text);
+  Result<Row> row = json::row_from_json<Row>(rows->front());
   if (!row)
     return Error{ErrorCode::Internal, "cannot read the server's row: " + row.error().message};
   return row;

@@ -28,11 +28,8 @@ std::optional<Error> for_each_row(Client& server, AdminRequest request,
 /// All rows at once, for verbs whose reply has few.
 Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& request);
 
-/// The first row, for verbs whose reply has one. \return Internal if there is none.
-Result<std::string> first_row_of(Client& server, const AdminRequest& request);
-
-/// The same, as a value: for example the job that a verb began. \return Internal if it cannot be
-/// read.
+/// The first row, for verbs whose reply has one: for example the job that a verb began. \return
+/// Internal if there is none, or it cannot be read.
 /// \param Row  a row of proto/json/admin_rows_json.hpp that the source instantiates.
 template <typename Row>
 Result<Row> row_of(Client& server, const AdminRequest& request);
