@@ -3,13 +3,13 @@
 -- edited: write the next number.
 --
 -- Times are Unix time in ms, UTC. A pose is a BLOB of 7 float64 little-endian: x y z (m), then the
--- quaternion x y z w. Digests are SHA-256, checksums CRC-32C. Pages bear checksums, too
--- (server/store/sqlite/database/checked_vfs).
+-- quaternion x y z w. Digests are SHA-256, checksums CRC-32C.
 --
--- What is damaged is set aside by its id, in a table of its own: to mark a row that lies on a
--- damaged page SQLite would have to read that page. For the same reason nothing is UNIQUE that a
--- report may bring again: the old row cannot be removed from its indexes. The one writer sees to
--- it that there is one row which is not set aside.
+-- row_crc32c is the checksum of the other columns of its row but for its largest, which has a
+-- checksum of its own (server/store/sqlite/database/row_checksums). A row whose checksum is wrong
+-- is not read. What is damaged is set aside by its id, in a table of its own: the row itself may
+-- not be writable. For the same reason nothing is UNIQUE that a report may bring again. The one
+-- writer sees to it that there is one row which is not set aside.
 
 PRAGMA application_id = 0x4B494E53;  -- 'KINS': files without it are refused
 
@@ -23,7 +23,8 @@ CREATE TABLE schema_migration (
 
 CREATE TABLE setting (
   key    TEXT PRIMARY KEY,
-  value  TEXT NOT NULL
+  value  TEXT NOT NULL,
+  row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT, WITHOUT ROWID;
 
 CREATE TABLE robot (
@@ -37,6 +38,7 @@ CREATE TABLE robot (
   task_axes       INTEGER NOT NULL CHECK (task_axes BETWEEN 0 AND 63),  -- bit 0 x, y, z, roll, pitch, 5 yaw
   registered_ms   INTEGER NOT NULL,
   crc32c          INTEGER NOT NULL CHECK (crc32c BETWEEN 0 AND 4294967295),  -- of the whole description
+  row_crc32c  INTEGER NOT NULL DEFAULT 0,
   urdf            TEXT NOT NULL
 ) STRICT;
 
@@ -60,12 +62,14 @@ CREATE TABLE robot_geometry (
   robot_id     INTEGER PRIMARY KEY REFERENCES robot (id) ON DELETE CASCADE,
   revision     INTEGER NOT NULL CHECK (revision >= 0),  -- how often better geometry was taken over
   taken_ms     INTEGER NOT NULL,  -- when last; 0: never
+  row_crc32c  INTEGER NOT NULL DEFAULT 0,
   mesh_solids  BLOB NOT NULL  -- server/store/values/mesh_solids_blob.cpp; under the robot's checksum
 ) STRICT;
 
 CREATE TABLE task (
   id    INTEGER PRIMARY KEY,
-  name  TEXT NOT NULL UNIQUE CHECK (length(name) BETWEEN 1 AND 128)
+  name  TEXT NOT NULL UNIQUE CHECK (length(name) BETWEEN 1 AND 128),
+  row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 
 -- One row per robot and task that somebody reported. The generation says whether a fit is fresh.
@@ -91,6 +95,7 @@ CREATE TABLE experience (
   control_checks_squared    REAL NOT NULL DEFAULT 0,
   control_checks_of_solved  REAL NOT NULL DEFAULT 0,
   dropped                   INTEGER NOT NULL DEFAULT 0,  -- paths beyond the cap, in all
+  row_crc32c  INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (task_id, robot_id)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX experience_by_robot ON experience (robot_id);
@@ -103,13 +108,14 @@ CREATE TABLE scene (
   size            INTEGER NOT NULL CHECK (size BETWEEN 1 AND 1048576),  -- bytes before compression
   encoding        INTEGER NOT NULL CHECK (encoding IN (1, 2)),  -- 1 plain, 2 zstd
   crc32c          INTEGER NOT NULL CHECK (crc32c BETWEEN 0 AND 4294967295),
+  row_crc32c  INTEGER NOT NULL DEFAULT 0,
   scene           BLOB NOT NULL,  -- server/store/values/scene_blob.cpp
   CHECK (encoding <> 1 OR length(scene) = size),
   CHECK (length(scene) BETWEEN 1 AND size)
 ) STRICT;
 CREATE INDEX scene_by_content ON scene (content_sha256);
 
--- What is read without the waypoints is in the indexes: columns behind them cost the overflow pages.
+-- The waypoints come last: columns behind them would cost their overflow pages.
 CREATE TABLE path (
   id              INTEGER PRIMARY KEY,
   task_id         INTEGER NOT NULL,
@@ -119,17 +125,17 @@ CREATE TABLE path (
   waypoint_count  INTEGER NOT NULL CHECK (waypoint_count BETWEEN 2 AND 16384),
   dof             INTEGER NOT NULL CHECK (dof BETWEEN 1 AND 32),
   length          REAL NOT NULL CHECK (length >= 0),  -- joint units
-  damaged         INTEGER NOT NULL DEFAULT 0 CHECK (damaged IN (0, 1)),  -- always 0: see set_aside
+  received_ms     INTEGER NOT NULL,  -- of the attempt that brought it
+  retired_ms      INTEGER CHECK (retired_ms > 0),  -- NULL: not retired, not dropped
+  scene_id        INTEGER REFERENCES scene (id),  -- of the attempt that brought it
   T_task_base     BLOB CHECK (length(T_task_base) = 56),
   encoding        INTEGER NOT NULL CHECK (encoding IN (1, 2)),
   crc32c          INTEGER NOT NULL CHECK (crc32c BETWEEN 0 AND 4294967295),
+  row_crc32c      INTEGER NOT NULL DEFAULT 0,
   -- dof x n, column-major, joint units. Encoding 1: float64 little-endian. Encoding 2: the same
   -- without loss, as differences of bit patterns between waypoints, bytes shuffled, zstd. One zero
   -- byte: the path was dropped, being beyond the cap.
   waypoints       BLOB NOT NULL,
-  received_ms     INTEGER NOT NULL DEFAULT 0,  -- of the attempt that brought it
-  retired_ms      INTEGER CHECK (retired_ms > 0),  -- NULL: not retired, not dropped
-  scene_id        INTEGER REFERENCES scene (id),  -- of the attempt that brought it
   FOREIGN KEY (task_id, robot_id) REFERENCES experience (task_id, robot_id),
   CHECK (encoding <> 1 OR length(waypoints) = 8 * dof * waypoint_count),
   CHECK (length(waypoints) BETWEEN 1 AND 8 * dof * waypoint_count)
@@ -166,6 +172,7 @@ CREATE TABLE attempt (
   distribution_revision  INTEGER NOT NULL CHECK (distribution_revision >= 0),
   received_ms            INTEGER NOT NULL,
   scene_id               INTEGER REFERENCES scene (id),
+  row_crc32c  INTEGER NOT NULL DEFAULT 0,
   FOREIGN KEY (task_id, robot_id) REFERENCES experience (task_id, robot_id),
   CHECK ((outcome = 1) = (status IN (1, 2)))
 ) STRICT;
@@ -187,6 +194,7 @@ CREATE TABLE distribution (
   paths           INTEGER NOT NULL CHECK (paths >= 0),
   fitted_ms       INTEGER NOT NULL,
   crc32c          INTEGER NOT NULL CHECK (crc32c BETWEEN 0 AND 4294967295),
+  row_crc32c  INTEGER NOT NULL DEFAULT 0,
   payload         BLOB NOT NULL,  -- server/store/values/distribution_blob.cpp
   CHECK ((state = 1) = (components > 0))
 ) STRICT;
@@ -207,7 +215,8 @@ CREATE INDEX distribution_use_by_time ON distribution_use (used_ms, id, bytes);
 CREATE TABLE evicted_distribution (
   digest      BLOB PRIMARY KEY CHECK (length(digest) = 32),
   revision    INTEGER NOT NULL CHECK (revision >= 1),
-  evicted_ms  INTEGER NOT NULL
+  evicted_ms  INTEGER NOT NULL,
+  row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT, WITHOUT ROWID;
 
 CREATE TABLE set_aside (
@@ -225,7 +234,8 @@ CREATE TABLE set_aside (
 CREATE TABLE retired_report (
   id           INTEGER PRIMARY KEY,  -- grows
   report_uuid  BLOB NOT NULL UNIQUE CHECK (length(report_uuid) = 16),
-  retired_ms   INTEGER NOT NULL CHECK (retired_ms > 0)
+  retired_ms   INTEGER NOT NULL CHECK (retired_ms > 0),
+  row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 
 -- Attempts whose content another one had brought already, by that one's path: who retires the path
@@ -249,12 +259,14 @@ CREATE TABLE audit (
   outcome    INTEGER NOT NULL CHECK (outcome BETWEEN 1 AND 4),  -- 1 begun, 2 done, 3 refused, 4 failed
   was        TEXT NOT NULL CHECK (length(was) <= 2048),
   became     TEXT NOT NULL CHECK (length(became) <= 2048),
-  message    TEXT NOT NULL CHECK (length(message) <= 2048)
+  message    TEXT NOT NULL CHECK (length(message) <= 2048),
+  row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 CREATE INDEX audit_by_name ON audit (name, id);
 
 -- Entries are added, never changed or removed.
-CREATE TRIGGER audit_keeps_its_rows BEFORE UPDATE ON audit
+CREATE TRIGGER audit_keeps_its_rows BEFORE UPDATE OF id, time_ms, name, role, client, is_local, verb,
+  target, outcome, was, became, message ON audit
 BEGIN SELECT RAISE(ABORT, 'the audit log is append-only'); END;
 CREATE TRIGGER audit_keeps_all_rows BEFORE DELETE ON audit
 BEGIN SELECT RAISE(ABORT, 'the audit log is append-only'); END;

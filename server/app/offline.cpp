@@ -81,8 +81,8 @@ int restore(const OfflineOptions& options, const store::Progress& progress, std:
 int repair(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
   const store::Repaired repaired = store::repair_store(options.store, progress);
   out << "store '" << options.store.string() << "': written anew, epoch "
-      << repaired.restored.epoch.text() << "; " << repaired.damaged_pages
-      << " pages were damaged\n";
+      << repaired.restored.epoch.text() << "; " << repaired.damaged_places
+      << " damaged places were left behind\n";
   for (const store::Repaired::Lost& lost : repaired.lost) {
     out << "lost: " << lost.rows << ' ' << lost.table << (lost.rows == 1 ? "" : "s");
     if (!lost.robot.empty())

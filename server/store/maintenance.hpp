@@ -49,14 +49,14 @@ struct Repaired {
     std::uint64_t rows = 0;
   };
   Restored restored;
-  std::uint64_t damaged_pages = 0;
+  /// Rows whose checksum was wrong, and stretches of rows, or the schema, that could not be read.
+  std::uint64_t damaged_places = 0;
   std::vector<Lost> lost;
   StoreCheck check;  ///< of the new store; robots that lost their row are problems
 };
 
 /// Replaces a damaged store by a new one with all rows that can be read of it, under a new epoch,
 /// so that clients offer their reports again. The damaged store is kept as by restore_store().
-/// \throws Failure(Storage) if its pages have no checksums: it is no store.
 Repaired repair_store(const std::filesystem::path& file, const Progress& progress);
 
 struct Migrated {

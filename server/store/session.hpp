@@ -136,6 +136,8 @@ class Session {
   virtual ~Session() = default;
 
   virtual const Dialect& dialect() const noexcept = 0;
+  /// SQL that says whether a row of a table is as it was written: true where the engine sees to it.
+  virtual std::string is_intact(std::string_view /*table*/) { return "TRUE"; }
 
   template <typename... Values>
   Rows query(std::string_view sql, const Values&... values) {
@@ -154,14 +156,14 @@ class Session {
     return found;
   }
 
-  /// Runs a statement that writes; if it meets a damaged page, it alone is undone.
+  /// Runs a statement that writes; if it meets damage, it alone is undone.
   /// \return false if it was undone.
   template <typename... Values>
   bool try_change(std::string_view sql, const Values&... values) {
     return try_run(sql, std::array<Parameter, sizeof...(Values)>{Parameter(values)...});
   }
 
-  /// \return the value of `read`; an empty one if it met a damaged page.
+  /// \return the value of `read`; an empty one if it met damage.
   template <typename Read>
   std::invoke_result_t<Read> unless_damaged(Read read) const {
     try {
@@ -180,7 +182,7 @@ class Session {
     query_with(sql, parameters);
     return true;
   }
-  /// Whether a page or its content is damaged and other pages are sound.
+  /// Whether a row or a page is damaged and others are sound.
   virtual bool is_damage(const Failure& /*failure*/) const noexcept { return false; }
 };
 

@@ -15,13 +15,15 @@ namespace {
 
 constexpr std::uint64_t kFirst = 1000;  // numbers of what the golden store lacks
 
-/// Changes rows without their checksums.
+/// Changes contents without their checksums.
 void damage(const std::filesystem::path& file) {
   store::Database database(file, store::Access::ReadWrite);
   database.execute(
-      "UPDATE path SET crc32c = crc32c + 1 WHERE id IN (SELECT max(path.id) FROM path"
+      "UPDATE path SET waypoints = CAST (substr(waypoints, 1, 20) || x'A5A5' || substr(waypoints,"
+      " 23) AS BLOB) WHERE id IN (SELECT max(path.id) FROM path"
       " JOIN task ON task.id = task_id WHERE name IN ('noticed', 'unnoticed') GROUP BY task_id);"
-      "UPDATE scene SET crc32c = crc32c + 1");
+      "UPDATE scene SET scene = CAST (substr(scene, 1, 20) || x'A5A5' || substr(scene, 23) AS "
+      "BLOB)");
 }
 
 std::vector<std::string> columns_of(store::Database& database, const std::string& table) {

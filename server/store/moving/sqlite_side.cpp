@@ -15,6 +15,7 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/upkeep/damage_search.hpp"
 
 namespace kinship::store::moving {
 namespace {
@@ -117,6 +118,11 @@ class SqliteSide : public Side {
   void open_source() {
     static_cast<void>(served_by());
     open_beside();
+    named([&] {
+      // A copy would have a checksum of the damaged row.
+      if (const std::optional<std::string> damaged = find_damaged_row(*database_))
+        throw damaged_row(*damaged);
+    });
   }
 
   void open_target() {
@@ -127,7 +133,7 @@ class SqliteSide : public Side {
       make_wal_durable(file_);
       database_ = open_migrated(file_, embedded_migrations());
       // Writes of the last seconds that a power cut takes are copied again.
-      database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
+      database_->execute("PRAGMA synchronous = NORMAL");
     });
     files::sync_folder_of(file_);
   }
@@ -206,6 +212,7 @@ class SqliteSide : public Side {
     database_.reset();
     database_ = std::make_unique<Database>(file_, Access::ReadWrite);
     database_->execute("PRAGMA synchronous = FULL");
+    database_->keep_checksums();
     in_transaction_of(*database_, write);
     database_.reset();
     open_beside();

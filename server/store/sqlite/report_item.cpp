@@ -5,6 +5,7 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/report_writing.hpp"
+#include "server/store/sqlite/upkeep/damage_search.hpp"
 
 namespace kinship::store {
 namespace {
@@ -31,8 +32,6 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
     if (error.is_damage()) {
       const std::string why = describe(uuid, error.what());
       damaged.note(uuid, why);
-      if (error.spares_transaction())
-        return {uuid, ReceiptStatus::TryAgain, why};
     }
     if (!error.concerns_one_row())
       throw;
@@ -116,6 +115,17 @@ void ReportItem::apply(Batch& batch) {
           insert_alone(batch, *prepared_[i], damaged_, max_paths_, prepared_.size() == 1);
   history_.write_run(batch.database());
   position_ = position_of(batch.database());
+}
+
+void DamageItem::apply(Batch& batch) {
+  std::erase_if(rows_, [&](std::int64_t row) {
+    return check_rows(batch.database(), std::string(name_of(kind_, 1)), row - 1, 1).damaged_ids !=
+           std::vector<std::int64_t>{row};
+  });
+  if (kind_ == AsideKind::Path)
+    return set_aside(batch, rows_);
+  for (const std::int64_t row : rows_)
+    put_aside(batch.database(), kind_, row);
 }
 
 void ReportItem::finish(const Error* error) {

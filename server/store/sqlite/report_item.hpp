@@ -88,13 +88,8 @@ class DamageItem : public WriteItem {
   DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
       : kind_(kind), rows_(std::move(rows)) {}
 
-  void apply(Batch& batch) override {
-    if (kind_ == AsideKind::Path)
-      set_aside(batch, rows_);
-    else
-      for (const std::int64_t row : rows_)
-        put_aside(batch.database(), kind_, row);
-  }
+  /// An index may have led to a row that is sound: each is looked at again.
+  void apply(Batch& batch) override;
   void finish(const Error* /*error*/) override {}
 
  private:

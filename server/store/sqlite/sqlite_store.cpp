@@ -10,7 +10,6 @@
 
 #include "proto/types/names.hpp"
 #include "server/store/sqlite/database/call_item.hpp"
-#include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -27,6 +26,7 @@
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/upkeep/damage_search.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/audit.hpp"
@@ -51,13 +51,15 @@ class SqliteStore : public Store {
         space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
     std::unique_ptr<Database> database = open_writer(file_);
     history_.begin_run(*database);
-    std::shared_ptr<PageDamage> damage = damage_of(database->connection());
+    for (const std::string& line : mend_indexes(*database))
+      if (options.log)
+        options.log(line);
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
         WriterOptions{.retry_after = options.retry_after,
                       .checkpoint_bytes = options.checkpoint_bytes,
                       .max_wal_bytes = options.max_wal_bytes});
-    scrub_ = std::make_unique<Scrub>(readers_, *writer_, std::move(damage),
+    scrub_ = std::make_unique<Scrub>(readers_, *writer_,
                                      ScrubOptions{options.scrub_bytes_per_s, options.log});
   }
   // Readers close before the writer does, whose last act is to empty the WAL.

@@ -55,8 +55,9 @@ Page<AuditEntry> page_of_audit(Session& session, std::string_view name, std::str
   if (!name.empty())
     parameters.emplace_back(name);
   return read_page<AuditEntry>(
-      session.query_with("SELECT " + std::string(kAuditColumns) + "FROM audit WHERE id < $1 " +
-                             (name.empty() ? "" : "AND name = $3 ") + "ORDER BY id DESC LIMIT $2",
+      session.query_with("SELECT " + std::string(kAuditColumns) + "FROM audit WHERE id < $1 AND " +
+                             session.is_intact("audit") + (name.empty() ? "" : " AND name = $3") +
+                             " ORDER BY id DESC LIMIT $2",
                          parameters),
       rows, read_audit_entry<Row>,
       [](const Row& row) { return std::to_string(row.column_integer(0)); });

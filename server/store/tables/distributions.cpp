@@ -31,7 +31,9 @@ struct Revisions {
 /// No distribution that made room for others had a greater one.
 std::int64_t revision_floor(Session& session) {
   return session
-      .find_integer("SELECT CAST(value AS bigint) FROM setting WHERE key = $1", kRevisionFloor)
+      .find_integer("SELECT CAST(value AS bigint) FROM setting WHERE key = $1 AND " +
+                        session.is_intact("setting"),
+                    kRevisionFloor)
       .value_or(0);
 }
 
@@ -47,7 +49,9 @@ Revisions revisions_of(Session& session, const Digest& id) {
     revisions.newest = std::max(revisions.newest, row.column_integer(1));
   }
   const auto evicted =
-      session.find_integer("SELECT revision FROM evicted_distribution WHERE digest = $1", id);
+      session.find_integer("SELECT revision FROM evicted_distribution WHERE digest = $1 AND " +
+                               session.is_intact("evicted_distribution"),
+                           id);
   revisions.newest = std::max(revisions.newest, evicted.value_or(0));
   return revisions;
 }
@@ -64,6 +68,9 @@ std::int64_t require_robot(Session& session, const Distribution& distribution) {
   if (!id)
     throw Failure(ErrorCode::NotFound, "distribution " + distribution.id.short_hex() + ": robot " +
                                            distribution.robot.short_hex() + " is not registered");
+  if (!is_robot_readable(session, *id))
+    throw Failure(ErrorCode::Storage, "distribution " + distribution.id.short_hex() + ": robot " +
+                                          distribution.robot.short_hex() + ": its row is damaged");
   return *id;
 }
 
@@ -124,9 +131,10 @@ void forget_eviction(Session& session, const Digest& id) {
 DistributionRead read_where(Session& session, const std::string& condition,
                             const Parameter& parameter) {
   const auto read = session.unless_damaged([&]() -> std::optional<DistributionRead> {
-    const Rows rows = session.query_with(
-        "SELECT revision, crc32c, payload FROM distribution WHERE id = " + condition,
-        std::span(&parameter, 1));
+    const Rows rows =
+        session.query_with("SELECT revision, crc32c, payload FROM distribution WHERE " +
+                               session.is_intact("distribution") + " AND id = " + condition,
+                           std::span(&parameter, 1));
     if (rows.empty())
       return DistributionRead();
     const Row& row = rows.front();

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "server/store/tables/pages.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/recent_attempts.hpp"
@@ -11,12 +12,30 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kOfRobotAndTask =
-    "FROM experience WHERE task_id = (SELECT id FROM task WHERE name = $1)"
-    " AND robot_id = (SELECT id FROM robot WHERE digest = $2)";
+/// Parameters $1 task, $2 robot.
+std::string of_robot_and_task(Session& session) {
+  return "FROM experience WHERE " + session.is_intact("experience") +
+         " AND task_id = " + id_of_task(session, "$1") +
+         " AND robot_id = " + id_of_robot(session, "$2");
+}
 
-constexpr std::string_view kRobotsOfTask =
-    " WHERE task_id = (SELECT id FROM task WHERE name = $1) AND generation > 0";
+/// Where of_robot_and_task() finds none: there is none, or its row, its robot's or its task's is
+/// damaged. \throws Failure(Storage) then.
+void require_none(Session& session, const Digest& robot, std::string_view task) {
+  if (session.find_integer("SELECT 1 FROM experience"
+                           " WHERE task_id = (SELECT id FROM task WHERE name = $1)"
+                           " AND robot_id = (SELECT id FROM robot WHERE digest = $2)",
+                           task, robot))
+    throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ", task '" +
+                                          std::string(task) +
+                                          "': a row of its experience is damaged");
+}
+
+/// Parameter $1 task.
+std::string robots_of_task(Session& session) {
+  return " WHERE " + session.is_intact("experience") +
+         " AND task_id = " + id_of_task(session, "$1") + " AND generation > 0";
+}
 
 /// \param row  has paths, generation, retired generation and dropped ones from column 1 on.
 ExperienceSummary read_experience(const Digest& robot, const Row& row) {
@@ -27,14 +46,15 @@ ExperienceSummary read_experience(const Digest& robot, const Row& row) {
           .dropped = count_of(row, 4)};
 }
 
-/// In pages: a robot that has enough of them soon is the rule. Stops at a damaged row.
+/// In pages: a robot that has enough of them soon is the rule.
 void add_newest(Session& session, const ExperienceKey& key, RecentAttempts& recent) {
   constexpr std::int64_t kPage = 1000;
   for (std::int64_t skipped = 0; skipped < kMaxRecentRows; skipped += kPage) {
     std::int64_t rows = 0;
     for (const Row& row : session.query(
              "SELECT " + std::string(RecentAttempts::kColumns) +
-                 "FROM attempt WHERE task_id = $1 AND robot_id = $2 ORDER BY " +
+                 "FROM attempt WHERE task_id = $1 AND robot_id = $2 AND " +
+                 session.is_intact("attempt") + " ORDER BY " +
                  std::string(session.dialect().newest_attempts_first) + " LIMIT $3 OFFSET $4",
              key.task_id, key.robot_id, kPage, skipped)) {
       if (recent.complete())
@@ -47,36 +67,11 @@ void add_newest(Session& session, const ExperienceKey& key, RecentAttempts& rece
   }
 }
 
-/// One by one, by the ids of an index, without unreadable ones.
-void add_newest_readable(Session& session, const ExperienceKey& key, RecentAttempts& recent) {
-  for (const Row& id :
-       session.query("SELECT id FROM attempt WHERE task_id = $1 AND robot_id = $2 ORDER BY " +
-                         std::string(session.dialect().newest_attempts_first) + " LIMIT $3",
-                     key.task_id, key.robot_id, kMaxRecentRows)) {
-    if (recent.complete())
-      return;
-    static_cast<void>(session.unless_damaged([&] {
-      for (const Row& row : session.query(
-               "SELECT " + std::string(RecentAttempts::kColumns) + "FROM attempt WHERE id = $1",
-               id.column_integer(0)))
-        recent.add(row);
-      return true;
-    }));
-  }
-}
-
 /// The newest judged attempts of each sampling mode, oldest first. Looks at the newest
 /// kMaxRecentRows alone.
 std::vector<KnownAttempt> recent_of(Session& session, const ExperienceKey& key) {
   RecentAttempts recent;
-  const bool is_whole = session.unless_damaged([&] {
-    add_newest(session, key, recent);
-    return true;
-  });
-  if (!is_whole) {
-    recent = {};
-    add_newest_readable(session, key, recent);
-  }
+  add_newest(session, key, recent);
   return recent.oldest_first();
 }
 
@@ -103,42 +98,33 @@ std::vector<ExperienceKey> lock_pairs_of_task(Session& session, std::int64_t tas
 }
 
 std::uint64_t generation_of(Session& session, const Digest& robot, std::string_view task) {
-  return static_cast<std::uint64_t>(
-      session.find_integer("SELECT generation " + std::string(kOfRobotAndTask), task, robot)
-          .value_or(0));
+  const std::optional<std::int64_t> generation =
+      session.find_integer("SELECT generation " + of_robot_and_task(session), task, robot);
+  if (!generation)
+    require_none(session, robot, task);
+  return static_cast<std::uint64_t>(generation.value_or(0));
 }
 
 std::vector<ExperienceSummary> experience_of(Session& session, std::string_view task) {
   std::vector<ExperienceSummary> robots;
-  const bool is_whole = session.unless_damaged([&] {
-    for (const Row& row : session.query(
-             "SELECT digest, paths, generation, retired_generation, dropped FROM experience"
-             " JOIN robot ON robot.id = robot_id" +
-                 std::string(kRobotsOfTask),
-             task))
-      robots.push_back(read_experience(id_of<Digest>(row.column_blob(0)), row));
-    return true;
-  });
-  if (!is_whole) {  // a robot's row, whose digest is in an index too
-    robots.clear();
-    const std::map<std::int64_t, RobotName> names = select_robot_names(session);
-    for (const Row& row : session.query(
-             "SELECT robot_id, paths, generation, retired_generation, dropped FROM experience" +
-                 std::string(kRobotsOfTask),
-             task))
-      if (const auto robot = names.find(row.column_integer(0)); robot != names.end())
-        robots.push_back(read_experience(robot->second.digest, row));
-  }
+  for (const Row& row :
+       session.query("SELECT digest, paths, generation, retired_generation, dropped FROM experience"
+                     " JOIN robot ON robot.id = robot_id AND " +
+                         session.is_intact("robot") + robots_of_task(session),
+                     task))
+    robots.push_back(read_experience(id_of<Digest>(row.column_blob(0)), row));
   std::ranges::sort(robots, {}, &ExperienceSummary::robot);
   return robots;
 }
 
 AttemptTotals totals_of(Session& session, const Digest& robot, std::string_view task) {
-  const Rows rows = session.query("SELECT " + std::string(kTotalsColumns) + ", task_id, robot_id " +
-                                      std::string(kOfRobotAndTask),
-                                  task, robot);
-  if (rows.empty())
+  const Rows rows = session.query(
+      "SELECT " + std::string(kTotalsColumns) + ", task_id, robot_id " + of_robot_and_task(session),
+      task, robot);
+  if (rows.empty()) {
+    require_none(session, robot, task);
     return {};
+  }
   constexpr int kTask = 10, kRobot = 11;
   const Row& row = rows.front();
   AttemptTotals totals = read_totals(row);

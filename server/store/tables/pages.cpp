@@ -20,26 +20,34 @@ std::int64_t parse_id(std::string_view cursor, std::int64_t first) {
 
 }  // namespace
 
-std::vector<PairFilter::Column> PairFilter::columns(std::vector<Parameter>& parameters) const {
+std::string id_of_task(Session& session, const std::string& name) {
+  return "(SELECT id FROM task WHERE name = " + name + " AND " + session.is_intact("task") + ")";
+}
+
+std::string id_of_robot(Session& session, const std::string& digest) {
+  return "(SELECT id FROM robot WHERE digest = " + digest + " AND " + session.is_intact("robot") +
+         ")";
+}
+
+std::vector<PairFilter::Column> PairFilter::columns(Session& session,
+                                                    std::vector<Parameter>& parameters) const {
   std::vector<Column> columns;
-  const auto add = [&](const std::string& name, const std::string& of_parameter) {
-    columns.push_back({name, of_parameter + " = $" + std::to_string(parameters.size()) + ")"});
-  };
+  const auto newest = [&] { return "$" + std::to_string(parameters.size()); };
   if (!task.empty()) {
     parameters.emplace_back(task);
-    add("task_id", "(SELECT id FROM task WHERE name");
+    columns.push_back({"task_id", id_of_task(session, newest())});
   }
   if (robot) {
     parameters.emplace_back(*robot);
-    add("robot_id", "(SELECT id FROM robot WHERE digest");
+    columns.push_back({"robot_id", id_of_robot(session, newest())});
   }
   return columns;
 }
 
-std::string PairFilter::condition(const std::string& table,
+std::string PairFilter::condition(Session& session, const std::string& table,
                                   std::vector<Parameter>& parameters) const {
   std::string sql;
-  for (const Column& column : columns(parameters))
+  for (const Column& column : columns(session, parameters))
     sql += " AND " + table + "." + column.name + " = " + column.id;
   return sql;
 }

@@ -29,12 +29,17 @@ struct PairFilter {
   };
   /// Columns task_id and robot_id of the filter. Adds its values to the parameters, which borrow
   /// them.
-  std::vector<Column> columns(std::vector<Parameter>& parameters) const;
+  std::vector<Column> columns(Session& session, std::vector<Parameter>& parameters) const;
 
   /// Adds its values to the parameters, which borrow them.
   /// \return " AND <table>.task_id = ... AND <table>.robot_id = ...", as far as the filter is set.
-  std::string condition(const std::string& table, std::vector<Parameter>& parameters) const;
+  std::string condition(Session& session, const std::string& table,
+                        std::vector<Parameter>& parameters) const;
 };
+
+/// SQL for the id of the task that a parameter names, or of a robot.
+std::string id_of_task(Session& session, const std::string& name);
+std::string id_of_robot(Session& session, const std::string& digest);
 
 /// Maximum rows of a page, from the caller's limit.
 std::int64_t rows_of_page(std::size_t limit);

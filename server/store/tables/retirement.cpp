@@ -31,7 +31,8 @@ std::int64_t retire_step(const std::vector<ExperienceKey>& keys, std::int64_t la
 }
 
 Digest digest_of_robot(Session& session, std::int64_t robot_id) {
-  const Rows rows = session.query("SELECT digest FROM robot WHERE id = $1", robot_id);
+  const Rows rows = session.query(
+      "SELECT digest FROM robot WHERE id = $1 AND " + session.is_intact("robot"), robot_id);
   return rows.empty() ? Digest() : id_of<Digest>(rows.front().column_blob(0));
 }
 

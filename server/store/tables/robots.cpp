@@ -50,13 +50,14 @@ void select_parts(Session& session, std::int64_t id, RobotDescription& descripti
     description.never_colliding.emplace_back(pair.column_text(0), pair.column_text(1));
 }
 
-/// Nothing, also if it lies on a damaged page.
+/// Nothing, also if it is damaged.
 std::optional<StoredRobot> select_stored_robot(Session& session, std::int64_t id) {
   return session.unless_damaged([&]() -> std::optional<StoredRobot> {
     const Rows rows = session.query(
         "SELECT digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes, registered_ms,"
         " crc32c, urdf, revision, taken_ms, mesh_solids FROM robot"
-        " LEFT JOIN robot_geometry ON robot_geometry.robot_id = robot.id WHERE robot.id = $1",
+        " LEFT JOIN robot_geometry ON robot_geometry.robot_id = robot.id WHERE robot.id = $1 AND " +
+            session.is_intact("robot"),
         id);
     if (rows.empty())
       return std::nullopt;
@@ -123,9 +124,11 @@ void insert_parts(Session& session, std::int64_t robot_id, const RobotRecord& ro
     session.query("INSERT INTO robot_never_colliding VALUES ($1, $2, $3, $4)", robot_id, ordinal++,
                   a, b);
   if (has_geometry_row(robot))
-    session.query("INSERT INTO robot_geometry VALUES ($1, $2, $3, $4)", robot_id,
-                  robot.geometry_revision, robot.geometry_ms,
-                  encode_mesh_solids(robot.description.mesh_solids));
+    session.query(
+        "INSERT INTO robot_geometry (robot_id, revision, taken_ms, mesh_solids)"
+        " VALUES ($1, $2, $3, $4)",
+        robot_id, robot.geometry_revision, robot.geometry_ms,
+        encode_mesh_solids(robot.description.mesh_solids));
 }
 
 /// Writes a robot's rows, anew if they are there.
@@ -146,6 +149,10 @@ std::optional<std::int64_t> find_registered(Session& session, const Digest& robo
       "SELECT id FROM robot WHERE digest = $1"
       " AND NOT EXISTS (SELECT 1 FROM robot AS removed WHERE removed.label = $2)",
       robot, removed_label(robot));
+}
+
+bool is_robot_readable(Session& session, std::int64_t id) {
+  return read_robot(session, id).has_value();
 }
 
 bool is_registered(Session& session, const Digest& robot) {
@@ -240,7 +247,7 @@ std::optional<RobotRecord> select_robot(Session& session, const Digest& robot) {
   if (!id)
     return std::nullopt;
   std::optional<RobotRecord> record = read_robot(session, *id);
-  if (!record)
+  if (!record || record->digest != robot)
     throw damaged_row(robot);
   return record;
 }
@@ -263,8 +270,9 @@ Page<RobotSummary> page_of_robots(Session& session, std::string_view cursor, std
   const std::int64_t rows = rows_of_page(limit);
   return read_page<RobotSummary>(
       // Without base link: a repair of SQLite knew its name alone.
-      session.query("SELECT " + std::string(kRobotSummaryColumns) +
-                        "FROM robot WHERE label > $1 AND base_link <> ''"
+      session.query("SELECT " + std::string(kRobotSummaryColumns) + "FROM robot WHERE " +
+                        session.is_intact("robot") +
+                        " AND label > $1 AND base_link <> ''"
                         " AND label NOT LIKE 'removed %' ORDER BY label LIMIT $2",
                     cursor, rows + 1),
       rows, read_robot_summary<Row>,
@@ -273,10 +281,10 @@ Page<RobotSummary> page_of_robots(Session& session, std::string_view cursor, std
 
 std::map<std::int64_t, RobotName> select_robot_names(Session& session) {
   std::map<std::int64_t, RobotName> names;
-  for (const Row& row : session.query("SELECT id, digest FROM robot ORDER BY digest"))
-    names[row.column_integer(0)].digest = id_of<Digest>(row.column_blob(1));
-  for (const Row& row : session.query("SELECT id, label FROM robot ORDER BY label"))
-    names[row.column_integer(0)].label = row.column_text(1);
+  for (const Row& row :
+       session.query("SELECT id, digest, label FROM robot WHERE " + session.is_intact("robot")))
+    names[row.column_integer(0)] = {id_of<Digest>(row.column_blob(1)),
+                                    std::string(row.column_text(2))};
   return names;
 }
 

@@ -21,6 +21,9 @@ bool is_registered(Session& session, const Digest& robot);
 /// The id of a robot that is not removed; its row may be damaged. From indexes.
 std::optional<std::int64_t> find_registered(Session& session, const Digest& robot);
 
+/// Whether a robot's row is as it was written.
+bool is_robot_readable(Session& session, std::int64_t id);
+
 /// Registers a robot. The row of a damaged or removed robot is written anew under its id, so that
 /// its paths stay.
 /// \return Known if the digest is registered, undamaged; Conflict if another robot has the label.
@@ -63,8 +66,7 @@ struct RobotName {
   Digest digest;
   std::string label;
 };
-/// Of all robots, removed ones too, by their internal ids. From indexes: a damaged row has its
-/// name.
+/// Of all robots whose rows are not damaged, removed ones too, by their internal ids.
 std::map<std::int64_t, RobotName> select_robot_names(Session& session);
 
 }  // namespace kinship::store

@@ -9,7 +9,8 @@ constexpr std::string_view kNote = "note:";
 }  // namespace
 
 std::string read_setting(Session& session, std::string_view key) {
-  const Rows rows = session.query("SELECT value FROM setting WHERE key = $1", key);
+  const Rows rows = session.query(
+      "SELECT value FROM setting WHERE key = $1 AND " + session.is_intact("setting"), key);
   return rows.empty() ? "" : std::string(rows.front().column_text(0));
 }
 
@@ -27,7 +28,8 @@ void write_setting(Session& session, std::string_view key,
 std::map<std::string, std::string> select_notes(Session& session, std::string_view prefix) {
   std::map<std::string, std::string> notes;
   for (const Row& row :
-       session.query("SELECT key, value FROM setting WHERE substr(key, 1, length($1)) = $1",
+       session.query("SELECT key, value FROM setting WHERE substr(key, 1, length($1)) = $1 AND " +
+                         session.is_intact("setting"),
                      std::string(kNote) + std::string(prefix)))
     notes.emplace(row.column_text(0).substr(kNote.size()), row.column_text(1));
   return notes;

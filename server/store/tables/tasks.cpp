@@ -21,11 +21,11 @@ std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
   constexpr int kRobot = 0, kTask = 11;
   const std::map<std::int64_t, RobotName> names = select_robot_names(session);
   std::map<std::int64_t, std::vector<TaskRobotSummary>> robots;
-  for (const Row& row : session.query_with(
-           "SELECT " + std::string(kTaskRobotColumns) +
-               ", task_id FROM experience WHERE task_id IN (SELECT id FROM task WHERE " + which +
-               ")",
-           parameters))
+  for (const Row& row :
+       session.query_with("SELECT " + std::string(kTaskRobotColumns) +
+                              ", task_id FROM experience WHERE " + session.is_intact("experience") +
+                              " AND task_id IN (SELECT id FROM task WHERE " + which + ")",
+                          parameters))
     if (const auto name = names.find(row.column_integer(kRobot));
         name != names.end() && !is_removed_label(name->second.label))
       robots[row.column_integer(kTask)].push_back(
@@ -35,9 +35,10 @@ std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
 
 Page<TaskSummary> read_tasks(Session& session, const std::string& which,
                              std::span<const Parameter> parameters, std::int64_t limit) {
-  auto robots = robots_of_tasks(session, which, parameters);
+  const std::string intact = session.is_intact("task") + " AND " + which;
+  auto robots = robots_of_tasks(session, intact, parameters);
   return read_page<TaskSummary>(
-      session.query_with("SELECT id, name FROM task WHERE " + which, parameters), limit,
+      session.query_with("SELECT id, name FROM task WHERE " + intact, parameters), limit,
       [&](const Row& task) {
         return summary_of(task.column_text(1), std::move(robots[task.column_integer(0)]));
       },
@@ -47,11 +48,13 @@ Page<TaskSummary> read_tasks(Session& session, const std::string& which,
 }  // namespace
 
 std::int64_t ensure_task(Session& session, std::string_view task) {
-  constexpr std::string_view kFind = "SELECT id FROM task WHERE name = $1";
-  if (const std::optional<std::int64_t> id = session.find_integer(kFind, task))
+  const std::string find = "SELECT id FROM task WHERE name = $1 AND " + session.is_intact("task");
+  if (const std::optional<std::int64_t> id = session.find_integer(find, task))
     return *id;
   session.query("INSERT INTO task (name) VALUES ($1) ON CONFLICT (name) DO NOTHING", task);
-  return session.find_integer(kFind, task).value();
+  if (const std::optional<std::int64_t> id = session.find_integer(find, task))
+    return *id;
+  throw Failure(ErrorCode::Storage, "task '" + std::string(task) + "': its row is damaged");
 }
 
 Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::size_t limit) {

@@ -54,17 +54,13 @@ struct Column {
 };
 
 std::vector<Column> columns_of(Database& target, const std::string& table) {
-  Statement query(target.connection(), "SELECT name, type FROM pragma_table_info(?)");
+  Statement query(target.connection(),
+                  "SELECT name, type FROM pragma_table_info(?) WHERE name <> 'row_crc32c'");
   query.bind(1, std::string_view(table));
   std::vector<Column> columns;
   while (query.step())
     columns.push_back({std::string(query.column_text(0)), std::string(query.column_text(1))});
   return columns;
-}
-
-/// PostgreSQL's expression for a column of SQLite. SQLite's mark of damage is unused.
-std::string source_of(const CopiedTable& table, const Column& column) {
-  return table.name == "path" && column.name == "damaged" ? "0::bigint" : column.name;
 }
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -102,15 +98,15 @@ class RowCopy {
     const std::vector<Column> columns = columns_of(*target_, table.name);
     if (columns.empty())
       return true;  // nothing that SQLite's schema knows
-    std::vector<std::string> sources, places;
+    std::vector<std::string> names, places;
     for (const Column& column : columns) {
-      sources.push_back(source_of(table, column));
+      names.push_back(column.name);
       places.emplace_back("?");
     }
-    Statement insert(target_->connection(),
-                     "INSERT INTO " + table.name + " VALUES (" + joined(places) + ")");
+    Statement insert(target_->connection(), "INSERT INTO " + table.name + " (" + joined(names) +
+                                                ") VALUES (" + joined(places) + ")");
     const std::string rest = " FROM " + table.source + " WHERE " + table.condition;
-    const std::string select = "SELECT " + joined(sources);
+    const std::string select = "SELECT " + joined(names);
     if (!table.has_id) {
       insert_all(insert, columns, source_->query(select + rest));
       return true;

@@ -61,15 +61,15 @@ ArrivedAttempt read_arrived(const Row& row) {
 
 /// The next $3 after ($1, $2): of all along an index; of some robots and tasks each brings its own.
 /// \param condition  on an attempt, that it has to fulfil too.
-std::string next_arrivals(const PairFilter& filter, std::vector<Parameter>& parameters,
-                          const std::string& condition = "") {
+std::string next_arrivals(Session& session, const PairFilter& filter,
+                          std::vector<Parameter>& parameters, const std::string& condition = "") {
   const std::string next =
       "(arrived_in, id) > ($1::text::xid8, $2)" + condition + " ORDER BY arrived_in, id LIMIT $3";
   if (filter.is_empty())
     return "SELECT id FROM attempt WHERE " + next;
   return "SELECT next.id FROM experience CROSS JOIN LATERAL (SELECT arrived_in, id FROM attempt "
          "WHERE task_id = experience.task_id AND robot_id = experience.robot_id AND " +
-         next + ") AS next WHERE TRUE" + filter.condition("experience", parameters) +
+         next + ") AS next WHERE TRUE" + filter.condition(session, "experience", parameters) +
          " ORDER BY next.arrived_in, next.id LIMIT $3";
 }
 
@@ -116,7 +116,7 @@ std::vector<Bytes> bytes_of(std::span<const Uuid> reports) {
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFilter& filter,
                                            const Arrival& after, std::int64_t count) {
   std::vector<Parameter> parameters = next_of(after, count);
-  const std::string page = next_arrivals(filter, parameters);
+  const std::string page = next_arrivals(connection, filter, parameters);
   std::vector<ArrivedAttempt> arrived;
   for (const store::Row& row : connection.query_with(
            std::string(kArrivedColumns) + std::string(kRecordColumns) + "FROM (" + page +
@@ -159,7 +159,7 @@ Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view ta
   const PairFilter filter{.task = task};
   std::vector<Parameter> parameters =
       next_of(parse_arrival_cursor(cursor), static_cast<std::int64_t>(limit) + 1);
-  const std::string page = next_arrivals(filter, parameters, std::string(kIsSettled));
+  const std::string page = next_arrivals(connection, filter, parameters, std::string(kIsSettled));
   return read_feed<ArrivedReport>(
       connection.query_with(
           "SELECT attempt.arrived_in::text::bigint, attempt.id, attempt.report_uuid," +

@@ -14,7 +14,8 @@ namespace {
 
 /// The ids of the newest paths before $1, at most $2: of all along the table; of some robots and
 /// tasks each brings its own, read from its indexes.
-std::string newest_paths(const PairFilter& filter, std::vector<Parameter>& parameters) {
+std::string newest_paths(Session& session, const PairFilter& filter,
+                         std::vector<Parameter>& parameters) {
   if (filter.is_empty())
     return "SELECT id FROM path WHERE id < $1 AND damaged_ms IS NULL ORDER BY id DESC LIMIT $2";
   const std::string of_pair =
@@ -23,15 +24,16 @@ std::string newest_paths(const PairFilter& filter, std::vector<Parameter>& param
   const std::string newest = " ORDER BY id DESC LIMIT $2";
   return "SELECT newest.id FROM experience CROSS JOIN LATERAL ((" + of_pair + "retired_ms IS NULL" +
          newest + ") UNION ALL (" + of_pair + "retired_ms IS NOT NULL" + newest +
-         ")) AS newest WHERE TRUE" + filter.condition("experience", parameters) +
+         ")) AS newest WHERE TRUE" + filter.condition(session, "experience", parameters) +
          " ORDER BY newest.id DESC LIMIT $2";
 }
 
 /// The same for distributions. In the order of one index alone, so that no other one is read to its
 /// end for rows that do not exist: the rows below, without the ones not asked for.
-std::string newest_distributions(const PairFilter& filter, std::vector<Parameter>& parameters) {
+std::string newest_distributions(Session& session, const PairFilter& filter,
+                                 std::vector<Parameter>& parameters) {
   std::string columns, ids, falling, are_asked_for;
-  for (const PairFilter::Column& column : filter.columns(parameters)) {
+  for (const PairFilter::Column& column : filter.columns(session, parameters)) {
     columns += column.name + ", ";
     ids += column.id + ", ";
     falling += column.name + " DESC, ";
@@ -70,7 +72,7 @@ Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter
   const std::int64_t rows = rows_of_page(limit);
   std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
                                        Parameter(rows + 1)};
-  const std::string page = newest_paths(filter, parameters);
+  const std::string page = newest_paths(connection, filter, parameters);
   return read_page<PathSummary>(
       connection.query_with("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
                                 ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
@@ -91,7 +93,7 @@ Page<DistributionSummary> page_of_distributions(Connection& connection, const Pa
   const std::int64_t rows = rows_of_page(limit);
   std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
                                        Parameter(rows + 1)};
-  const std::string page = newest_distributions(filter, parameters);
+  const std::string page = newest_distributions(connection, filter, parameters);
   return read_page<DistributionSummary>(
       connection.query_with("SELECT " + std::string(kDistributionSummaryColumns) + "FROM (" + page +
                                 ") AS page CROSS JOIN LATERAL (SELECT * FROM distribution AS found"

@@ -2,7 +2,8 @@
 
 #include <sqlite3.h>
 
-#include "server/store/sqlite/database/checked_vfs.hpp"
+#include <stdexcept>
+
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
@@ -28,8 +29,8 @@ void Database::Close::operator()(sqlite3* connection) const noexcept { sqlite3_c
 
 Database::Database(const std::filesystem::path& file, Access access) {
   sqlite3* connection = nullptr;
-  const int code = sqlite3_open_v2(file.c_str(), &connection,
-                                   open_flags(access) | SQLITE_OPEN_NOMUTEX, checked_vfs());
+  const int code =
+      sqlite3_open_v2(file.c_str(), &connection, open_flags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   connection_.reset(connection);  // SQLite may hand out a connection although it failed
   if (code != SQLITE_OK)
     throw SqliteError(
@@ -38,8 +39,8 @@ Database::Database(const std::filesystem::path& file, Access access) {
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  if (access != Access::ReadOnly)
-    seal_if_empty(*connection);
+  sqlite3_exec(connection, "PRAGMA temp_store = MEMORY", nullptr, nullptr, nullptr);
+  add_checksum_function(*connection);
 }
 
 Database::~Database() = default;
@@ -58,6 +59,42 @@ const Dialect& Database::dialect() const noexcept {
           " ON CONFLICT (kind, id) DO NOTHING",
       .by_task_robot = " INDEXED BY path_by_task_robot"};
   return kDialect;
+}
+
+const std::map<std::string, CheckedTable, std::less<>>& Database::checked_tables() {
+  if (checked_tables_.empty())
+    checked_tables_ = read_checked_tables(*connection_);
+  return checked_tables_;
+}
+
+template <typename Make>
+const std::string& Database::text_of(std::map<std::string, std::string, std::less<>>& texts,
+                                     std::string_view table, Make make) {
+  const auto found = texts.find(table);
+  if (found != texts.end())
+    return found->second;
+  const auto checked = checked_tables().find(table);
+  if (checked == checked_tables().end())
+    throw std::logic_error("table " + std::string(table) + " has no checksums");
+  return texts.emplace(table, make(checked->second)).first->second;
+}
+
+std::string Database::is_intact(std::string_view table) {
+  return text_of(conditions_, table, [&](const CheckedTable& checked) {
+    const std::string row = std::string(table) + ".";
+    return "(" + row + "row_crc32c = " + checked.checksum(row) + ")";
+  });
+}
+
+void Database::keep_checksums() {
+  checked_tables_ = read_checked_tables(*connection_);
+  execute(checksum_triggers(checked_tables_));
+}
+
+Database::CachedStatement Database::insert_into(std::string_view table) {
+  return cached(text_of(inserts_, table, [&](const CheckedTable& checked) {
+    return insert_with_checksum(std::string(table), checked);
+  }));
 }
 
 Row& Database::run(std::string_view sql, std::span<const Parameter> parameters) {

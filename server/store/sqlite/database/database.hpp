@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/store/sqlite/database/row_checksums.hpp"
 #include "server/store/sqlite/database/statement.hpp"
 
 namespace kinship::store {
@@ -25,16 +26,23 @@ class Database : public Session {
   Database(const std::filesystem::path& file, Access access);
   ~Database() override;
 
-  const Dialect& dialect() const noexcept override;
-
-  void execute(const std::string& script);     ///< runs statements without parameters, drops rows
-  std::int64_t integer(std::string_view sql);  ///< the first column of the first row; 0 if none
-
   struct Reset {
     void operator()(Statement* statement) const noexcept { statement->reset(); }
   };
   /// A statement on loan; resets itself when the loan ends, so that it holds no read snapshot.
   using CachedStatement = std::unique_ptr<Statement, Reset>;
+
+  const Dialect& dialect() const noexcept override;
+  std::string is_intact(std::string_view table) override;
+
+  /// From now on the rows that this connection writes get their checksums.
+  void keep_checksums();
+  const std::map<std::string, CheckedTable, std::less<>>& checked_tables();
+  /// Inserts a row with all columns of a table with checksums, in their order.
+  CachedStatement insert_into(std::string_view table);
+
+  void execute(const std::string& script);     ///< runs statements without parameters, drops rows
+  std::int64_t integer(std::string_view sql);  ///< the first column of the first row; 0 if none
 
   /// The statement for `sql`, prepared once per connection. One loan of the same text at a time.
   CachedStatement cached(std::string_view sql);
@@ -50,11 +58,17 @@ class Database : public Session {
   Row& run(std::string_view sql, std::span<const Parameter> parameters) override;
   bool try_run(std::string_view sql, std::span<const Parameter> parameters) override;
   bool is_damage(const Failure& failure) const noexcept override;
+  /// A text of a table, made once.
+  template <typename Make>
+  const std::string& text_of(std::map<std::string, std::string, std::less<>>& texts,
+                             std::string_view table, Make make);
 
   struct Close {
     void operator()(sqlite3* connection) const noexcept;
   };
   std::unique_ptr<sqlite3, Close> connection_;
+  std::map<std::string, CheckedTable, std::less<>> checked_tables_;  // read when they are needed
+  std::map<std::string, std::string, std::less<>> conditions_, inserts_;  // by table
   std::map<std::string, Statement, std::less<>> statements_;  // destroyed before the connection
   std::unique_ptr<OnlineBackup> backup_;                      // and this too
 };

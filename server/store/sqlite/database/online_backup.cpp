@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <string>
 
-#include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 
 namespace kinship::store {
@@ -18,7 +17,6 @@ OnlineBackup::OnlineBackup(Database& source, const std::filesystem::path& target
     : target_(target, Access::ReadWrite) {
   // The caller that publishes the copy syncs it; half a copy is of no use.
   target_.execute("PRAGMA synchronous = OFF; PRAGMA journal_mode = MEMORY");
-  set_sealed(target_.connection(), is_sealed(source.connection()));  // pages are copied as they are
   backup_.reset(sqlite3_backup_init(&target_.connection(), "main", &source.connection(), "main"));
   if (!backup_)
     throw_sqlite_error(target_.connection(), "backup");
@@ -27,7 +25,6 @@ OnlineBackup::OnlineBackup(Database& source, const std::filesystem::path& target
 OnlineBackup::~OnlineBackup() = default;
 
 bool OnlineBackup::step(int pages) {
-  const HolesAllowed free_pages;
   const int code = sqlite3_backup_step(backup_.get(), pages);
   // Busy or locked: nothing was copied; the next step tries again.
   if (code == SQLITE_OK || code == SQLITE_BUSY || code == SQLITE_LOCKED)

@@ -5,8 +5,6 @@
 #include <cerrno>
 #include <system_error>
 
-#include "server/store/sqlite/database/checked_vfs.hpp"
-
 namespace kinship::store {
 namespace {
 
@@ -23,25 +21,25 @@ std::string lack_of_room(sqlite3& connection) {
 
 bool SqliteError::concerns_one_row() const noexcept {
   const int primary = sqlite_code_ & 0xFF;
-  return primary == SQLITE_CONSTRAINT || primary == SQLITE_TOOBIG || primary == SQLITE_MISMATCH;
+  return (primary == SQLITE_CONSTRAINT && !is_damage()) || primary == SQLITE_TOOBIG ||
+         primary == SQLITE_MISMATCH;
 }
 
 bool SqliteError::is_damage() const noexcept {
   const int primary = sqlite_code_ & 0xFF;
   return primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB ||
-         sqlite_code_ == SQLITE_IOERR_DATA || sqlite_code_ == SQLITE_IOERR_CORRUPTFS;
+         sqlite_code_ == SQLITE_CONSTRAINT_TRIGGER || sqlite_code_ == SQLITE_IOERR_DATA ||
+         sqlite_code_ == SQLITE_IOERR_CORRUPTFS;
 }
 
-bool SqliteError::spares_transaction() const noexcept {
-  return concerns_one_row() || sqlite_code_ == kDamagedPage;
+SqliteError damaged_row(const std::string& what) {
+  return {kDamagedRow, what + ": its row is damaged (checksum)"};
 }
 
 void throw_sqlite_error(sqlite3& connection, std::string_view doing) {
   constexpr std::string_view::size_type kMaxShown = 80;
   std::string message = "SQLite: ";
-  message += sqlite3_extended_errcode(&connection) == kDamagedPage
-                 ? "the checksum of a page is wrong"
-                 : sqlite3_errmsg(&connection);
+  message += sqlite3_errmsg(&connection);
   message += " (code " + std::to_string(sqlite3_extended_errcode(&connection));
   message += lack_of_room(connection) + ") in '";
   message += doing.substr(0, kMaxShown);

@@ -9,6 +9,9 @@ struct sqlite3;
 
 namespace kinship::store {
 
+/// The code of damaged_row(): one of SQLITE_CORRUPT that SQLite itself does not know.
+inline constexpr int kDamagedRow = 11 | (75 << 8);
+
 /// The error of a failed SQLite call: a Failure(Storage) with the result code.
 class SqliteError : public Failure {
  public:
@@ -21,17 +24,19 @@ class SqliteError : public Failure {
   /// other error (I/O error, full disk) nothing may be written before a reopen.
   bool concerns_one_row() const noexcept;
 
-  /// True if the data to be read is damaged: a page with a wrong checksum, or content that SQLite
-  /// finds malformed. Rows on other pages are fine.
+  /// True if the data to be read is damaged: a row with a wrong checksum that was to be changed, or
+  /// content that SQLite finds malformed, after which a transaction takes no writes. Rows on other
+  /// pages are fine.
   bool is_damage() const noexcept;
-
-  /// True if a savepoint can undo the statement and the transaction goes on: the error concerns one
-  /// row, or a page with a wrong checksum, which was not loaded.
-  bool spares_transaction() const noexcept;
+  /// True if it is damaged_row().
+  bool is_of_row() const noexcept { return sqlite_code_ == kDamagedRow; }
 
  private:
   int sqlite_code_;
 };
+
+/// A row of a table, named by `what`, is not as it was written.
+SqliteError damaged_row(const std::string& what);
 
 /// Throws the connection's last error; `doing` names the operation.
 [[noreturn]] void throw_sqlite_error(sqlite3& connection, std::string_view doing);

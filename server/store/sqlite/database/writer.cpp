@@ -18,7 +18,7 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
   try {
     item.apply(batch);
   } catch (const SqliteError& error) {
-    if (!error.spares_transaction())
+    if (!error.concerns_one_row())
       throw;
     return error.error();
   } catch (const Failure& failure) {
@@ -176,7 +176,7 @@ bool Writer::write_whole(WriteItem& item) {
   try {
     item.apply(batch);
   } catch (const SqliteError& error) {
-    if (!error.spares_transaction())
+    if (!error.concerns_one_row())
       throw;
     return false;
   } catch (const std::exception&) {
@@ -188,7 +188,8 @@ bool Writer::write_whole(WriteItem& item) {
 }
 
 /// After damage that undid the batch: each item in a transaction of its own, so that only the one
-/// that needs damaged pages fails. The rest of the file is fine, nothing is opened again.
+/// that needs damaged pages fails. An item learns which of its parts that was, and leaves it out in
+/// its next try. The rest of the file is fine, nothing is opened again.
 void Writer::write_apart(Items& items) {
   for (auto& item : items) {
     std::optional<Error> error;
@@ -203,18 +204,20 @@ void Writer::write_apart(Items& items) {
 }
 
 std::optional<Error> Writer::write_alone(WriteItem& item) {
-  try {
-    Transaction transaction(*database_, Transaction::Kind::Write);
-    Batch batch(*database_);
-    std::optional<Error> error = apply_alone(item, batch);
-    batch.raise_generations();
-    transaction.commit();
-    return error;
-  } catch (const Failure& failure) {
-    if (!is_damage(failure))
-      fail(failure);
-    return failure.error();
-  }
+  for (std::size_t tries = item.weight(); true; --tries)
+    try {
+      Transaction transaction(*database_, Transaction::Kind::Write);
+      Batch batch(*database_);
+      std::optional<Error> error = apply_alone(item, batch);
+      batch.raise_generations();
+      transaction.commit();
+      return error;
+    } catch (const Failure& failure) {
+      if (!is_damage(failure))
+        fail(failure);
+      if (!database_ || tries == 0)
+        return failure.error();
+    }
 }
 
 void Writer::finish_all(Items& items, const Error* error) {

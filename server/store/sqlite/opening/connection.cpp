@@ -1,6 +1,5 @@
 #include "server/store/sqlite/opening/connection.hpp"
 
-#include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -22,9 +21,7 @@ void configure_writer(Database& database) {
   database.execute(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
       "PRAGMA wal_autocheckpoint = 0; PRAGMA journal_size_limit = 67108864;"
-      "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;"
-      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes all it finds
-  gather_wal_writes(database.connection());
+      "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON;");
 }
 
 /// Not half a store, nor one that is elsewhere now.
@@ -54,6 +51,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
   if (!checkpoint(*database, CheckpointKind::Whole))
     throw Failure(ErrorCode::Storage, "another program reads the store and keeps its WAL");
   check_schema(*database, file, embedded_migrations());
+  database->keep_checksums();
   Transaction probe(*database, Transaction::Kind::Write);
   write_setting(*database, "reopened_ms", std::to_string(now_ms()));
   Batch batch(*database);

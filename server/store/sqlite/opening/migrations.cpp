@@ -2,10 +2,10 @@
 
 #include <sqlite3.h>
 
+#include <map>
 #include <string>
 
 #include "proto/types/sha256.hpp"
-#include "server/store/sqlite/database/checked_vfs.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
@@ -80,6 +80,7 @@ void apply(Database& database, const std::filesystem::path& file, const Migratio
                 std::string_view(sqlite3_libversion()))
       .run();
   database.execute("PRAGMA user_version = " + std::to_string(migration.version));
+  database.keep_checksums();
   if (is_noted)
     insert_audit(database,
                  entry_of_migration(file.string(), migration.version - 1, migration.version));
@@ -96,6 +97,26 @@ void keep_copy_of(Database& database, const std::filesystem::path& file, std::in
   backup.publish();
 }
 
+/// The SQL of all objects of a schema, by name.
+std::map<std::string, std::string> schema_of(Database& database) {
+  std::map<std::string, std::string> schema;
+  Statement objects(database.connection(), "SELECT name, sql FROM main.sqlite_master");
+  while (objects.step())
+    schema.emplace(objects.column_text(0), objects.column_text(1));
+  return schema;
+}
+
+/// A flipped bit may leave SQL that SQLite can read. Objects that others added count for nothing.
+void require_whole_schema(Database& database, std::span<const Migration> migrations) {
+  Database fresh(":memory:", Access::ReadWrite);
+  for (const Migration& migration : migrations)
+    fresh.execute(std::string(migration.text));
+  const std::map<std::string, std::string> found = schema_of(database);
+  for (const auto& [name, sql] : schema_of(fresh))
+    if (const auto object = found.find(name); object == found.end() || object->second != sql)
+      throw SqliteError(SQLITE_CORRUPT, "the schema is damaged at '" + name + "'");
+}
+
 }  // namespace
 
 std::int64_t known_schema(Database& database, const std::filesystem::path& file,
@@ -103,9 +124,8 @@ std::int64_t known_schema(Database& database, const std::filesystem::path& file,
   const std::int64_t version = checked_version(database, file, migrations);
   if (version > 0)
     check_history(database, file, version, migrations);
-  if (version > 0 && !is_sealed(database.connection()))
-    refuse_store(file,
-                 "says in its header that its pages bear no checksums: the header is damaged");
+  if (version > 0 && version == std::ssize(migrations))
+    require_whole_schema(database, migrations);
   return version;
 }
 
@@ -117,20 +137,15 @@ std::unique_ptr<Database> open_migrated(const std::filesystem::path& file,
                                         std::span<const Migration> migrations, Keep keep) {
   auto database = std::make_unique<Database>(file, Access::ReadWrite);
   const std::int64_t version = known_schema(*database, file, migrations);
-  if (!is_sealed(database->connection()))  // a killed process's transaction is rolled back by now
-    database = std::make_unique<Database>(file, Access::ReadWrite);
-  if (!is_sealed(database->connection()))
-    refuse_store(file, "is an empty database of another program");
   if (keep == Keep::Copy && version > 0 && version < std::ssize(migrations))
     keep_copy_of(*database, file, version);
   // The size of pages counts for a new file only.
   database->execute("PRAGMA page_size = 4096; PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-  // A rollback journal does not keep the content of free pages: a cut in the middle would leave
-  // them torn, with wrong checksums.
   if (keep == Keep::Copy)
     database->execute("PRAGMA journal_mode = WAL");
   for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
     apply(*database, file, migration, version > 0);
+  database->keep_checksums();
   return database;
 }
 

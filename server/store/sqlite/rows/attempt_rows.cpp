@@ -61,9 +61,10 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
   const auto query = database.cached(
       "SELECT report_uuid, robot_id, task_id, machine, T_task_base, path_id, scene_id, "
       "received_ms, " +
-      std::string(kRecordColumns) + "FROM attempt WHERE id = ?");
+      std::string(kRecordColumns) + "FROM attempt WHERE id = ? AND " +
+      database.is_intact("attempt"));
   if (!query->bind(1, id).step())
-    throw Failure(ErrorCode::Storage, "attempt " + std::to_string(id) + " is in an index alone");
+    throw damaged_row("attempt " + std::to_string(id));
   row.attempt.report_uuid = id_of<Uuid>(query->column_blob(0));
   row.robot_id = query->column_integer(1);
   row.task_id = query->column_integer(2);
@@ -76,7 +77,8 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
   return row;
 }
 
-std::optional<AttemptRow> select_named(Database& database, std::optional<std::int64_t> id) {
+std::optional<AttemptRow> select_named(Database& database, std::optional<std::int64_t> id,
+                                       std::vector<std::int64_t>& damaged) {
   if (!id)
     return std::nullopt;
   try {
@@ -86,19 +88,24 @@ std::optional<AttemptRow> select_named(Database& database, std::optional<std::in
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
+    if (error.is_of_row())
+      damaged.push_back(*id);
     return std::nullopt;
   }
 }
 
 void name_robot_and_task(Database& database, AttemptRow& row) {
-  const auto robot = database.cached("SELECT digest, label FROM robot WHERE id = ?");
-  if (robot->bind(1, row.robot_id).step()) {
-    row.attempt.robot = id_of<Digest>(robot->column_blob(0));
-    row.is_robot_removed = is_removed_label(robot->column_text(1));
-  }
-  const auto task = database.cached("SELECT name FROM task WHERE id = ?");
-  if (task->bind(1, row.task_id).step())
-    row.attempt.task = task->column_text(0);
+  const auto robot = database.cached("SELECT digest, label FROM robot WHERE id = ? AND " +
+                                     database.is_intact("robot"));
+  if (!robot->bind(1, row.robot_id).step())
+    throw damaged_row("robot " + std::to_string(row.robot_id));
+  row.attempt.robot = id_of<Digest>(robot->column_blob(0));
+  row.is_robot_removed = is_removed_label(robot->column_text(1));
+  const auto task =
+      database.cached("SELECT name FROM task WHERE id = ? AND " + database.is_intact("task"));
+  if (!task->bind(1, row.task_id).step())
+    throw damaged_row("task " + std::to_string(row.task_id));
+  row.attempt.task = task->column_text(0);
 }
 
 }  // namespace kinship::store

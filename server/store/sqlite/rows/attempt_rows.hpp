@@ -34,8 +34,10 @@ struct AttemptRow {
 /// Without the names of its robot and task, which are in other tables. \throws SqliteError: if
 /// is_damage(), the row is damaged.
 AttemptRow select_attempt(Database& database, std::int64_t id);
-/// With the names. Nothing if there is none, or it lies on a damaged page.
-std::optional<AttemptRow> select_named(Database& database, std::optional<std::int64_t> id);
+/// With the names. Nothing if there is none, or it cannot be read.
+/// \param damaged  takes the id of a row that is not as it was written.
+std::optional<AttemptRow> select_named(Database& database, std::optional<std::int64_t> id,
+                                       std::vector<std::int64_t>& damaged);
 void name_robot_and_task(Database& database, AttemptRow& row);
 
 }  // namespace kinship::store

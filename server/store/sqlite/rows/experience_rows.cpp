@@ -2,16 +2,21 @@
 
 #include <string>
 
+#include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 
 std::uint64_t ensure_experience(Database& database, const ExperienceKey& key) {
   {
-    const auto query =
-        database.cached("SELECT paths FROM experience WHERE task_id = ? AND robot_id = ?");
-    if (query->bind_all(key.task_id, key.robot_id).step())
+    const auto query = database.cached("SELECT paths, " + database.is_intact("experience") +
+                                       " FROM experience WHERE task_id = ? AND robot_id = ?");
+    if (query->bind_all(key.task_id, key.robot_id).step()) {
+      if (query->column_integer(1) == 0)
+        throw damaged_row("the experience of robot " + std::to_string(key.robot_id) +
+                          " with task " + std::to_string(key.task_id));
       return count_of(*query, 0);
+    }
   }
   database.cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?)")
       ->bind_all(key.task_id, key.robot_id)
@@ -52,7 +57,7 @@ void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t pa
 std::vector<ExperienceKey> select_experience(Database& database, const PairFilter& filter) {
   std::vector<Parameter> parameters;
   const std::string sql = "SELECT task_id, robot_id FROM experience WHERE TRUE" +
-                          filter.condition("experience", parameters) +
+                          filter.condition(database, "experience", parameters) +
                           " ORDER BY task_id, robot_id";
   std::vector<ExperienceKey> keys;
   for (const Row& row : database.query_with(sql, parameters))

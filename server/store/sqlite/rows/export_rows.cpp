@@ -46,21 +46,14 @@ std::vector<std::int64_t> next_of(Database& database, const std::vector<Experien
   return ids;
 }
 
-/// The next attempts of all by id; where their rows cannot be read, from the index.
 std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
                                       std::int64_t count) {
-  try {
-    std::vector<std::int64_t> ids;
-    const auto query = database.cached("SELECT id FROM attempt WHERE id > ? " +
-                                       std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
-    query->bind_all(after_id, count);
-    append_ids(*query, ids);
-    return ids;
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-    return next_of(database, select_experience(database, {}), after_id, count);
-  }
+  std::vector<std::int64_t> ids;
+  const auto query = database.cached("SELECT id FROM attempt WHERE id > ? " +
+                                     std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
+  query->bind_all(after_id, count);
+  append_ids(*query, ids);
+  return ids;
 }
 
 /// The next attempts by id, without quarantined ones: of a robot, a task, both, or all of them.
@@ -71,7 +64,7 @@ std::vector<std::int64_t> next_attempts(Database& database, const PairFilter& fi
              : next_of(database, select_experience(database, filter), after_id, count);
 }
 
-/// Nothing if its robot is removed, or it lies on a damaged page.
+/// Nothing if its robot is removed, or it is damaged.
 std::optional<AttemptSummary> read_summary(Database& database,
                                            const std::map<std::int64_t, RobotName>& names,
                                            std::int64_t id) {
@@ -95,11 +88,9 @@ std::optional<AttemptSummary> read_summary(Database& database,
   }
 }
 
-/// Nothing if its robot is removed, or it lies on a damaged page, which is noted.
+/// Nothing if its robot is removed, or it is damaged, which is noted.
 std::optional<AttemptRow> read_row(Database& database, std::int64_t id, DamagedRows& noted) {
-  std::optional<AttemptRow> row = select_named(database, id);
-  if (!row)
-    noted.attempts.push_back(id);
+  std::optional<AttemptRow> row = select_named(database, id, noted.attempts);
   if (row && row->is_robot_removed)
     return std::nullopt;
   return row;
@@ -144,8 +135,8 @@ std::optional<Attempt> read_candidate(Database& database, std::int64_t id, Damag
 
 /// A path that was dropped leaves the same index as one that was retired.
 bool is_dropped(Database& database, std::int64_t path_id) {
-  const auto query =
-      database.cached("SELECT " + std::string(kIsDropped) + " FROM path WHERE id = ?");
+  const auto query = database.cached("SELECT " + std::string(kIsDropped) +
+                                     " FROM path WHERE id = ? AND " + database.is_intact("path"));
   return query->bind(1, path_id).step() && query->column_integer(0) != 0;
 }
 
@@ -157,7 +148,7 @@ bool is_path_retired(Database& database, const ExperienceKey& key, std::int64_t 
   return is_retired(database, key, id) && !is_dropped(database, id);
 }
 
-/// Nothing if it lies on a damaged page.
+/// Nothing if it is damaged.
 std::optional<ArrivedReport> read_arrived(Database& database, std::int64_t id) {
   try {
     ArrivedReport report;
@@ -165,7 +156,8 @@ std::optional<ArrivedReport> read_arrived(Database& database, std::int64_t id) {
     ExperienceKey key;
     {
       const auto query = database.cached(
-          "SELECT report_uuid, task_id, robot_id, path_id FROM attempt WHERE id = ?");
+          "SELECT report_uuid, task_id, robot_id, path_id FROM attempt WHERE id = ? AND " +
+          database.is_intact("attempt"));
       if (!query->bind(1, id).step())
         return std::nullopt;
       report.report_uuid = id_of<Uuid>(query->column_blob(0));
@@ -193,7 +185,7 @@ std::optional<SharedReport> read_shared(Database& database, const Uuid& report_u
                                         DamagedRows& noted) {
   const ReportRows rows = find_report(database, report_uuid);
   std::optional<AttemptRow> row = rows.row ? read_row(database, *rows.row, noted) : std::nullopt;
-  if (!row)
+  if (!row || row->attempt.report_uuid != report_uuid)  // the index led to another one
     return std::nullopt;
   const bool is_retired =
       is_report_retired(database, report_uuid) ||
@@ -261,13 +253,11 @@ Result<Attempt> find_attempt(Database& database, const Uuid& report_uuid, Damage
   const ReportRows report = find_report(database, report_uuid);
   if (!report.row && report.damaged.empty())
     return Error{ErrorCode::NotFound, "report " + report_uuid.text() + ": no such report"};
-  std::optional<AttemptRow> row = select_named(database, report.row);
-  if (row) {
+  std::optional<AttemptRow> row = select_named(database, report.row, noted.attempts);
+  if (row && row->attempt.report_uuid == report_uuid) {
     read_contents(database, *row, noted);
     return std::move(row->attempt);
   }
-  if (report.row)
-    noted.attempts.push_back(*report.row);
   return Error{ErrorCode::Storage,
                "report " + report_uuid.text() + ": its row is damaged; report it again to mend it"};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -47,24 +48,25 @@ std::vector<std::int64_t> paths_before(Database& database, const std::vector<Exp
   return ids;
 }
 
-/// The same of all; where their rows cannot be read, from the indexes.
+/// The same of all.
 std::vector<std::int64_t> all_paths_before(Database& database, std::int64_t before_id,
                                            std::int64_t count) {
-  try {
-    std::vector<std::int64_t> ids;
-    const auto query = database.cached("SELECT id FROM path WHERE id < ?1 AND " +
-                                       std::string(kNotAsidePath) + "?2");
-    query->bind_all(before_id, count);
-    append_path_ids(*query, ids);
-    return ids;
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-    return paths_before(database, select_experience(database, {}), before_id, count);
-  }
+  std::vector<std::int64_t> ids;
+  const auto query =
+      database.cached("SELECT id FROM path WHERE id < ?1 AND " + std::string(kNotAsidePath) + "?2");
+  query->bind_all(before_id, count);
+  append_path_ids(*query, ids);
+  return ids;
 }
 
-/// Nothing if it lies on a damaged page, or lost its attempt in a repair.
+std::string are_intact(Database& database, std::initializer_list<std::string_view> tables) {
+  std::string condition = "TRUE";
+  for (const std::string_view table : tables)
+    condition += " AND " + database.is_intact(table);
+  return condition;
+}
+
+/// Nothing if it, its robot, task or attempt is damaged, or if it lost its attempt in a repair.
 std::optional<PathSummary> select_path_summary(Database& database, std::int64_t id) try {
   const auto query =
       database.cached("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
@@ -72,7 +74,8 @@ std::optional<PathSummary> select_path_summary(Database& database, std::int64_t 
                       "FROM path CROSS JOIN robot ON robot.id = path.robot_id "
                       "CROSS JOIN task ON task.id = path.task_id "
                       "CROSS JOIN attempt ON attempt.id = (SELECT max(id) FROM attempt AS newest "
-                      "WHERE newest.report_uuid = path.report_uuid) WHERE path.id = ?");
+                      "WHERE newest.report_uuid = path.report_uuid) WHERE path.id = ? AND " +
+                      are_intact(database, {"path", "robot", "task", "attempt"}));
   if (!query->bind(1, id).step())
     return std::nullopt;
   return read_path_summary(*query);
@@ -120,9 +123,11 @@ Page<DistributionSummary> page_of_distributions(Database& database, const PairFi
   const std::string sql =
       "SELECT " + std::string(kDistributionSummaryColumns) +
       "FROM distribution JOIN robot ON robot.id = distribution.robot_id"
-      " JOIN task ON task.id = distribution.task_id WHERE distribution.id < $1 AND NOT " +
+      " JOIN task ON task.id = distribution.task_id WHERE distribution.id < $1 AND " +
+      are_intact(database, {"distribution", "robot", "task"}) + " AND NOT " +
       std::string(database.dialect().is_quarantined_distribution) +
-      filter.condition("distribution", parameters) + " ORDER BY distribution.id DESC LIMIT $2";
+      filter.condition(database, "distribution", parameters) +
+      " ORDER BY distribution.id DESC LIMIT $2";
   return read_page<DistributionSummary>(
       database.query_with(sql, parameters), rows, read_distribution_summary<Row>,
       [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });

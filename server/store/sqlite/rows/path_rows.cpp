@@ -13,12 +13,6 @@
 namespace kinship::store {
 namespace {
 
-/// \param row  of kPathContentColumns.
-bool is_intact(const Statement& row) {
-  return path_content_of(row).is_dropped() ? has_right_path_crc(row)
-                                           : read_path_content(row).has_value();
-}
-
 constexpr std::string_view kNotAside =
     " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
 
@@ -37,10 +31,19 @@ bool can_read(Read read) {
 /// \return whether the path is there and its checksum is right.
 bool is_readable(Database& database, std::int64_t id) {
   return can_read([&] {
-    const auto query =
-        database.cached("SELECT " + std::string(kPathContentColumns) + "FROM path WHERE id = ?");
+    const auto query = database.cached("SELECT " + std::string(kPathContentColumns) +
+                                       "FROM path WHERE id = ? AND " + database.is_intact("path"));
     return query->bind(1, id).step() && has_right_path_crc(*query);
   });
+}
+
+/// Not by the index that led to it.
+bool has_content(Database& database, std::int64_t id, const ExperienceKey& key,
+                 const Digest& content) {
+  const auto query = database.cached(
+      "SELECT 1 FROM path NOT INDEXED"
+      " WHERE id = ? AND task_id = ? AND robot_id = ? AND content_sha256 = ?");
+  return query->bind_all(id, key.task_id, key.robot_id, Bytes(content.bytes)).step();
 }
 
 bool index_has(Database& database, std::string_view sql, const ExperienceKey& key,
@@ -77,49 +80,25 @@ void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id) {
 
 /// Reads the row of one path.
 void take_path(Database& database, std::int64_t id, PathsRead& read) {
-  if (!can_read([&] {
-        const auto query =
-            database.cached("SELECT " + std::string(kPathColumns) + "FROM path WHERE id = ?");
-        if (query->bind(1, id).step())
-          read.add(*query);
-        return true;
-      }))
-    read.damaged.push_back(id);
+  static_cast<void>(can_read([&] {
+    const auto query = database.cached("SELECT " + std::string(kPathColumns) +
+                                       "FROM path WHERE id = ? AND " + database.is_intact("path"));
+    if (query->bind(1, id).step())
+      read.add(*query);
+    else
+      read.damaged.push_back(id);
+    return true;
+  }));
 }
-
-/// The ids of paths in use and of retired ones, from the indexes.
-constexpr std::string_view kIdsOfIndexes =
-    "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE retired_ms IS NULL "
-    "UNION ALL SELECT id FROM path INDEXED BY path_retired WHERE retired_ms IS NOT NULL) AS path ";
 
 std::vector<std::int64_t> newest_paths(Database& database, std::int64_t count) {
   std::vector<std::int64_t> ids;
-  const auto collect = [&](const std::string& sql) {
-    ids.clear();
-    const auto query = database.cached(sql + " ORDER BY id DESC LIMIT ?");
-    query->bind(1, count);
-    while (query->step())
-      ids.push_back(query->column_integer(0));
-    return true;
-  };
-  const std::string others(kNotAside);
-  if (!can_read([&] { return collect("SELECT id FROM path WHERE TRUE" + others); }))
-    collect(std::string(kIdsOfIndexes) + "WHERE TRUE" + others);
+  const auto query = database.cached("SELECT id FROM path WHERE TRUE" + std::string(kNotAside) +
+                                     "ORDER BY id DESC LIMIT ?");
+  query->bind(1, count);
+  while (query->step())
+    ids.push_back(query->column_integer(0));
   return ids;
-}
-
-PathsChecked check_one_by_one(Database& database, std::int64_t after_id, std::int64_t limit) {
-  const auto query = database.cached(std::string(kIdsOfIndexes) + "WHERE id > ?" +
-                                     std::string(kNotAside) + "ORDER BY id LIMIT ?");
-  query->bind_all(after_id, limit);
-  PathsChecked checked;
-  while (query->step()) {
-    checked.last_id = query->column_integer(0);
-    ++checked.paths;
-    if (!is_readable(database, checked.last_id))
-      checked.damaged.push_back(checked.last_id);
-  }
-  return checked;
 }
 
 /// Its checksum goes on covering the rest of the row.
@@ -130,7 +109,8 @@ bool remove_waypoints(Database& database, std::int64_t id) {
     {
       const auto query = database.cached(
           "SELECT id, report_uuid, T_task_base, dof, waypoint_count, 2, 0, x'00' FROM path "
-          "WHERE id = ?");
+          "WHERE id = ? AND " +
+          database.is_intact("path"));
       if (!query->bind(1, id).step())
         return false;
       crc = path_content_of(*query).crc();
@@ -161,7 +141,7 @@ SameContent find_same(Database& database, const ExperienceKey& key, const Digest
   SameContent same;
   for (const std::int64_t id : ids) {
     const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
-    if (!aside && is_readable(database, id))
+    if (!aside && is_readable(database, id) && has_content(database, id, key, content))
       same.readable = id;
     else if (!aside)
       same.damaged.push_back(id);
@@ -195,7 +175,8 @@ std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey
   while (ids->step()) {
     const std::int64_t id = ids->column_integer(0);
     if (can_read([&] {
-          const auto row = database.cached("SELECT report_uuid FROM path WHERE id = ?");
+          const auto row = database.cached("SELECT report_uuid FROM path WHERE id = ? AND " +
+                                           database.is_intact("path"));
           return row->bind(1, id).step() && id_of<Uuid>(row->column_blob(0)) == report_uuid;
         }))
       return id;
@@ -221,20 +202,18 @@ std::int64_t insert_path(Database& database, const NewPath& path,
   const PreparedPath& prepared = *path.from->path;
   const auto T_task_base = optional_pose_blob(path.from->attempt.T_task_base);
   const PathContent content = content_of(path, blob_or_null(T_task_base).value_or(Bytes()));
+  const std::int64_t id =
+      database.query("SELECT coalesce(max(id), 0) + 1 FROM path").front().column_integer(0);
   std::optional<std::int64_t> retired_ms;
   if (path.is_dropped || path.is_retired)
     retired_ms = now_ms;
-  database
-      .cached(
-          "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
-          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, scene_id, retired_ms) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(path.key.task_id, path.key.robot_id, content.report_uuid,
-                 Bytes(prepared.content.bytes), prepared.length, blob_or_null(T_task_base),
-                 content.dof, content.waypoint_count, content.encoding, std::int64_t{content.crc()},
-                 content.waypoints, path.received_ms, scene_id, retired_ms)
+  database.insert_into("path")
+      ->bind_all(id, path.key.task_id, path.key.robot_id, content.report_uuid,
+                 Bytes(prepared.content.bytes), content.waypoint_count, content.dof,
+                 prepared.length, path.received_ms, retired_ms, scene_id, blob_or_null(T_task_base),
+                 content.encoding, std::int64_t{content.crc()}, content.waypoints)
       .run();
-  return database.last_insert_id();
+  return id;
 }
 
 PathsRead select_path(Database& database, std::int64_t id) {
@@ -274,23 +253,14 @@ void drop_path(Database& database, const ExperienceKey& key, std::int64_t id) {
     write_damaged(database, key, {.id = id});
 }
 
-PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit) {
-  PathsChecked checked;
-  if (can_read([&] {
-        const auto query = database.cached("SELECT " + std::string(kPathContentColumns) +
-                                           "FROM path WHERE id > ?" + std::string(kNotAside) +
-                                           "ORDER BY id LIMIT ?");
-        query->bind_all(after_id, limit);
-        while (query->step()) {
-          checked.last_id = query->column_integer(PathColumn::kId);
-          ++checked.paths;
-          if (!is_intact(*query))
-            checked.damaged.push_back(checked.last_id);
-        }
-        return true;
-      }))
-    return checked;
-  return check_one_by_one(database, after_id, limit);
+bool is_path_decodable(Database& database, std::int64_t id) {
+  return can_read([&] {
+    const auto query = database.cached("SELECT " + std::string(kPathContentColumns) +
+                                       "FROM path WHERE id = ? AND " + database.is_intact("path"));
+    return query->bind(1, id).step() &&
+           (path_content_of(*query).is_dropped() ? has_right_path_crc(*query)
+                                                 : read_path_content(*query).has_value());
+  });
 }
 
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count) {

@@ -43,7 +43,7 @@ std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey
 
 /// Quarantines paths: takes them out of the counts and of every reading, and raises the generation.
 /// A quarantined path stays so; a retired one was out of the counts before. Their rows are not
-/// touched, as they may lie on a damaged page.
+/// touched.
 void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
 /// Quarantines a path as retired, because its row could not be written.
 void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
@@ -56,16 +56,8 @@ void write_damaged(Database& database, const ExperienceKey& key, const DamagedPa
 /// path is quarantined as retired. The counts are in rules/batch_changes.
 void drop_path(Database& database, const ExperienceKey& key, std::int64_t id);
 
-/// A part of a full check.
-struct PathsChecked {
-  std::int64_t last_id = 0;
-  std::uint64_t paths = 0;
-  std::vector<std::int64_t> damaged;
-};
-
-/// Decodes the next paths with id > after_id, at most `limit`, retired ones too, without
-/// quarantined ones.
-PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit);
+/// Whether a path's row is as it was written and its waypoints, if it has any, can be decoded.
+bool is_path_decodable(Database& database, std::int64_t id);
 
 /// The damaged ones, not quarantined yet, of the newest `count` paths of the store.
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);

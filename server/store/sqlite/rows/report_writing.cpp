@@ -41,8 +41,11 @@ void read_earlier(Database& database, const Uuid& report_uuid, ReportReading& re
   if (rows.row)
     try {
       const auto query = database.cached(
-          "SELECT body_sha256, machine, received_ms, path_id, scene_id FROM attempt WHERE id = ?");
-      query->bind(1, *rows.row).step();
+          "SELECT body_sha256, machine, received_ms, path_id, scene_id FROM attempt"
+          " WHERE id = ? AND report_uuid = ? AND " +
+          database.is_intact("attempt"));
+      if (!query->bind_all(*rows.row, Bytes(report_uuid.bytes)).step())
+        throw damaged_row("attempt " + std::to_string(*rows.row));
       reading.state.reports[report_uuid] = {.body = id_of<Digest>(query->column_blob(0)),
                                             .machine = std::string(query->column_text(1)),
                                             .received_ms = query->column_integer(2),
@@ -59,7 +62,8 @@ void read_earlier(Database& database, const Uuid& report_uuid, ReportReading& re
 
 /// A removed robot has to be registered again.
 void read_robot(Database& database, const Digest& robot, BatchState& state) {
-  const auto query = database.cached("SELECT id, dof, label FROM robot WHERE digest = ?");
+  const auto query = database.cached("SELECT id, dof, label FROM robot WHERE digest = ? AND " +
+                                     database.is_intact("robot"));
   if (query->bind(1, Bytes(robot.bytes)).step() && !is_removed_label(query->column_text(2)))
     state.robots[robot] = {query->column_integer(0), query->column_integer(1)};
 }

@@ -71,8 +71,10 @@ void note_retired_path(Database& database, const ExperienceKey& key, std::int64_
   }
   bool is_whole = false;
   {
-    const auto own = database.cached("SELECT report_uuid FROM path WHERE id = ?");
-    is_whole = append_reports(own->bind(1, path_id), reports);
+    const auto own = database.cached("SELECT report_uuid FROM path WHERE id = ? AND " +
+                                     database.is_intact("path"));
+    const std::size_t others = reports.size();
+    is_whole = append_reports(own->bind(1, path_id), reports) && reports.size() > others;
   }
   if (!is_whole || stands_for_others(database, path_id))
     append_from_attempts(database, key, path_id, reports);
@@ -98,7 +100,8 @@ void retire(Batch& batch, const ExperienceKey& key, std::int64_t id) {
 }  // namespace
 
 bool is_report_retired(Database& database, const Uuid& report_uuid) {
-  const auto query = database.cached("SELECT 1 FROM retired_report WHERE report_uuid = ?");
+  const auto query = database.cached("SELECT 1 FROM retired_report WHERE report_uuid = ? AND " +
+                                     database.is_intact("retired_report"));
   return query->bind(1, Bytes(report_uuid.bytes)).step();
 }
 
@@ -110,9 +113,9 @@ void note_same_content(Database& database, std::int64_t path_id, const Uuid& rep
 
 Feed<Uuid> page_of_retirements(Database& database, std::string_view cursor, std::size_t limit) {
   return read_feed<Uuid>(
-      database.query(
-          "SELECT id, report_uuid FROM retired_report WHERE id > $1 ORDER BY id LIMIT $2",
-          parse_rising_cursor(cursor), limit + 1),
+      database.query("SELECT id, report_uuid FROM retired_report WHERE id > $1 AND " +
+                         database.is_intact("retired_report") + " ORDER BY id LIMIT $2",
+                     parse_rising_cursor(cursor), limit + 1),
       cursor, limit, [](const Row& row) { return id_of<Uuid>(row.column_blob(1)); },
       [](const Row& row) { return std::to_string(row.column_integer(0)); });
 }

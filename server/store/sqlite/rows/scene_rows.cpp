@@ -8,18 +8,6 @@
 namespace kinship::store {
 namespace {
 
-bool can_read_scene(Database& database, std::int64_t id) {
-  try {
-    const auto query =
-        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ?");
-    return query->bind(1, id).step() && has_right_scene_crc(*query);
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-    return false;
-  }
-}
-
 /// The ids of the rows of one content, from the index.
 std::vector<std::int64_t> ids_of(Database& database, Bytes content) {
   const auto query =
@@ -31,31 +19,20 @@ std::vector<std::int64_t> ids_of(Database& database, Bytes content) {
   return ids;
 }
 
-/// The next ids, at most `limit`, that are not set aside; from the index where the rows cannot be
-/// read.
-std::vector<std::int64_t> next_ids(Database& database, std::int64_t after_id, std::int64_t limit) {
-  std::vector<std::int64_t> ids;
-  const auto collect = [&](const std::string& from) {
-    ids.clear();
-    const auto query =
-        database.cached("SELECT id FROM scene " + from +
-                        " WHERE id > ? AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 3"
-                        " AND set_aside.id = scene.id) ORDER BY id LIMIT ?");
-    query->bind_all(after_id, limit);
-    while (query->step())
-      ids.push_back(query->column_integer(0));
-  };
+}  // namespace
+
+bool can_read_scene(Database& database, std::int64_t id) {
   try {
-    collect("");
+    const auto query =
+        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ? AND " +
+                        database.is_intact("scene"));
+    return query->bind(1, id).step() && has_right_scene_crc(*query);
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
-    collect("INDEXED BY scene_by_content");
+    return false;
   }
-  return ids;
 }
-
-}  // namespace
 
 SceneRows find_scene(Database& database, const Digest& content) {
   SceneRows rows;
@@ -95,17 +72,6 @@ SceneRead select_current_scene(Database& database, std::int64_t id) {
 bool is_scene_readable(Database& database, std::int64_t id) {
   const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Scene, id);
   return row && can_read_scene(database, *row);
-}
-
-ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit) {
-  ScenesChecked checked;
-  for (const std::int64_t id : next_ids(database, after_id, limit)) {
-    checked.last_id = id;
-    ++checked.scenes;
-    if (!can_read_scene(database, id))
-      checked.damaged.push_back(id);
-  }
-  return checked;
 }
 
 }  // namespace kinship::store

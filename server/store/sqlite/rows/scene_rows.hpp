@@ -28,14 +28,7 @@ SceneRead select_current_scene(Database& database, std::int64_t id);
 /// Whether a scene, or its replacement, can be read.
 bool is_scene_readable(Database& database, std::int64_t id);
 
-/// A part of a full check.
-struct ScenesChecked {
-  std::int64_t last_id = 0;
-  std::uint64_t scenes = 0;
-  std::vector<std::int64_t> damaged;
-};
-
-/// Decodes the next scenes with id > after_id, at most `limit`, without quarantined ones.
-ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit);
+/// Whether the row with this id is as it was written.
+bool can_read_scene(Database& database, std::int64_t id);
 
 }  // namespace kinship::store

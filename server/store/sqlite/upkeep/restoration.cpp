@@ -154,20 +154,19 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
   fold_old();
   Repaired repaired;
   {
-    Database source(file_, Access::ReadOnly);
     const std::unique_ptr<Database> target =
         open_migrated(copy_, embedded_migrations(), Keep::Nothing);
     // Half a copy is of no use, and a whole one is synced.
     target->execute("PRAGMA synchronous = OFF");
     Salvaged salvaged =
-        salvage(source, *target, [&](double done) { progress(kSalvageShare * done); });
-    repaired.damaged_pages = salvaged.damaged_pages;
+        salvage(file_, *target, copy_, [&](double done) { progress(kSalvageShare * done); });
+    repaired.damaged_places = salvaged.damaged_places;
     repaired.lost = std::move(salvaged.lost);
     epoch_ = write_new_epoch(*target, copy_);
     insert_audit(*target, entry_of_maintenance("repair", file_.string(), "",
                                                "epoch " + epoch_.text() + ", " +
-                                                   std::to_string(repaired.damaged_pages) +
-                                                   " damaged pages were left behind"));
+                                                   std::to_string(repaired.damaged_places) +
+                                                   " damaged places were left behind"));
     repaired.check = check_database(
         *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
   }

@@ -1,47 +1,57 @@
 #include "server/store/sqlite/upkeep/scrub.hpp"
 
+#include <sqlite3.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
-#include <map>
+#include <memory>
+#include <optional>
 #include <utility>
 
-#include "server/store/sqlite/database/call_item.hpp"
-#include "server/store/sqlite/database/page_scan.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/report_item.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {
 
-constexpr std::uint64_t kPagesOfARead = 32;        // for so long a reader is taken
-constexpr std::chrono::milliseconds kLookUp{500};  // a reader is taken for so long
+constexpr std::int64_t kRowsOfASlice = 1000;
 constexpr std::chrono::seconds kBetweenLines{60};
 constexpr std::chrono::milliseconds kIdle{1000};
 constexpr std::chrono::milliseconds kRest{10'000};  // between two passes
 
-std::string describe(const std::map<std::uint64_t, PageOwner>& owners, std::size_t all) {
-  constexpr std::size_t kNamed = 8;
+std::string describe(const std::vector<std::string>& found) {
+  constexpr std::size_t kNamed = 4;
   std::string words;
-  std::size_t named = 0;
-  for (const auto& [page, owner] : owners) {
-    if (named++ == kNamed)
-      break;
-    words +=
-        (words.empty() ? "page " : ", page ") + std::to_string(page) + " (" + owner.words + ")";
-  }
-  if (all > kNamed)
-    words += " and " + std::to_string(all - kNamed) + " more";
+  for (std::size_t i = 0; i < std::min(found.size(), kNamed); ++i)
+    words += (i == 0 ? "" : ", ") + found[i];
+  if (found.size() > kNamed)
+    words += " and " + std::to_string(found.size() - kNamed) + " more";
   return words;
+}
+
+/// Bytes that a connection read from the file, or from the WAL, since the last call.
+std::size_t bytes_read(Database& database) {
+  int pages = 0, highest = 0;
+  sqlite3_db_status(&database.connection(), SQLITE_DBSTATUS_CACHE_MISS, &pages, &highest, 1);
+  return static_cast<std::size_t>(pages) *
+         static_cast<std::size_t>(database.integer("PRAGMA page_size"));
+}
+
+std::optional<AsideKind> kind_of(const std::string& table) {
+  for (const AsideKind kind :
+       {AsideKind::Path, AsideKind::Attempt, AsideKind::Scene, AsideKind::Distribution})
+    if (name_of(kind, 1) == table)
+      return kind;
+  return std::nullopt;
 }
 
 }  // namespace
 
-Scrub::Scrub(ReaderPool& readers, Writer& writer, std::shared_ptr<PageDamage> damage,
-             ScrubOptions options)
+Scrub::Scrub(ReaderPool& readers, Writer& writer, ScrubOptions options)
     : readers_(&readers),
       writer_(&writer),
-      damage_(std::move(damage)),
       options_(std::move(options)),
       thread_([this] { run(); }) {}
 
@@ -61,19 +71,23 @@ ScrubProgress Scrub::progress() const {
 
 std::string Scrub::findings() const {
   const std::lock_guard lock(mutex_);
-  return findings_;
+  std::string words;
+  for (const auto& [table, found] : findings_)
+    words += (words.empty() ? "table " : "; table ") + table + ": " + found;
+  return words;
 }
 
 void Scrub::run() {
   constexpr int kNiceness = 15;
   setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread; refused, it runs as others do
-  while (true) {
+  while (options_.bytes_per_s > 0) {
     std::chrono::milliseconds pause = kIdle;
     try {
       pause = step();
     } catch (const Failure&) {
       // The store is being opened again, or cannot be read at all, which its readers say.
     }
+    log_news();
     std::unique_lock lock(mutex_);
     if (wake_.wait_for(lock, pause, [this] { return stopping_; }))
       return;
@@ -81,71 +95,68 @@ void Scrub::run() {
 }
 
 std::chrono::milliseconds Scrub::step() {
-  const std::size_t bytes = options_.bytes_per_s > 0 ? read_pages() : 0;
-  if (damage_->pages() != named_)
-    name_pages();
-  log_news();
-  if (bytes == 0)
-    return kIdle;
-  if (next_page_ == 1)
-    return kRest;
-  return std::chrono::milliseconds(1 + 1000 * bytes / options_.bytes_per_s);
-}
-
-/// \return how many bytes were read.
-std::size_t Scrub::read_pages() {
-  std::vector<std::uint64_t> suspects;
   std::size_t bytes = 0;
-  std::uint64_t count = 0;
   {
     const ReaderPool::Lease database = readers_->lease();
-    PageReader reader(*database);
-    count = reader.count();
-    for (std::uint64_t read = 0; read < kPagesOfARead && next_page_ <= count;
-         ++read, ++next_page_, bytes += reader.page_size())
-      if (!reader.read(next_page_))
-        suspects.push_back(next_page_);
+    static_cast<void>(bytes_read(*database));
+    if (table_ == 0 && last_id_ == 0 && !is_structure_checked_)
+      tables_ = tables_of(*database);
+    search(*database);
+    bytes = bytes_read(*database);
   }
-  confirm(suspects);
   const std::lock_guard lock(mutex_);
   progress_.part =
-      count == 0 ? 1
-                 : std::min(1.0, static_cast<double>(next_page_ - 1) / static_cast<double>(count));
-  if (next_page_ > count) {
-    next_page_ = 1;
-    progress_.ended_ms = now_ms();
-  }
-  return bytes;
+      tables_.empty() ? 1 : static_cast<double>(table_) / static_cast<double>(tables_.size());
+  if (table_ < tables_.size())
+    return std::chrono::milliseconds(1 + 1000 * bytes / options_.bytes_per_s);
+  table_ = 0;
+  progress_.ended_ms = now_ms();
+  return kRest;
 }
 
-/// Between two batches, where no page is written.
-void Scrub::confirm(const std::vector<std::uint64_t>& suspects) {
-  if (suspects.empty())
+/// The next slice.
+void Scrub::search(Database& database) {
+  if (table_ == tables_.size())
     return;
-  const auto read_again = [&](Database& database) {
-    PageReader reader(database);
-    for (const std::uint64_t page : suspects)
-      if (reader.read(page))
-        damage_->forget(page);
-    return true;
-  };
-  auto item = std::make_unique<AfterCommitItem<decltype(read_again)>>(read_again);
-  auto done = item->result();
-  writer_->submit(std::move(item));
-  done.get();
+  const std::string& table = tables_[table_];
+  try {
+    if (!is_structure_checked_) {
+      found_ = check_structure(database, table);
+      is_structure_checked_ = true;
+      return;
+    }
+    search_rows(database, table);
+    if (last_id_ > 0)
+      return;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    found_.emplace_back(error.what());
+  }
+  note(table, std::move(found_));
+  found_.clear();
+  is_structure_checked_ = false;
+  last_id_ = 0;
+  ++table_;
 }
 
-void Scrub::name_pages() {
-  named_ = damage_->pages();
-  std::string words;
-  if (!named_.empty()) {
-    const ReaderPool::Lease database = readers_->lease();
-    words = describe(owners_of(*database, named_, std::chrono::steady_clock::now() + kLookUp),
-                     named_.size());
-  }
-  is_news_ = !words.empty();
+void Scrub::search_rows(Database& database, const std::string& table) {
+  RowsChecked part = check_rows(database, table, last_id_, kRowsOfASlice);
+  last_id_ = part.last_id;
+  for (const std::string& row : part.damaged)
+    found_.push_back("row " + row + " (checksum)");
+  if (const auto kind = kind_of(table); kind && !part.damaged_ids.empty())
+    writer_->submit(std::make_unique<DamageItem>(*kind, std::move(part.damaged_ids)));
+}
+
+void Scrub::note(const std::string& table, std::vector<std::string> found) {
+  const std::string words = describe(found);
   const std::lock_guard lock(mutex_);
-  findings_ = std::move(words);
+  std::string& before = findings_[table];
+  is_news_ = is_news_ || (!words.empty() && words != before);
+  before = words;
+  if (words.empty())
+    findings_.erase(table);
 }
 
 /// Once for a burst: damage found soon after waits for the next line.

@@ -1,19 +1,13 @@
 #include "server/store/sqlite/upkeep/store_check.hpp"
 
 #include <algorithm>
-#include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "server/store/sqlite/database/checked_vfs.hpp"
-#include "server/store/sqlite/database/page_scan.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/scene_rows.hpp"
-#include "server/store/tables/distributions.hpp"
+#include "server/store/sqlite/upkeep/damage_search.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
@@ -22,10 +16,8 @@ namespace kinship::store {
 namespace {
 
 constexpr std::size_t kMaxMessages = 100;
-constexpr double kScanShare = 0.2;   // of the time
-constexpr double kPagesShare = 0.5;  // with SQLite's own check, which tells no progress
-constexpr double kPathsShare = 0.35;
-constexpr double kScenesShare = 0.05;
+constexpr double kStructureShare = 0.4;  // of the time
+constexpr double kRowsShare = 0.5;
 
 /// A rule that rows must not break, as a query for the words about each row that does.
 struct Rule {
@@ -169,19 +161,14 @@ class Checker {
   template <typename Part>
   void guarded(const std::string& table, Part part);
   void count_tables();
-  void check_pages();
-  void note_structure(const std::string& lines);
   void check_structure();
+  void check_rows(const std::string& table);
   void check_robots();
-  void check_paths();
-  void check_scenes();
-  void check_distributions();
   void check_epoch();
 
   Database* database_;
   const std::function<void(double)>* progress_;
   StoreCheck check_;
-  std::set<std::string> unread_;  // tables with a part that no check could read
 };
 
 StoreCheck Checker::run(const std::filesystem::path& file) {
@@ -192,25 +179,26 @@ StoreCheck Checker::run(const std::filesystem::path& file) {
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
-    // Nothing can be asked for without its schema, but which pages are damaged can be.
-    note("",
-         "the schema cannot be read, so that rows are not checked; 'kinshipd repair' keeps "
-         "what can be read, 'kinshipd restore' takes a backup");
-    check_pages();
+    // Nothing can be asked for without it.
+    note("", "the schema cannot be read, so that nothing else is checked: " +
+                 std::string(error.what()) +
+                 "; 'kinshipd repair' keeps what can be read, 'kinshipd restore' takes a backup");
     return std::move(check_);
   }
   if (schema == 0)
     throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
   check_.schema_version = static_cast<std::uint32_t>(schema);
   count_tables();
-  check_pages();
   guarded("", [&] { check_structure(); });
+  (*progress_)(kStructureShare);
   guarded("setting", [&] { check_epoch(); });
   guarded("robot", [&] { check_robots(); });
-  (*progress_)(kPagesShare);
-  guarded("path", [&] { check_paths(); });
-  guarded("scene", [&] { check_scenes(); });
-  guarded("distribution", [&] { check_distributions(); });
+  const std::vector<StoreCheck::Table> tables = check_.tables;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    guarded(tables[i].name, [&] { check_rows(tables[i].name); });
+    (*progress_)(kStructureShare +
+                 kRowsShare * static_cast<double>(i + 1) / static_cast<double>(tables.size()));
+  }
   for (const Rule& rule : make_rules())
     guarded(rule.table, [&] {
       Statement query(database_->connection(), rule.query);
@@ -235,20 +223,12 @@ void Checker::guarded(const std::string& table, Part part) {
   try {
     part();
   } catch (const SqliteError& error) {
-    if (error.sqlite_code() != kDamagedPage)
-      note(table, error.what());
-    else if (unread_.insert(table).second && !table.empty())
-      note(table, "what needs a damaged page is not checked");
+    note(table, error.what());
   }
 }
 
 void Checker::count_tables() {
-  std::vector<std::string> names;
-  Statement tables(database_->connection(),
-                   "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
-  while (tables.step())
-    names.emplace_back(tables.column_text(0));
-  for (const std::string& name : names) {
+  for (const std::string& name : tables_of(*database_)) {
     check_.tables.push_back({name, 0, 0});
     guarded(name, [&] {
       check_.tables.back().rows =
@@ -265,36 +245,9 @@ void Checker::count_tables() {
                                             database_->integer("PRAGMA page_size"));
 }
 
-void Checker::check_pages() {
-  constexpr std::uint64_t kPagesOfAReport = 4096;
-  PageReader reader(*database_);
-  const std::uint64_t count = reader.count();
-  std::vector<std::uint64_t> damaged;
-  for (std::uint64_t page = 1; page <= count; ++page) {
-    if (!reader.read(page))
-      damaged.push_back(page);
-    if (page % kPagesOfAReport == 0)
-      (*progress_)(kScanShare * static_cast<double>(page) / static_cast<double>(count));
-  }
-  if (damaged.empty())
-    return;
-  for (const auto& [page, owner] : owners_of(*database_, damaged))
-    note(owner.table, "page " + std::to_string(page) + " is damaged (checksum): " + owner.words);
-}
-
-/// \param lines  of PRAGMA integrity_check; damaged pages are named already.
-void Checker::note_structure(const std::string& lines) {
-  const std::string damaged = "error code=" + std::to_string(kDamagedPage);
-  std::istringstream stream(lines);
-  for (std::string line; std::getline(stream, line);)
-    if (line != "ok" && !line.starts_with("*** in database") && !line.ends_with(damaged))
-      note("", line);
-}
-
 void Checker::check_structure() {
-  Statement integrity(database_->connection(), "PRAGMA integrity_check");
-  while (integrity.step())
-    note_structure(std::string(integrity.column_text(0)));
+  for (const std::string& line : store::check_structure(*database_, ""))
+    note("", line);
   Statement foreign(database_->connection(), "PRAGMA foreign_key_check");
   while (foreign.step()) {
     const std::string table(foreign.column_text(0));
@@ -319,43 +272,16 @@ void Checker::check_robots() {
     note("robot", "'" + label + "': its row is damaged (checksum)");
 }
 
-void Checker::check_paths() {
-  constexpr std::int64_t kPage = 1000;
-  const std::int64_t last =
-      std::max<std::int64_t>(database_->integer("SELECT max(id) FROM path"), 1);
-  for (PathsChecked page = store::check_paths(*database_, 0, kPage); page.paths > 0;
-       page = store::check_paths(*database_, page.last_id, kPage)) {
-    for (const std::int64_t id : page.damaged)
-      note("path", std::to_string(id) + ": damaged (checksum)");
-    (*progress_)(kPagesShare +
-                 kPathsShare * static_cast<double>(page.last_id) / static_cast<double>(last));
-  }
-}
-
-void Checker::check_scenes() {
-  constexpr std::int64_t kPage = 1000;
-  const std::int64_t last =
-      std::max<std::int64_t>(database_->integer("SELECT max(id) FROM scene"), 1);
-  for (ScenesChecked page = store::check_scenes(*database_, 0, kPage); page.scenes > 0;
-       page = store::check_scenes(*database_, page.last_id, kPage)) {
-    for (const std::int64_t id : page.damaged)
-      note("scene", std::to_string(id) + ": damaged (checksum)");
-    (*progress_)(kPagesShare + kPathsShare +
-                 kScenesShare * static_cast<double>(page.last_id) / static_cast<double>(last));
-  }
-}
-
-void Checker::check_distributions() {
-  std::vector<std::pair<std::int64_t, Digest>> rows;  // both are in an index
-  Statement query(database_->connection(), "SELECT id, digest FROM distribution WHERE " +
-                                               not_aside("distribution", 4) + " ORDER BY digest");
-  while (query.step())
-    rows.emplace_back(query.column_integer(0), id_of<Digest>(query.column_blob(1)));
-  for (const auto& [row, digest] : rows) {
-    const std::optional<Distribution> found = read_distribution(*database_, row).distribution;
-    if (!found || found->id != digest)
-      note("distribution", digest.hex() + ": damaged (checksum)");
-  }
+void Checker::check_rows(const std::string& table) {
+  if (table == "robot")
+    return;  // by their labels
+  constexpr std::int64_t kRows = 1000;
+  RowsChecked part;
+  do {
+    part = store::check_rows(*database_, table, part.last_id, kRows);
+    for (const std::string& row : part.damaged)
+      note(table, row + ": damaged (checksum)");
+  } while (part.last_id > 0);
 }
 
 }  // namespace

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
 #include <utility>
 
-#include "server/store/sqlite/database/checked_vfs.hpp"
-#include "server/store/sqlite/database/page_seal.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
-#include "server/store/sqlite/upkeep/row_salvage.hpp"
+#include "server/store/sqlite/upkeep/damage_search.hpp"
+#include "server/store/sqlite/upkeep/schema_recovery.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
@@ -22,45 +22,41 @@
 namespace kinship::store {
 namespace {
 
-void bind_raw(Statement& statement, int index, const RawValue& value) {
-  if (const auto* const integer = std::get_if<std::int64_t>(&value))
-    statement.bind(index, *integer);
-  else if (const auto* const real = std::get_if<double>(&value))
-    statement.bind(index, *real);
-  else if (const auto* const text = std::get_if<std::string>(&value))
-    statement.bind(index, std::string_view(*text));
-  else if (const auto* const blob = std::get_if<std::vector<std::uint8_t>>(&value))
-    statement.bind(index, Bytes(*blob));
-  else
-    statement.bind(index, std::nullopt);
-}
-
-/// The table of a row tells itself by the number of its columns, of which no two have the same.
-struct TableShape {
-  std::string_view name;
-  std::size_t columns;
-};
-constexpr std::array<TableShape, 6> kShapes = {
-    {{"task", 2}, {"scene", 7}, {"robot", 11}, {"audit", 12}, {"path", 16}, {"attempt", 22}}};
+/// Copied row by row, in this order; of the others only what they say of these.
+constexpr std::array<std::string_view, 6> kCopiedById = {"task",  "scene", "robot",
+                                                         "audit", "path",  "attempt"};
 constexpr int kSqlError = 1;  // SQLITE_ERROR: no such table, no such index
-constexpr std::size_t kDistributionColumns = 14, kDistributionDigest = 1, kDistributionRevision = 2;
 
 using Pair = std::pair<std::int64_t, std::int64_t>;  // task, robot
+
+/// Adds a row of another store, checksum and all, unless it is there.
+void insert_row(Database& target, const std::string& table, const Statement& row, int columns) {
+  std::string places = "?";
+  for (int column = 1; column < columns; ++column)
+    places += ", ?";
+  const auto insert = target.cached("INSERT OR IGNORE INTO " + table + " VALUES (" + places + ")");
+  for (int column = 0; column < columns; ++column)
+    insert->bind_column(column + 1, row, column);
+  insert->run();
+}
 
 class Salvager {
  public:
   Salvager(Database& source, Database& target) : source_(&source), target_(&target) {}
 
-  Salvaged run(PageReader& reader, const Progress& progress);
+  Salvaged run(const Progress& progress);
 
  private:
   /// Reads the source by SQL, as far as it goes: a damaged page ends it.
   template <typename Take>
   void for_each_of_source(const std::string& sql, Take take) const;
   /// Copies a small table row by row, as far as it goes.
-  void copy_table(const std::string& name, int columns) const;
-  void take(const RawRow& row);
-  void insert(const TableShape& shape, const RawRow& row) const;
+  void copy_table(const std::string& name) const;
+  /// Copies the rows that can be read, by their ids.
+  void copy_by_id(const std::string& name);
+  /// Copies rows from an id on. \return the id that could not be read; `is_whole`: there is none.
+  std::int64_t copy_from(const std::string& name, std::int64_t id, bool& is_whole);
+  std::optional<std::int64_t> next_readable(const std::string& name, std::int64_t id) const;
   void keep_revision(Bytes digest, std::int64_t revision) const;
   void set_bad_content_aside() const;
   void name_lost_tasks() const;
@@ -92,33 +88,70 @@ void Salvager::for_each_of_source(const std::string& sql, Take take_row) const {
   }
 }
 
-void Salvager::copy_table(const std::string& name, int columns) const {
-  std::string marks = "?";
-  for (int column = 1; column < columns; ++column)
-    marks += ", ?";
-  for_each_of_source("SELECT * FROM " + name, [&](const Statement& row) {
-    const auto insert =
-        target_->cached("INSERT OR IGNORE INTO " + name + " VALUES (" + marks + ")");
-    for (int column = 0; column < columns; ++column)
-      insert->bind_column(column + 1, row, column);
-    insert->run();
-  });
+void Salvager::copy_table(const std::string& name) const {
+  const bool is_checked = source_->checked_tables().contains(name);
+  for_each_of_source(
+      "SELECT * FROM " + name + (is_checked ? " WHERE " + source_->is_intact(name) : ""),
+      [&](const Statement& row) { insert_row(*target_, name, row, row.columns()); });
 }
 
-void Salvager::insert(const TableShape& shape, const RawRow& row) const {
-  std::string sql = "INSERT OR IGNORE INTO " + std::string(shape.name) + " VALUES (?";
-  for (std::size_t column = 1; column < shape.columns; ++column)
-    sql += ", ?";
-  const auto statement = target_->cached(sql + ")");
-  statement->bind(1, row.id);
-  for (std::size_t column = 1; column < row.values.size(); ++column)
-    bind_raw(*statement, static_cast<int>(column) + 1, row.values[column]);
-  try {
-    statement->run();
-  } catch (const SqliteError& error) {
-    if (!error.concerns_one_row())
-      throw;  // a row of another kind has values that do not fit
+void Salvager::copy_by_id(const std::string& name) {
+  std::optional<std::int64_t> next = 0;
+  while (next) {
+    bool is_whole = false;
+    const std::int64_t unread = copy_from(name, *next, is_whole);
+    if (is_whole)
+      return;
+    ++salvaged_.damaged_places;
+    next = next_readable(name, unread);
   }
+}
+
+std::int64_t Salvager::copy_from(const std::string& name, std::int64_t id, bool& is_whole) {
+  try {
+    // The columns of the new store: the same, whatever became of the old one's schema.
+    Statement rows(source_->connection(), "SELECT *, " + source_->is_intact(name) + " FROM " +
+                                              name + " NOT INDEXED WHERE id >= ? ORDER BY id");
+    rows.bind(1, id);
+    while (rows.step()) {
+      const int columns = rows.columns() - 1;
+      if (rows.column_integer(columns) != 0)
+        insert_row(*target_, name, rows, columns);
+      else
+        ++salvaged_.damaged_places;
+      id = rows.column_integer(0) + 1;
+    }
+    is_whole = true;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage() && error.sqlite_code() != kSqlError)
+      throw;
+    is_whole = error.sqlite_code() == kSqlError;  // there is no such table
+  }
+  return id;
+}
+
+/// The next id after one whose page cannot be read: by longer and longer steps, then back.
+std::optional<std::int64_t> Salvager::next_readable(const std::string& name,
+                                                    std::int64_t id) const {
+  constexpr std::int64_t kLongestSearch = std::int64_t{1} << 40U;
+  const auto from = [&](std::int64_t step) -> std::optional<std::int64_t> {
+    std::optional<std::int64_t> found;
+    for_each_of_source("SELECT id FROM " + name + " NOT INDEXED WHERE id >= " +
+                           std::to_string(id + step) + " ORDER BY id LIMIT 1",
+                       [&](const Statement& row) { found = row.column_integer(0); });
+    return found;
+  };
+  std::int64_t step = 1;
+  while (step < kLongestSearch && !from(step))
+    step *= 2;
+  if (step >= kLongestSearch)
+    return std::nullopt;
+  std::int64_t too_short = step / 2;
+  while (step - too_short > 1) {
+    const std::int64_t middle = too_short + (step - too_short) / 2;
+    (from(middle) ? step : too_short) = middle;
+  }
+  return from(step);
 }
 
 void Salvager::keep_revision(Bytes digest, std::int64_t revision) const {
@@ -126,38 +159,20 @@ void Salvager::keep_revision(Bytes digest, std::int64_t revision) const {
     return;
   target_
       ->cached(
-          "INSERT INTO evicted_distribution VALUES (?, ?, ?) ON CONFLICT (digest) DO UPDATE "
+          "INSERT INTO evicted_distribution (digest, revision, evicted_ms) VALUES (?, ?, ?) ON "
+          "CONFLICT (digest) DO UPDATE "
           "SET revision = max(revision, excluded.revision)")
       ->bind_all(digest, revision, now_ms())
       .run();
 }
 
-void Salvager::take(const RawRow& row) {
-  const std::size_t columns = row.values.size();
-  if (columns == kDistributionColumns) {
-    const auto* const digest =
-        std::get_if<std::vector<std::uint8_t>>(&row.values[kDistributionDigest]);
-    const auto* const revision = std::get_if<std::int64_t>(&row.values[kDistributionRevision]);
-    if (digest != nullptr && revision != nullptr)
-      keep_revision(*digest, *revision);
-    return;
-  }
-  for (const TableShape& shape : kShapes)
-    if (columns == shape.columns)
-      insert(shape, row);
-}
-
-/// Content that was damaged before its page was sealed.
+/// Rows that are as they were written, whose waypoints or bodies are not.
 void Salvager::set_bad_content_aside() const {
-  constexpr std::int64_t kRows = 1000;
-  for (PathsChecked page = check_paths(*target_, 0, kRows); page.paths > 0;
-       page = check_paths(*target_, page.last_id, kRows))
-    for (const std::int64_t id : page.damaged)
-      put_aside(*target_, AsideKind::Path, id);
-  for (ScenesChecked page = check_scenes(*target_, 0, kRows); page.scenes > 0;
-       page = check_scenes(*target_, page.last_id, kRows))
-    for (const std::int64_t id : page.damaged)
-      put_aside(*target_, AsideKind::Scene, id);
+  for (const auto& [table, kind] :
+       {std::pair("path", AsideKind::Path), std::pair("scene", AsideKind::Scene)})
+    for (const std::int64_t id :
+         check_rows(*target_, table, 0, std::numeric_limits<std::int64_t>::max()).damaged_ids)
+      put_aside(*target_, kind, id);
 }
 
 std::string Salvager::text_of(const std::string& sql, std::int64_t id) const {
@@ -181,7 +196,7 @@ void Salvager::name_lost_tasks() const {
   while (lost.step()) {
     const std::int64_t id = lost.column_integer(0);
     const auto name = names.find(id);
-    target_->cached("INSERT INTO task VALUES (?, ?)")
+    target_->cached("INSERT INTO task (id, name) VALUES (?, ?)")
         ->bind(1, id)
         .bind(2, std::string_view(name != names.end() ? name->second
                                                       : "lost-task-" + std::to_string(id)))
@@ -210,8 +225,9 @@ void Salvager::name_lost_robots() {
     const Bytes digest(digests[id].bytes);
     target_
         ->cached(
-            "INSERT INTO robot VALUES (?, iif(?, ?, randomblob(32)), ?, ?, '', '', zeroblob(56),"
-            " 0, 0, 0, '')")
+            "INSERT INTO robot (id, digest, label, dof, base_link, tip_link, T_tip_transfer,"
+            " task_axes, registered_ms, crc32c, urdf)"
+            " VALUES (?, iif(?, ?, randomblob(32)), ?, ?, '', '', zeroblob(56), 0, 0, 0, '')")
         ->bind_all(id, std::int64_t{digests[id] == Digest() ? 0 : 1}, digest,
                    std::string_view(label), lost.column_integer(1))
         .run();
@@ -233,7 +249,10 @@ void Salvager::stand_in_for_lost_scenes() {
   while (lost.step()) {
     const std::int64_t id = lost.column_integer(0);
     const Digest content = contents.contains(id) ? contents[id] : Digest();
-    target_->cached("INSERT INTO scene VALUES (?, ?, 0, 1, 1, 0, x'00')")
+    target_
+        ->cached(
+            "INSERT INTO scene (id, content_sha256, received_ms, size, encoding, crc32c, scene)"
+            " VALUES (?, ?, 0, 1, 1, 0, x'00')")
         ->bind_all(id, Bytes(content.bytes))
         .run();
     put_aside(*target_, AsideKind::Scene, id);
@@ -262,8 +281,9 @@ void Salvager::stand_in_for_lost_paths() {
     const Pair pair(lost.column_integer(1), lost.column_integer(2));
     const Digest content = contents.contains(id) ? contents[id] : Digest();
     const auto insert = target_->cached(
-        "INSERT OR IGNORE INTO path VALUES (?, ?, ?, ?, ?, 2, 1, 0, 0, NULL, 2, 0, x'00', ?,"
-        " iif(?, 1, NULL), ?)");
+        "INSERT OR IGNORE INTO path (id, task_id, robot_id, report_uuid, content_sha256,"
+        " waypoint_count, dof, length, encoding, crc32c, waypoints, received_ms, retired_ms,"
+        " scene_id) VALUES (?, ?, ?, ?, ?, 2, 1, 0, 2, 0, x'00', ?, iif(?, 1, NULL), ?)");
     insert->bind_all(id, pair.first, pair.second, lost.column_blob(3), Bytes(content.bytes),
                      lost.column_integer(4), std::int64_t{retired.contains(id) ? 1 : 0});
     insert->bind_column(8, lost, 5).run();
@@ -307,18 +327,22 @@ void Salvager::make_experience() const {
       "INSERT OR IGNORE INTO experience (task_id, robot_id) "
       "SELECT task_id, robot_id FROM path UNION SELECT task_id, robot_id FROM attempt");
   // Nothing fitted before may pass for fresh, and nothing retired for present.
-  for_each_of_source("SELECT task_id, robot_id, generation, retired_generation FROM experience",
-                     [&](const Statement& row) {
-                       target_
-                           ->cached(
-                               "UPDATE experience SET generation = ?, retired_generation = ? "
-                               "WHERE task_id = ? AND robot_id = ?")
-                           ->bind_all(row.column_integer(2), row.column_integer(3),
-                                      row.column_integer(0), row.column_integer(1))
-                           .run();
-                     });
   for_each_of_source(
-      "SELECT task_id, robot_id, dropped FROM experience", [&](const Statement& row) {
+      "SELECT task_id, robot_id, generation, retired_generation FROM experience"
+      " WHERE " +
+          source_->is_intact("experience"),
+      [&](const Statement& row) {
+        target_
+            ->cached(
+                "UPDATE experience SET generation = ?, retired_generation = ? "
+                "WHERE task_id = ? AND robot_id = ?")
+            ->bind_all(row.column_integer(2), row.column_integer(3), row.column_integer(0),
+                       row.column_integer(1))
+            .run();
+      });
+  for_each_of_source(
+      "SELECT task_id, robot_id, dropped FROM experience WHERE " + source_->is_intact("experience"),
+      [&](const Statement& row) {
         target_->cached("UPDATE experience SET dropped = ? WHERE task_id = ? AND robot_id = ?")
             ->bind_all(row.column_integer(2), row.column_integer(0), row.column_integer(1))
             .run();
@@ -353,11 +377,13 @@ void Salvager::make_experience() const {
   }
 }
 
-Salvaged Salvager::run(PageReader& reader, const Progress& progress) {
+Salvaged Salvager::run(const Progress& progress) {
   target_->execute("PRAGMA foreign_keys = OFF");
   Transaction transaction(*target_, Transaction::Kind::Write);
-  salvaged_.damaged_pages = for_each_row(
-      reader, [this](const RawRow& row) { take(row); }, progress);
+  for (std::size_t i = 0; i < kCopiedById.size(); ++i) {
+    copy_by_id(std::string(kCopiedById[i]));
+    progress(static_cast<double>(i + 1) / static_cast<double>(kCopiedById.size()));
+  }
   // An attempt that came again stands there twice; the new row is enough.
   for_each_of_source("SELECT id FROM set_aside WHERE kind = 2", [&](const Statement& row) {
     target_->cached("DELETE FROM attempt WHERE id = ?")->bind(1, row.column_integer(0)).run();
@@ -376,11 +402,9 @@ Salvaged Salvager::run(PageReader& reader, const Progress& progress) {
   set_bad_content_aside();
   name_lost_tasks();
   name_lost_robots();
-  copy_table("robot_held_joint", 3);
-  copy_table("robot_never_colliding", 4);
-  copy_table("robot_geometry", 4);
-  copy_table("retired_report", 3);
-  copy_table("same_content", 2);
+  for (const char* const small : {"robot_held_joint", "robot_never_colliding", "robot_geometry",
+                                  "retired_report", "same_content"})
+    copy_table(small);
   stand_in_for_lost_paths();
   stand_in_for_lost_scenes();
   count_lost("path", "path_by_task_robot");
@@ -388,40 +412,46 @@ Salvaged Salvager::run(PageReader& reader, const Progress& progress) {
   note_orphans();
   make_experience();
   for_each_of_source(
-      "SELECT value FROM setting WHERE key = 'revision_floor'", [&](const Statement& row) {
-        target_->cached("INSERT OR REPLACE INTO setting VALUES ('revision_floor', ?)")
+      "SELECT value FROM setting WHERE key = 'revision_floor' AND " + source_->is_intact("setting"),
+      [&](const Statement& row) {
+        target_->cached("INSERT OR REPLACE INTO setting (key, value) VALUES ('revision_floor', ?)")
             ->bind(1, row.column_text(0))
             .run();
       });
   for_each_of_source(
-      "SELECT digest, revision FROM evicted_distribution",
+      "SELECT digest, revision FROM evicted_distribution UNION ALL"
+      " SELECT digest, revision FROM distribution ORDER BY digest",
       [&](const Statement& row) { keep_revision(row.column_blob(0), row.column_integer(1)); });
   transaction.commit();
   target_->execute("PRAGMA foreign_keys = ON");
   return std::move(salvaged_);
 }
 
-/// The size of pages that the seals say, whatever the header does.
-std::size_t sealed_page_size(Database& source) {
-  constexpr std::array<std::size_t, 8> kSizes = {8192, 4096, 1024, 2048, 16384, 32768, 65536, 512};
-  constexpr std::uint64_t kTried = 20;
-  set_sealed(source.connection(), true);
-  for (const std::size_t size : kSizes) {
-    PageReader reader(source, size);
-    const std::uint64_t last = std::min(reader.count(), kTried);
-    for (std::uint64_t page = 2; page <= last; ++page)
-      if (const auto bytes = reader.read(page); bytes && bears_seal(*bytes))
-        return size;
-  }
-  throw Failure(ErrorCode::Storage,
-                "its pages bear no checksums: it is no store; restore a backup");
+/// Rows as they were written, of the tables that are copied by ids and can be read to their ends.
+std::int64_t count_intact(Database& store) {
+  std::int64_t rows = 0;
+  for (const std::string_view table : kCopiedById)
+    rows += store.unless_damaged([&] {
+      return store.integer("SELECT count(*) FROM " + std::string(table) + " NOT INDEXED WHERE " +
+                           store.is_intact(table));
+    });
+  return rows;
 }
 
 }  // namespace
 
-Salvaged salvage(Database& source, Database& target, const Progress& progress) {
-  PageReader reader(source, sealed_page_size(source));
-  return Salvager(source, target).run(reader, progress);
+Salvaged salvage(const std::filesystem::path& file, Database& target,
+                 const std::filesystem::path& target_file, const Progress& progress) {
+  Database source(file, Access::ReadOnly);
+  const SchemaState state = state_of_schema(source, file, target, target_file);
+  if (state == SchemaState::Same)
+    return Salvager(source, target).run(progress);
+  const SchemaCopy copy(file, target, target_file);
+  const bool is_mended =
+      state == SchemaState::Damaged || count_intact(copy.database()) > count_intact(source);
+  Salvaged salvaged = Salvager(is_mended ? copy.database() : source, target).run(progress);
+  salvaged.damaged_places += is_mended ? 1U : 0U;
+  return salvaged;
 }
 
 }  // namespace kinship::store

@@ -9,19 +9,20 @@ namespace kinship::store {
 
 /// The result of a salvage from a damaged store.
 struct Salvaged {
-  std::uint64_t damaged_pages = 0;
+  std::uint64_t damaged_places = 0;  ///< as Repaired has them
   std::vector<Repaired::Lost> lost;
 };
 
-/// Writes all that can be read of a damaged store into a new one: every row of every sound page of
-/// a table, even if its parent pages are damaged. Indexes, counts and sums are computed again; of
-/// distributions only the revisions are kept, they are fitted again. A lost row that others refer
-/// to becomes a quarantined row without content until a client sends it again: a robot at its
-/// registration, a path or a scene with a report.
+/// Writes into a new store every row that SQL can read of a damaged one and whose checksum is
+/// right. Where a page cannot be read, the rows behind it are searched by their ids. A damaged
+/// schema is read as that of the new store, which lies at the same places. Counts and sums are
+/// computed again; of distributions only the revisions are kept, they are fitted again. A lost row
+/// that others refer to becomes a quarantined row without content until a client sends it again: a
+/// robot at its registration, a path or a scene with a report.
 ///
-/// \param source  may be damaged anywhere.
-/// \param target  an empty store of today's schema.
-/// \throws Failure(Storage) if the source has no checksums, so that damage cannot be found.
-Salvaged salvage(Database& source, Database& target, const Progress& progress);
+/// \param file         may be damaged anywhere; its WAL is not read.
+/// \param target       an empty store of today's schema, in `target_file`.
+Salvaged salvage(const std::filesystem::path& file, Database& target,
+                 const std::filesystem::path& target_file, const Progress& progress);
 
 }  // namespace kinship::store

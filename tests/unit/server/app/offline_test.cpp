@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 
+#include "server/store/sqlite/database/database.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -43,16 +43,15 @@ TEST_F(Offline, TheVerbsDoWhatTheySay) {
 }
 
 TEST_F(Offline, ARepairSaysWhatIsLostAndWhereTheDamagedStoreIs) {
-  constexpr std::streamoff kPage = 1024;
-  for (const std::streamoff page : {9, 11, 12, 14}) {  // joints, pairs, solids, tasks
-    std::fstream file(store_, std::ios::in | std::ios::out | std::ios::binary);
-    file.seekp((page - 1) * kPage + 500);
-    file.write("damaged", 7);
-  }
+  store::Database(store_, store::Access::ReadWrite)
+      .execute(
+          "UPDATE robot SET dof = 5 WHERE label = 'iiwa';"
+          "UPDATE task SET name = 'shelv' WHERE name = 'shelf'");
   EXPECT_EQ(run(OfflineVerb::Check, store_), kFailed);
-  EXPECT_NE(out_.str().find("page 11 is damaged (checksum): "), std::string::npos) << out_.str();
+  EXPECT_NE(out_.str().find("task: 1: damaged (checksum)\n"), std::string::npos) << out_.str();
   EXPECT_EQ(run(OfflineVerb::Repair, store_), kFailed);  // it holds robots to be registered anew
-  EXPECT_NE(out_.str().find("; 4 pages were damaged\n"), std::string::npos) << out_.str();
+  EXPECT_NE(out_.str().find("; 2 damaged places were left behind\n"), std::string::npos)
+      << out_.str();
   EXPECT_NE(out_.str().find("still wrong: robot: 'iiwa': its row is damaged"), std::string::npos)
       << out_.str();
   EXPECT_NE(out_.str().find("the damaged store is now '" + store_.string() + ".replaced-"),
@@ -62,7 +61,8 @@ TEST_F(Offline, ARepairSaysWhatIsLostAndWhereTheDamagedStoreIs) {
 
 TEST_F(Offline, ARepairOfASoundStoreLosesNothing) {
   EXPECT_EQ(run(OfflineVerb::Repair, store_), kDone);
-  EXPECT_NE(out_.str().find("; 0 pages were damaged\nkept: "), std::string::npos) << out_.str();
+  EXPECT_NE(out_.str().find("; 0 damaged places were left behind\nkept: "), std::string::npos)
+      << out_.str();
   EXPECT_NE(out_.str().find("nothing was lost\n"), std::string::npos) << out_.str();
 }
 

@@ -51,7 +51,7 @@ class AuditLog : public testing::Test {
 };
 
 TEST_F(AuditLog, NoStatementChangesOrRemovesAnEntry) {
-  const std::string values = " (1, 5, '', '', '', 1, 'act', 'forged', 2, '', '', '')";
+  const std::string values = " (1, 5, '', '', '', 1, 'act', 'forged', 2, '', '', '', 0)";
   for (const std::string& sql :
        {std::string("UPDATE audit SET target = 'forged' WHERE id = 1"),
         std::string("UPDATE OR REPLACE audit SET id = 2 WHERE id = 1"),

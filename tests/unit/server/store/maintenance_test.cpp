@@ -296,7 +296,7 @@ TEST_F(Maintenance, AStoreOfTodayIsNotMigrated) {
 }
 
 TEST_F(Maintenance, EveryVerbRefusesAStoreOfANewerSchema) {
-  edit("PRAGMA user_version = 9; INSERT INTO setting VALUES ('newer', '')");
+  edit("PRAGMA user_version = 9; INSERT INTO setting (key, value) VALUES ('newer', '')");
   for (const Error& error : {refusal([&] { check_store(file_, ignore); }),
                              refusal([&] { backup_store(file_, copy_, ignore); }),
                              refusal([&] { migrate_store(file_); }),

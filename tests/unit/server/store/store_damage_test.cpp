@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "server/store/maintenance.hpp"
-#include "server/store/sqlite/database/page_scan.hpp"
+#include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -55,19 +55,31 @@ class StoreDamage : public testing::Test {
   /// The pages that belong to a table or an index, in order.
   std::vector<std::uint64_t> pages_of(const std::string& owner) const {
     Database database(file_, Access::ReadOnly);
-    std::vector<std::uint64_t> all(fs::file_size(file_) / kPageSize);
-    for (std::uint64_t page = 1; page <= all.size(); ++page)
-      all[page - 1] = page;
     std::vector<std::uint64_t> found;
-    for (const auto& [page, its] : owners_of(database, all))
-      if (its.words == owner)
-        found.push_back(page);
+    for (const Row& row :
+         database.query("SELECT pageno FROM dbstat WHERE name = $1 ORDER BY pageno", owner))
+      found.push_back(static_cast<std::uint64_t>(row.column_integer(0)));
     return found;
   }
-  /// Of the closed store.
-  void flip(std::uint64_t page) const {
+  /// Pages with rows, and not what does not fit on one.
+  std::vector<std::uint64_t> leaves_of(const std::string& owner) const {
+    Database database(file_, Access::ReadOnly);
+    std::vector<std::uint64_t> found;
+    for (const Row& row : database.query(
+             "SELECT pageno FROM dbstat WHERE name = $1 AND pagetype = 'leaf' ORDER BY pageno",
+             owner))
+      found.push_back(static_cast<std::uint64_t>(row.column_integer(0)));
+    return found;
+  }
+  /// Of the closed store: SQLite cannot read the page any more.
+  void break_page(std::uint64_t page) const {
+    constexpr std::uint64_t kHeaderOfFileBytes = 100;
+    flip(page, page == 1 ? kHeaderOfFileBytes : 0);
+  }
+  /// Of the closed store: a bit of a page's content.
+  void flip(std::uint64_t page, std::uint64_t place = 4000) const {
     std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-    const auto offset = static_cast<std::streamoff>((page - 1) * kPageSize + 4000);
+    const auto offset = static_cast<std::streamoff>((page - 1) * kPageSize + place);
     stream.seekg(offset);
     const int byte = stream.get();
     stream.seekp(offset);
@@ -142,7 +154,7 @@ TEST_F(StoreDamage, AResetTakesDamagedPathsToo) {
     attempts.push_back(attempt(number, 400));  // each lies on a page of its own too
   test::report(*store_, attempts);
   store_.reset();
-  flip(pages_of("table path").at(20));
+  flip(leaves_of("path").at(5));
   open();
   EXPECT_EQ(store_->reset_task("shelf")->paths, 40U);
   EXPECT_EQ(store_->status().paths, 0U);
@@ -152,7 +164,7 @@ TEST_F(StoreDamage, AResetTakesDamagedPathsToo) {
   EXPECT_EQ(store_->status().paths, 0U);
 }
 
-// A damaged page.
+// A damaged row or page.
 
 TEST_F(StoreDamage, UnderACapWhatIsResentIsKeptIfItWouldHaveBeen) {
   constexpr std::uint64_t kCap = 8;
@@ -206,21 +218,20 @@ TEST_F(StoreDamage, ARepairKeepsWhatIsKeptAndKnowsWhatIsNot) {
       << store_->status().message;
 }
 
-TEST_F(StoreDamage, APageOfPathsIsSetAsideNamedAndMendedByAResend) {
+TEST_F(StoreDamage, ADamagedPathIsSetAsideNamedAndMendedByAResend) {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 0; number < 200; ++number)
     attempts.push_back(attempt(number, 60));
   test::report(*store_, attempts);
   store_.reset();
-  flip(pages_of("table path").at(5));
-  EXPECT_NE(testing::PrintToString(check().messages).find("table path"), std::string::npos);
+  flip(leaves_of("path").at(5));
+  EXPECT_NE(testing::PrintToString(check().messages).find("path: "), std::string::npos);
   open();
   const std::size_t readable = paths().size();
-  EXPECT_LT(readable, 200U);
-  EXPECT_GT(readable, 190U);
+  EXPECT_EQ(readable, 199U);
   drain();
   EXPECT_EQ(store_->status().paths, readable);
-  EXPECT_NE(store_->status().message.find("damaged paths set aside"), std::string::npos)
+  EXPECT_NE(store_->status().message.find("1 damaged path set aside"), std::string::npos)
       << store_->status().message;
   std::size_t stored = 0;
   for (const Receipt& receipt : test::report(*store_, attempts))
@@ -228,6 +239,48 @@ TEST_F(StoreDamage, APageOfPathsIsSetAsideNamedAndMendedByAResend) {
   EXPECT_EQ(stored, 200 - readable);
   EXPECT_EQ(paths().size(), 200U);
   EXPECT_EQ(store_->status().paths, 200U);
+}
+
+TEST_F(StoreDamage, WhatABrokenPageHasComesBackWithARepairAndAResend) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 200; ++number)
+    attempts.push_back(attempt(number, 60));
+  test::report(*store_, attempts);
+  store_.reset();
+  break_page(leaves_of("path").at(5));
+  open();
+  EXPECT_THROW(static_cast<void>(paths()), Failure);
+  std::size_t refused = 0;
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    refused += receipt.status == ReceiptStatus::TryAgain ? 1U : 0U;
+  EXPECT_GT(refused, 0U);  // and none is taken for stored
+  store_.reset();
+  static_cast<void>(repair_store(file_, [](double) {}));
+  open();
+  EXPECT_EQ(paths().size(), 200 - refused);
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    EXPECT_NE(receipt.status, ReceiptStatus::TryAgain) << receipt.message;
+  EXPECT_EQ(paths().size(), 200U);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+TEST_F(StoreDamage, AnIndexThatDoesNotFitItsRowsIsMadeAnewAtTheStart) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 20; ++number)
+    attempts.push_back(attempt(number));
+  test::report(*store_, attempts);
+  store_.reset();
+  flip(leaves_of("attempt_by_uuid").at(0));
+  EXPECT_GT(check().problems, 0U);
+  std::string lines;
+  open({.log = [&](std::string_view line) { lines += line; }});
+  EXPECT_NE(lines.find("the indexes of table attempt"), std::string::npos) << lines;
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->status().attempts, 20U);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
 }
 
 /// Reports that find their place in a damaged page of an index.
@@ -241,9 +294,9 @@ class StorePoison : public StoreDamage {
       attempts.push_back(attempt(number, 8));
     test::report(*store_, std::move(attempts));
     store_.reset();
-    const std::vector<std::uint64_t> pages = pages_of("index path_by_content");
+    const std::vector<std::uint64_t> pages = leaves_of("path_by_content");
     EXPECT_GT(pages.size(), 5U);
-    flip(pages.at(3));
+    break_page(pages.at(3));
     open();
     for (std::uint64_t number = kBefore; poisoned_.size() < 8 && number < 3 * kBefore; ++number)
       if (const Attempt tried = attempt(number, 8); report(tried).status == ReceiptStatus::TryAgain)
@@ -316,14 +369,13 @@ TEST_F(StorePoison, EightClientsOfItCostAHealthyOneLittle) {
 
 // The search for damage.
 
-TEST_F(StoreDamage, TheScrubFindsAPageThatNobodyReadsAndNamesIt) {
+TEST_F(StoreDamage, TheScrubFindsDamageThatNobodyReadsAndNamesIt) {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 0; number < 100; ++number)
     attempts.push_back(attempt(number, 60));
   test::report(*store_, std::move(attempts));
   store_.reset();
-  const std::uint64_t page = pages_of("index attempt_by_task_robot").at(0);
-  flip(page);
+  break_page(leaves_of("attempt_by_task_robot").at(0));
   std::promise<std::string> said;
   open(
       {.scrub_bytes_per_s = 1'000'000'000, .log = [&, first = true](std::string_view line) mutable {
@@ -332,36 +384,37 @@ TEST_F(StoreDamage, TheScrubFindsAPageThatNobodyReadsAndNamesIt) {
        }});
   auto line = said.get_future();
   ASSERT_EQ(line.wait_for(std::chrono::seconds(20)), std::future_status::ready);
-  const std::string name = "page " + std::to_string(page) + " (index attempt_by_task_robot)";
-  EXPECT_NE(line.get().find(name), std::string::npos);
+  const std::string words = line.get();
+  EXPECT_NE(words.find("table attempt: "), std::string::npos) << words;
   const StoreStatus status = store_->status();
   EXPECT_NE(status.message.find("kinshipd repair"), std::string::npos) << status.message;
   store_.reset();
 }
 
-TEST_F(StoreDamage, TheCheckNamesADamagedPageOnceInWords) {
+TEST_F(StoreDamage, TheCheckNamesADamagedRowOnceInWords) {
   for (std::uint64_t number = 0; number < 200; ++number)
     test::report(*store_, {attempt(number, 60)});
   store_.reset();
-  const std::uint64_t page = pages_of("table path").at(5);
-  flip(page);
+  flip(leaves_of("path").at(5));
   const StoreCheck found = check();
   std::size_t named = 0;
   for (const std::string& message : found.messages) {
-    named += message.find("page " + std::to_string(page) + " ") != std::string::npos ? 1U : 0U;
+    named += message.ends_with(": damaged (checksum)") ? 1U : 0U;
     EXPECT_EQ(message.find("SELECT"), std::string::npos) << message;
     EXPECT_EQ(message.find("error code"), std::string::npos) << message;
   }
   EXPECT_EQ(named, 1U) << testing::PrintToString(found.messages);
 }
 
-TEST_F(StoreDamage, TheCheckOfAStoreWithoutItsFirstPageNamesThatPage) {
+TEST_F(StoreDamage, AStoreWithoutItsFirstPageIsRefusedAndRepaired) {
+  test::report(*store_, {attempt(1)});
   store_.reset();
-  flip(1);
+  break_page(1);
   const StoreCheck found = check();
-  EXPECT_EQ(found.problems, 2U);
-  ASSERT_EQ(found.messages.size(), 2U);
-  EXPECT_TRUE(found.messages.at(1).starts_with("page 1 is damaged")) << found.messages.at(1);
+  EXPECT_EQ(found.problems, 1U);
+  ASSERT_EQ(found.messages.size(), 1U);
+  EXPECT_NE(found.messages.at(0).find("the schema cannot be read"), std::string::npos)
+      << found.messages.at(0);
   try {
     store_ = open_sqlite_store(file_);
     FAIL() << "opened";
@@ -369,6 +422,10 @@ TEST_F(StoreDamage, TheCheckOfAStoreWithoutItsFirstPageNamesThatPage) {
     EXPECT_NE(std::string(failure.what()).find("'kinshipd repair'"), std::string::npos)
         << failure.what();
   }
+  EXPECT_EQ(repair_store(file_, [](double) {}).damaged_places, 1U);
+  open();
+  EXPECT_EQ(paths().size(), 1U);
+  EXPECT_EQ(report(attempt(1)).status, ReceiptStatus::Duplicate);
 }
 
 TEST_F(StoreDamage, ARepairSaysWhatIsLost) {
@@ -378,12 +435,12 @@ TEST_F(StoreDamage, ARepairSaysWhatIsLost) {
   test::report(*store_, attempts);
   const Uuid epoch = store_->epoch();
   store_.reset();
-  flip(pages_of("table path").at(5));
-  flip(pages_of("table attempt").at(2));
-  flip(pages_of("table robot").at(0));
-  flip(pages_of("index path_by_task_robot").at(0));
+  break_page(leaves_of("path").at(5));
+  break_page(leaves_of("attempt").at(2));
+  break_page(pages_of("robot").at(0));
+  break_page(pages_of("path_by_task_robot").at(0));
   const Repaired repaired = repair_store(file_, [](double) {});
-  EXPECT_EQ(repaired.damaged_pages, 4U);
+  EXPECT_EQ(repaired.damaged_places, 3U);
   EXPECT_NE(repaired.restored.epoch, epoch);
   EXPECT_TRUE(fs::exists(repaired.restored.replaced));
   const auto lost = [&](const std::string& table) {

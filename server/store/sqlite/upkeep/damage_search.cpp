@@ -1,0 +1,170 @@
+#include "server/store/sqlite/upkeep/damage_search.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/robots.hpp"
+
+namespace kinship::store {
+namespace {
+
+std::string not_in_quarantine(const std::string& table) {
+  for (const AsideKind kind :
+       {AsideKind::Path, AsideKind::Attempt, AsideKind::Scene, AsideKind::Distribution})
+    if (name_of(kind, 1) == table)
+      return " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = " +
+             std::to_string(static_cast<int>(kind)) + " AND set_aside.id = " + table + ".id)";
+  return {};
+}
+
+/// Contents that have a checksum of their own.
+bool has_right_content(Database& database, const std::string& table, std::int64_t id) {
+  if (table == "path")
+    return is_path_decodable(database, id);
+  if (table == "scene")
+    return can_read_scene(database, id);
+  if (table == "distribution")
+    return read_distribution(database, id).distribution.has_value();
+  if (table == "robot")
+    return is_robot_readable(database, id);
+  return true;
+}
+
+/// SQL for the name of a row.
+std::string name_of_row(const std::string& table, const CheckedTable& columns) {
+  if (table == "evicted_distribution")
+    return "lower(hex(digest))";
+  std::string name;
+  for (const std::string& key : columns.keys)
+    name += (name.empty() ? "" : " || ' ' || ") + key;
+  return name;
+}
+
+RowsChecked check_small_table(Database& database, const std::string& table) {
+  RowsChecked checked;
+  Statement rows(database.connection(),
+                 "SELECT " + name_of_row(table, database.checked_tables().at(table)) + ", " +
+                     database.is_intact(table) + " FROM " + table);
+  while (rows.step()) {
+    ++checked.rows;
+    if (rows.column_integer(1) == 0)
+      checked.damaged.emplace_back(rows.column_text(0));
+  }
+  return checked;
+}
+
+/// The table of an index that a line of integrity_check is about; empty: another line.
+std::string table_of_index(Database& database, const std::string& line) {
+  for (const char* const about :
+       {"missing from index ", "of entries in index ", "non-unique entry in index "})
+    if (const std::size_t at = line.find(about); at != std::string::npos) {
+      Statement table(database.connection(), "SELECT tbl_name FROM sqlite_master WHERE name = ?");
+      const std::string index = line.substr(at + std::string_view(about).size());
+      return table.bind(1, std::string_view(index)).step() ? std::string(table.column_text(0)) : "";
+    }
+  return {};
+}
+
+bool has_damaged_rows(Database& database, const std::string& table) {
+  return database.checked_tables().contains(table) &&
+         !check_rows(database, table, 0, std::numeric_limits<std::int64_t>::max()).damaged.empty();
+}
+
+}  // namespace
+
+std::vector<std::string> tables_of(Database& database) {
+  std::vector<std::string> names;
+  Statement tables(database.connection(), "SELECT name FROM sqlite_master WHERE type = 'table'");
+  while (tables.step())
+    names.emplace_back(tables.column_text(0));
+  std::ranges::sort(names);
+  return names;
+}
+
+std::vector<std::string> check_structure(Database& database, const std::string& table) {
+  std::vector<std::string> lines;
+  Statement integrity(database.connection(),
+                      "PRAGMA integrity_check" + (table.empty() ? "" : "('" + table + "')"));
+  while (integrity.step()) {
+    std::istringstream stream{std::string(integrity.column_text(0))};
+    for (std::string line; std::getline(stream, line);)
+      if (line != "ok" && !line.starts_with("*** in database"))
+        lines.push_back(line);
+  }
+  return lines;
+}
+
+RowsChecked check_rows(Database& database, const std::string& table, std::int64_t after_id,
+                       std::int64_t limit) {
+  const auto columns = database.checked_tables().find(table);
+  if (columns == database.checked_tables().end())
+    return {};
+  const std::vector<std::string>& keys = columns->second.keys;
+  if (keys != std::vector<std::string>{"id"} && keys != std::vector<std::string>{"robot_id"})
+    return check_small_table(database, table);
+  const std::string id = keys.front();
+  Statement rows(database.connection(), "SELECT " + id + ", " + database.is_intact(table) +
+                                            " FROM " + table + " NOT INDEXED WHERE " + id + " > ?" +
+                                            not_in_quarantine(table) + " ORDER BY " + id +
+                                            " LIMIT ?");
+  rows.bind_all(after_id, limit);
+  RowsChecked checked;
+  while (rows.step()) {
+    checked.last_id = rows.column_integer(0);
+    ++checked.rows;
+    if (rows.column_integer(1) != 0 && has_right_content(database, table, checked.last_id))
+      continue;
+    checked.damaged.push_back(std::to_string(checked.last_id));
+    checked.damaged_ids.push_back(checked.last_id);
+  }
+  return checked;
+}
+
+std::optional<std::string> find_damaged_row(Database& database) {
+  for (const auto& [table, columns] : database.checked_tables()) {
+    Statement row(database.connection(), "SELECT " + name_of_row(table, columns) + " FROM " +
+                                             table + " WHERE NOT " + database.is_intact(table) +
+                                             not_in_quarantine(table) + " LIMIT 1");
+    if (row.step())
+      return "table " + table + ": row " + std::string(row.column_text(0));
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> mend_indexes(Database& database) {
+  if (database.integer("PRAGMA page_count") * database.integer("PRAGMA page_size") >
+      kMaxBytesOfAStart)
+    return {};
+  std::set<std::string> tables;
+  try {
+    for (const std::string& line : check_structure(database, ""))
+      tables.insert(table_of_index(database, line));
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+  }
+  tables.erase("");
+  std::vector<std::string> mended;
+  for (const std::string& table : tables) {
+    const bool is_mended = database.unless_damaged([&] {
+      if (has_damaged_rows(database, table))
+        return false;  // then it is the row that does not fit its index
+      database.execute("REINDEX \"" + table + "\"");
+      return true;
+    });
+    if (is_mended)
+      mended.push_back("the indexes of table " + table +
+                       " did not fit its rows and were made anew");
+  }
+  return mended;
+}
+
+}  // namespace kinship::store
