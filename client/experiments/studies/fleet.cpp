@@ -1,4 +1,4 @@
-#include "client/experiments/pipeline/fleet.hpp"
+#include "client/experiments/studies/fleet.hpp"
 
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"

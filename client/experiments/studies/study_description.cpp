@@ -1,8 +1,8 @@
-#include "client/experiments/pipeline/study_description.hpp"
+#include "client/experiments/studies/study_description.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "client/experiments/pipeline/side_study.hpp"
+#include "client/experiments/studies/instance_draws.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/pose.hpp"
 
@@ -35,22 +35,21 @@ Json describe_robot(const StudyMember& member) {
 
 }  // namespace
 
-std::string describe_study(const Study& study, const std::vector<StudyMember>& fleet,
-                           std::uint32_t learning_instances) {
+std::string describe_study(const Study& study, const std::vector<StudyMember>& fleet) {
   Json document;
   document["study"] = study.name;
   document["purpose"] = study.purpose;
   if (!study.family.empty())
     document["family"] = study.family;
-  document["uniform"] = uniform_name(study.settings.overshoot);
   document["is_constrained"] = study.is_constrained;
-  document["learning_instances"] = learning_instances;
+  document["learning_instances"] = study.learning_instances;
+  document["test_instances"] = study.test_instances;
+  document["test_seeds"] = kTestSeeds;
   document["resolution"] = study.settings.resolution;
   document["overshoot"] = study.settings.overshoot;
   document["guided_share"] = study.guided_share;
   document["max_checks"] = study.settings.max_checks;
-  for (const SideStudy& side : side_studies(study))
-    document["side_studies"].push_back({{"name", side.name}, {"purpose", side.purpose}});
+  document["max_goals"] = study.settings.max_goals;
   for (const StudyMember& member : fleet)
     document["robots"].push_back(describe_robot(member));
   return document.dump() + "\n";
