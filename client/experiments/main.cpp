@@ -119,7 +119,7 @@ void write_problems(const CommandLine& line, StationOptions options) {
 void write_compared(CommandLine& line) {
   for (const std::string& also : line.also)
     line.compare.also.push_back(parse_also(also));
-  write_comparison(line.compare, std::cout);
+  run_comparison(line.compare);
 }
 
 int run(int argc, char** argv) {
