@@ -1,12 +1,11 @@
 #include "client/experiments/commands.hpp"
 
+#include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "client/experiments/comparison.hpp"
-#include "client/experiments/comparison_table.hpp"
 #include "client/experiments/page/page.hpp"
 #include "client/experiments/page/run_reader.hpp"
-#include "client/experiments/result_file.hpp"
+#include "client/experiments/python_program.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
@@ -42,14 +41,14 @@ void write_placement(Station station, const models::RobotArguments& robot, std::
   out << '\n';
 }
 
-void write_comparison(const CompareOptions& options, std::ostream& out) {
-  const std::vector<ProblemResult> uniform = read_results(options.uniform);
-  const Comparison comparison = compare(uniform, read_results(options.guided)).value_or_throw();
-  const std::vector<AlsoCompared> also = compare_also(uniform, options.also);
-  if (options.json)
-    write_json(comparison, also, out);
-  else
-    write_table(comparison, also, out);
+void run_comparison(const CompareOptions& options) {
+  nlohmann::json asked{{"uniform", options.uniform.string()},
+                       {"guided", options.guided.string()},
+                       {"also", nlohmann::json::array()},
+                       {"as", options.json ? "json" : "table"}};
+  for (const AlsoFile& also : options.also)
+    asked["also"].push_back({also.name, also.results.string()});
+  become_python(python_folder() / "compare.py", {asked.dump()});
 }
 
 void write_page(const RunLocation& run, std::ostream& out) {

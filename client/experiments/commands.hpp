@@ -36,8 +36,9 @@ struct CompareOptions {
   bool json = false;
 };
 
-/// Compares two result files of kinship-plan, and others beside them.
-void write_comparison(const CompareOptions& options, std::ostream& out);
+/// Compares two result files of kinship-plan, and others beside them; in Python, in place of this
+/// program.
+[[noreturn]] void run_comparison(const CompareOptions& options);
 
 /// Writes a page for people that tells what a run did, and shows it.
 void write_page(const RunLocation& run, std::ostream& out);

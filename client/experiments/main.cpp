@@ -119,7 +119,7 @@ void write_problems(const CommandLine& line, StationOptions options) {
 void write_compared(CommandLine& line) {
   for (const std::string& also : line.also)
     line.compare.also.push_back(parse_also(also));
-  write_comparison(line.compare, std::cout);
+  run_comparison(line.compare);
 }
 
 int run(int argc, char** argv) {
@@ -145,7 +145,7 @@ int run(int argc, char** argv) {
     return manual::explain(app, error, std::cout, std::cerr);
   }
   if (!line.study.study.empty())
-    run_study_command(line.study, std::cout, std::cerr);
+    run_study_command(line.study, std::cin, std::cout);
   else if (app.got_subcommand("machine"))
     write_problems(line, line.machine);
   else if (app.got_subcommand("shelf"))

@@ -2,153 +2,171 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cstdlib>
-#include <cstring>
-#include <string>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <vector>
 
 #include "client/arguments/command_options.hpp"
+#include "client/experiments/peer.hpp"
+#include "client/experiments/python_program.hpp"
+#include "client/experiments/studies/instance_draws.hpp"
+#include "client/experiments/studies/study_description.hpp"
+#include "proto/json/problem_json.hpp"
 #include "proto/types/enum_text.hpp"
-#include "proto/types/failure.hpp"
+#include "proto/types/rehearsal.hpp"
 
 namespace kinship::experiments {
 namespace {
 
-constexpr std::uint32_t kDomain = 60, kMaxDomain = 230;
+constexpr std::uint32_t kQuickInstances = 6;  // quick runs in pipeline/ have as many
 
-/// That of the environment, or kDomain. The commands share one value: CLI11 would write what the
-/// environment says over what the command line of one of them said.
-/// \throws Failure(InvalidInput)
-std::uint32_t usual_domain() {
-  const char* const text = std::getenv("KINSHIP_DOMAIN");
-  if (text == nullptr || *text == '\0')
-    return kDomain;
-  std::uint32_t domain = 0;
-  const char* const end = text + std::strlen(text);
-  const auto [stopped, error] = std::from_chars(text, end, domain);
-  if (error != std::errc() || stopped != end || domain > kMaxDomain)
-    throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(text) +
-                                               "' is not a DDS domain (0 to " +
-                                               std::to_string(kMaxDomain) + ")");
-  return domain;
+/// Told in Python whether it is given.
+CLI::Option* add_flag(CLI::App& command, const char* name, const char* text) {
+  return command.add_flag_callback(
+      name, [] {}, text);
 }
 
-void add_run_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--out", options.folder, "folder of learning sets, results and the store")
+void add_run_options(CLI::App& command, StudyOptions& options) {
+  command.add_option("--out", "folder of learning sets, results and the store")
+      ->type_name("FOLDER")
       ->required();
   command.add_option("--models", options.models, "folder of the robots' model folders")
       ->capture_default_str();
-  command.add_option("--kinshipd", options.kinshipd,
-                     "program of the server that is started (default: beside this program)");
   command
-      .add_option("--analysis", options.analysis,
-                  "program that makes tables and figures of the results")
-      ->capture_default_str();
+      .add_option("--kinshipd",
+                  "program of the server that is started (default: beside this program)")
+      ->type_name("FILE");
   command
-      .add_option("--domain", options.domain,
-                  "DDS domain of that server (default: KINSHIP_DOMAIN, or 60)")
-      ->check(CLI::Range(std::uint32_t{0}, kMaxDomain))
-      ->capture_default_str();
-  command.add_option("--threads", options.threads, "instances that are planned side by side")
+      .add_option("--analysis",
+                  "program that makes tables and figures of the results (default: "
+                  "client/experiments/analyse.py of the sources)")
+      ->type_name("FILE");
+  command.add_option("--domain", "DDS domain of that server")
+      ->type_name("UINT")
+      ->envname("KINSHIP_DOMAIN")
+      ->check(CLI::Range(0, 230))
+      ->default_str("60");
+  command.add_option("--threads", "instances that are planned side by side")
+      ->type_name("INT")
       ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  command.add_flag("--resume", options.resume, "go on with what the folder holds");
+      ->default_str("2");
+  add_flag(command, "--resume", "go on with what the folder holds");
   command
-      .add_option("--learning", options.learning,
+      .add_option("--learning",
                   "learning instances of each robot instead of the study's; results in a folder of "
                   "their own, <study>-N")
+      ->type_name("UINT")
       ->check(CLI::Range(1, 10'000));
-  command.add_flag("--quick", options.quick,
-                   "few instances (" + std::to_string(kQuickLearning) + " learning, " +
-                       std::to_string(kQuickInstances) +
-                       " test), at most five minutes: shows that everything works");
+  command.add_flag("--quick", options.is_quick,
+                   "few instances (20 learning, 6 test), at most five minutes: shows that "
+                   "everything works");
 }
 
 void add_tuning_options(CLI::App& command, StudyOptions& options) {
-  TuningOptions& tuning = options.tuning;
-  CLI::Option* const tunes =
-      command.add_flag("--tuning", options.tunes,
-                       "plan tuning instances instead of test instances, with these options:");
-  const auto add = [&](const std::string& name, auto& value, const std::string& text) {
-    return command.add_option(name, value, text)->needs(tunes);
+  CLI::Option* const tunes = add_flag(
+      command, "--tuning", "plan tuning instances instead of test instances, with these options:");
+  const auto add = [&](const char* name, const std::string& text, const char* type) {
+    return command.add_option(name, CLI::callback_t(), text)->type_name(type)->needs(tunes);
   };
-  for (CLI::Option* option : arguments::add_profile_options(command, tuning.profile))
+  for (CLI::Option* option : arguments::add_profile_options(command, options.profile))
     option->needs(tunes);
-  add("--overshoot", tuning.overshoot, "of uniform and guided queries")
-      ->check(CLI::Range(1.0, 10.0));
-  add("--share", tuning.share, "of guided samples")->check(CLI::Range(0.0, 1.0));
-  command
-      .add_option_function<std::string>(
-          "--guide",
-          [&tuning](const std::string& word) {
-            tuning.guide = parse_word<Guide>(word).value_or_throw();
-          },
-          "what guides a query (default: what the server finds by rehearsal)")
+  add("--overshoot", "of uniform and guided queries", "FLOAT")->check(CLI::Range(1.0, 10.0));
+  add("--share", "of guided samples", "FLOAT")->check(CLI::Range(0.0, 1.0));
+  add("--guide", "what guides a query (default: what the server finds by rehearsal)", "TEXT")
       ->check(CLI::IsMember(
-          std::vector<std::string>(Words<Guide>::kWords.begin(), Words<Guide>::kWords.end())))
-      ->needs(tunes);
-  add("--instances", tuning.instances, "tuning instances")->check(CLI::Range(1, 10'000));
-  add("--seeds", tuning.seeds, "queries per instance")->check(CLI::Range(1, 100));
-  add("--robots", tuning.targets, "robots that plan (default: all)")->delimiter(',');
-  add("--sources", tuning.sources,
-      "robots whose experience is used (default: each by itself); others: that of all but the "
-      "planning robot together")
-      ->delimiter(',');
-  command
-      .add_option("--calibration", options.calibration_instances,
-                  "plan so many calibration instances uniformly, nothing else")
+          std::vector<std::string>(Words<Guide>::kWords.begin(), Words<Guide>::kWords.end())));
+  add("--instances", "tuning instances", "UINT")->check(CLI::Range(1, 10'000));
+  add("--seeds", "queries per instance", "UINT")->check(CLI::Range(1, 100));
+  const auto add_list = [&](const char* name, const std::string& text) {
+    add(name, text, "TEXT")->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',');
+  };
+  add_list("--robots", "robots that plan (default: all)");
+  add_list("--sources",
+           "robots whose experience is used (default: each by itself); others: that of all but "
+           "the planning robot together");
+}
+
+void add_other_tasks(CLI::App& command, StudyOptions& options) {
+  CLI::Option* const tunes = command.get_option("--tuning");
+  command.add_option("--calibration", "plan so many calibration instances uniformly, nothing else")
+      ->type_name("UINT")
       ->check(CLI::Range(1, 10'000))
       ->excludes(tunes);
+  CLI::Option* const problems =
+      command
+          .add_option("--problems", options.problems_of,
+                      "write the test instances of this robot for kinship-plan, on standard output")
+          ->excludes(tunes);
   command
-      .add_option("--problems", options.problems_of,
-                  "write the test instances of this robot for kinship-plan, on standard output")
-      ->excludes(tunes);
+      .add_option("--set", options.set, "instances that are written: others than test instances")
+      ->check(CLI::IsMember({"calibration", "learning", "tuning", "test"}))
+      ->needs(problems);
   command
-      .add_option("--study", options.sides,
+      .add_option("--count", options.instances, "so many instances are written, not the study's")
+      ->check(CLI::Range(1, 10'000))
+      ->needs(problems);
+  command
+      .add_option("--peer", options.peer,
+                  "answer standard input as this planner of OMPL with experience instead of "
+                  "writing them")
+      ->needs(problems)
+      ->group("");
+  command.add_flag("--describe", options.describes, "write what the study is made of, as JSON");
+  command
+      .add_option("--study",
                   "side studies on the test instances: pooled, components, paper, scenes, sizes, "
                   "inverse, overshoot, roadmap, guides, oracle, peers")
+      ->type_name("TEXT")
+      ->expected(1, CLI::detail::expected_max_vector_size)
       ->delimiter(',')
       ->excludes(tunes);
-  command
-      .add_flag("--report", options.reports,
-                "write the report of what the folder holds again, without planning")
+  add_flag(command, "--report", "write the report of what the folder holds again, without planning")
       ->excludes(tunes);
 }
 
-bool is_family(const std::string& name) {
-  const std::vector<std::string> known = families();
-  return std::ranges::find(known, name) != known.end();
+/// The options as they were given, and the defaults of others, by name: lists of words.
+nlohmann::json words_of(const CLI::App& command) {
+  nlohmann::json words;
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0)
+      words[option->get_name().substr(2)] = option->results();
+    else if (!option->get_default_str().empty())
+      words[option->get_name().substr(2)] = {option->get_default_str()};
+  return words;
 }
 
-void run_one(const Study& study, const StudyOptions& options, std::ostream& out,
-             std::ostream& messages) {
-  for (const std::string& side : options.sides)
-    run_side_study(study, side, options.run, messages);
-  if (!options.sides.empty())
-    return;
-  if (!options.problems_of.empty())
-    write_test_problems(study, options.run, options.problems_of, out);
-  else if (options.reports)
-    report_study(study, options.run, messages);
-  else if (options.calibration_instances > 0)
-    calibrate_study(study, options.run, options.calibration_instances, messages);
-  else if (options.tunes)
-    tune_study(study, options.run, options.tuning, messages);
-  else
-    run_study(study, options.run, messages);
+void run_in_python(const StudyOptions& options) {
+  nlohmann::json run = words_of(*options.command);
+  run["profile"] = {options.profile};
+  run["name"] = {options.study};
+  for (const Study* const study : find_studies(options.study))
+    run["studies"].push_back(study->name);
+  run["program"] = {std::filesystem::read_symlink("/proc/self/exe").string()};
+  become_python(python_folder() / "run_study.py", {run.dump()});
+}
+
+void write_instances(const Study& study, const StudyOptions& options,
+                     const std::vector<StudyMember>& fleet, std::ostream& out) {
+  const std::size_t robot = find_member(fleet, options.problems_of);
+  const std::uint32_t usual = options.is_quick ? kQuickInstances : study.test_instances;
+  const std::uint32_t count = options.instances > 0 ? options.instances : usual;
+  const std::uint64_t seed = seed_of(parse_instance_set(options.set), robot);
+  for (std::uint32_t index = 0; index < count; ++index)
+    out << json::to_json(fleet[robot].draw(seed, index)) << '\n';
 }
 
 }  // namespace
 
 void add_study_commands(CLI::App& app, StudyOptions& options) {
-  options.run.models = "robots/models";
-  options.run.analysis = "client/experiments/analyse.py";
-  options.run.domain = usual_domain();
   const auto add = [&](const std::string& name, const std::string& purpose) {
     CLI::App* const command = app.add_subcommand(name, purpose);
-    add_run_options(*command, options.run);
+    add_run_options(*command, options);
     add_tuning_options(*command, options);
-    command->callback([&options, name] { options.study = name; });
+    add_other_tasks(*command, options);
+    command->callback([&options, name, command] {
+      options.study = name;
+      options.command = command;
+    });
   };
   for (const std::string& family : families())
     add(family, "every study whose name begins so, one after another");
@@ -156,13 +174,18 @@ void add_study_commands(CLI::App& app, StudyOptions& options) {
     add(study.name, study.purpose);
 }
 
-void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages) {
-  for (const Study* const study : find_studies(options.study))
-    run_one(*study, options, out, messages);
-  const bool has_results = options.problems_of.empty() && options.calibration_instances == 0 &&
-                           !options.tunes && !options.run.quick && options.run.learning == 0;
-  if (is_family(options.study) && has_results)
-    report_family(options.study, options.run, messages);
+void run_study_command(const StudyOptions& options, std::istream& in, std::ostream& out) {
+  if (!options.describes && options.problems_of.empty())
+    run_in_python(options);
+  for (const Study* const study : find_studies(options.study)) {
+    const std::vector<StudyMember> fleet = load_fleet(*study, options.models);
+    if (options.describes)
+      out << describe_study(*study, fleet);
+    else if (options.peer.empty())
+      write_instances(*study, options, fleet, out);
+    else
+      answer_as_peer(*study, fleet[find_member(fleet, options.problems_of)], options.peer, in, out);
+  }
 }
 
 }  // namespace kinship::experiments

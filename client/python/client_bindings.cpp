@@ -105,7 +105,8 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
   wanted.wait = to_milliseconds(wish.deadline, "deadline");
   FetchStatus status = FetchStatus::Ready;
   const auto fetch = [&](const FetchRequest& asked) -> Result<FetchReply> {
-    FetchReply reply = client.fetch(asked).value_or_throw();
+    FetchReply reply =
+        (asked.rehearsed ? client.fetch_rehearsed(asked) : client.fetch(asked)).value_or_throw();
     status = reply.status;
     return reply;
   };

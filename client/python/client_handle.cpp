@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/link/robot_names.hpp"
+#include "proto/types/limits.hpp"
 
 namespace kinship::python {
 namespace {
@@ -23,6 +24,12 @@ milliseconds left_until(Clock::time_point deadline) {
 
 bool is_final(const Result<FetchReply>& reply) {
   return reply && reply->status != FetchStatus::Pending && reply->status != FetchStatus::Busy;
+}
+
+/// Of a final reply with experience: whether its rehearsal goes on.
+bool is_being_rehearsed(const FetchReply& reply) {
+  return (reply.status == FetchStatus::Ready || reply.status == FetchStatus::Failed) &&
+         !(reply.rehearsal && reply.rehearsal->is_complete);
 }
 
 /// An error that tells of its slice, telling of the whole time.
@@ -83,6 +90,21 @@ Result<FetchReply> ClientHandle::fetch(FetchRequest request) const {
     hear_signals();
     if (Clock::now() >= deadline - 1ms)
       return *last ? *std::move(last) : in_all(last->error(), asked_for);
+  }
+}
+
+Result<FetchReply> ClientHandle::fetch_rehearsed(FetchRequest request) const {
+  const Clock::time_point deadline = Clock::now() + request.deadline;
+  while (true) {
+    request.deadline = std::min(left_until(deadline), milliseconds(kMaxFetchDeadline_ms));
+    Result<FetchReply> reply = wait_for<Result<FetchReply>>(
+        [request](link::Client& client) { return client.fetch(request); });
+    if (!reply || !is_being_rehearsed(*reply) || Clock::now() >= deadline - 1ms)
+      return reply;
+    wait_until([&](milliseconds slice) {
+      std::this_thread::sleep_for(slice);
+      return true;
+    });
   }
 }
 

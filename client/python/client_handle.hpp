@@ -32,6 +32,10 @@ class ClientHandle {
 
   /// As link::Client; an error if there is no server, or a signal's exception.
   Result<FetchReply> fetch(FetchRequest request) const;
+
+  /// The same, and waits for the rehearsal: in one request, as the server rests from it while none
+  /// waits.
+  Result<FetchReply> fetch_rehearsed(FetchRequest request) const;
   link::Client::OutboxState flush(std::chrono::milliseconds deadline) const;
 
   /// The reply of a call that cannot be made in slices. After a signal the call continues until its

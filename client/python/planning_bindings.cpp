@@ -34,11 +34,14 @@ struct Plan {
   guided::PlannedProblem planned;
 };
 
-/// A planner calls it before every check. It runs without the interpreter's lock, which is taken
-/// now and then to let Python handle signals.
+/// A planner calls it before every check, whose time is measured: it reads the clock now and then.
+/// It runs without the interpreter's lock, which is taken to let Python handle signals.
 class InterruptCheck {
  public:
   bool operator()() {
+    constexpr unsigned kCalls = 64;
+    if (++calls_ % kCalls != 0)
+      return false;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_)
       return false;
@@ -48,6 +51,7 @@ class InterruptCheck {
   }
 
  private:
+  unsigned calls_ = 0;
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kSignalInterval;
 };
 
@@ -248,6 +252,8 @@ void bind_guided(py::class_<Plan>& plan) {
   plan.def_property_readonly("sampling_mode", word(&ProblemResult::sampling_mode),
                              "'guided', 'control' (uniform to compare) or 'uniform'.")
       .def_property_readonly("share", result(&ProblemResult::share), "Of guided samples.")
+      .def_property_readonly("gate_fired", result(&ProblemResult::gate_fired),
+                             "Whether the query is far from all that the mixture knows.")
       .def_property_readonly("guide", word(&ProblemResult::guide),
                              "What of retreat, ways and mixture guided it.")
       .def_property_readonly("track_share", result(&ProblemResult::track_share),
@@ -275,13 +281,17 @@ void bind_planning(py::module_& module) {
          const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
          const std::string& sampling_mode, const std::string& planner, std::uint64_t max_checks,
          std::optional<double> clearance, std::optional<double> resolution,
-         std::uint64_t shortcut_checks, int max_goals, double limit_slack) {
+         std::uint64_t shortcut_checks, int max_goals, double limit_slack, double overshoot,
+         double gate_distance, double retreat) {
         guided::PlanSettings settings;
         settings.max_checks = max_checks;
         read_proof(clearance, resolution, settings);
         settings.shortcut_checks = shortcut_checks;
         settings.max_goals = max_goals;
         settings.limit_slack = limit_slack;
+        settings.overshoot = overshoot;
+        settings.gate_distance = gate_distance;
+        settings.tracks.retreat_m = retreat;
         if (!planner.empty())
           settings.planner = guided::parse_planner(planner).value_or_throw();
         return plan_query(robot, problem, guidance, seed, sampling_mode, settings);
@@ -293,6 +303,9 @@ void bind_planning(py::module_& module) {
       py::arg("shortcut_checks") = guided::PlanSettings{}.shortcut_checks,
       py::arg("max_goals") = guided::PlanSettings{}.max_goals,
       py::arg("limit_slack") = guided::PlanSettings{}.limit_slack,
+      py::arg("overshoot") = guided::PlanSettings{}.overshoot,
+      py::arg("gate_distance") = guided::PlanSettings{}.gate_distance,
+      py::arg("retreat") = guided::PlanSettings{}.tracks.retreat_m,
       R"(Plans a problem as kinship-plan does; other threads run meanwhile, and Ctrl-C ends it.
 
 guidance         of Client.guidance(), or a Distribution; None: uniform
@@ -306,6 +319,9 @@ resolution       instead of a proof: between checked configurations, joint units
 shortcut_checks  spent on shortening the path
 max_goals        goal configurations found for a goal pose
 limit_slack      a start or goal beyond a limit by less is moved onto it, joint units
+overshoot        trees grow this much farther than the sample, 1 or more
+gate_distance    of a query to what the mixture knows: beyond it the mixture gives fewer samples
+retreat          the hand backs out of its goal so far, m
 
 A problem that has no path is an answer with its reason. Raises InvalidInput if the problem does not
 fit the robot, or the guidance is another robot's. Warns with GeometryDoubt of solids that cannot be

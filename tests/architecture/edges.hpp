@@ -145,7 +145,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{guided, link, files, planning, inverse, collision, geometry, kinematics, models, mixture,
          json, types},
         {"Eigen", "pybind11"}}},
-      {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
+      {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json"}}},
   };
 }();
 

@@ -22,8 +22,8 @@
 #include <variant>
 #include <vector>
 
-#include "client/experiments/pipeline/fleet.hpp"
 #include "client/experiments/station_problems.hpp"
+#include "client/experiments/studies/fleet.hpp"
 #include "client/guided/plan_problem.hpp"
 #include "robots/collision/edge_prover.hpp"
 #include "robots/models/loaded_robot.hpp"

@@ -2,14 +2,20 @@
 
 Instances are the sample; queries of one instance are not replicates of a test.
 """
+from __future__ import annotations
+
 import dataclasses
 import functools
+import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import stats
 
-from .study_folder import Cell
+from .wilcoxon import wilcoxon
+
+if TYPE_CHECKING:
+    from .study_folder import Cell
 
 RESAMPLES = 10_000
 INTERVAL = (0.025, 0.975)  # of a 95 % interval
@@ -86,10 +92,8 @@ def geometric_mean(pairs: Sequence[tuple[np.ndarray, np.ndarray]]) -> Estimate:
 
 
 def wilcoxon_p(first: np.ndarray, second: np.ndarray) -> float:
-    """Two-sided p of the signed-rank test over means of instances, exact; equal pairs are dropped."""
-    differences = first.mean(axis=1) - second.mean(axis=1)
-    differences = differences[differences != 0]
-    return float(stats.wilcoxon(differences, method="exact").pvalue) if differences.size else 1.0
+    """Two-sided p of the signed-rank test over means of instances; equal pairs are dropped."""
+    return wilcoxon(first.mean(axis=1).tolist(), second.mean(axis=1).tolist()).p
 
 
 def mcnemar_p(first_only: int, second_only: int) -> float:
@@ -98,9 +102,9 @@ def mcnemar_p(first_only: int, second_only: int) -> float:
     Source: McNemar, Note on the sampling error of the difference between correlated proportions
     (1947); the exact form is a binomial test.
     """
-    if first_only + second_only == 0:
-        return 1.0
-    return float(stats.binomtest(first_only, first_only + second_only).pvalue)
+    both = first_only + second_only
+    smaller = sum(math.comb(both, count) for count in range(min(first_only, second_only) + 1))
+    return min(1.0, 2 * smaller / 2**both)
 
 
 def holm(p_values: Sequence[float]) -> np.ndarray:

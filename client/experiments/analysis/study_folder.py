@@ -32,14 +32,14 @@ Cells = dict[tuple[str, str], Cell]  # by robot and guidance, in the order of th
 
 
 class StudyFolder:
-    """Reads what kinship-experiments wrote. A file may be there as it is or compressed (.zst).
+    """Reads what a run wrote. A file may be there as it is or compressed (.zst).
 
     Raises FileNotFoundError or ValueError that names the file.
     """
 
     def __init__(self, folder: pathlib.Path) -> None:
         self.folder = folder
-        # Name, robots, settings and side studies, as the program had them (study_description.cpp).
+        # Name, robots, settings and side studies, as the program had them (pipeline/runs.py).
         self.study: dict[str, Any] = json.loads((folder / "study.json").read_text(encoding="utf-8"))
         self.robots: list[str] = [robot["label"] for robot in self.study["robots"]]
         self.labels: dict[str, str] = {robot["digest"]: robot["label"] for robot in self.study["robots"]}

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/experiments/page/run_reader.hpp"
+#include "client/experiments/python_program.hpp"
 #include "client/experiments/result_file.hpp"
 #include "client/page/drawn_scene.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
@@ -100,36 +101,20 @@ DrawnSamples draw_samples(const models::LoadedRobot& robot, const Problem& probl
   return drawn;
 }
 
-double checks_of(const ProblemResult& result) {
-  return static_cast<double>(result.collision_checks);
-}
-
-double time_s_of(const ProblemResult& result) { return result.planning_time_s; }
-
-/// Of what was planned.
-MeanInterval interval_of(const std::vector<ProblemResult>& results,
-                         double (*figure)(const ProblemResult&)) {
-  std::vector<double> figures;
-  for (const ProblemResult& result : results)
-    if (!result.not_planned)
-      figures.push_back(figure(result));
-  return mean_interval(figures);
+/// The statistics of the run.
+nlohmann::ordered_json figures_of(const RunFiles& run) {
+  nlohmann::ordered_json asked{{"uniform", run.uniform.string()},
+                               {"guided", run.guided.string()},
+                               {"also", nlohmann::ordered_json::array()},
+                               {"as", "page"}};
+  for (const AlsoFile& also : run.also)
+    asked["also"].push_back({also.name, also.results.string()});
+  return nlohmann::ordered_json::parse(
+      output_of_python(python_folder() / "compare.py", {asked.dump()}));
 }
 
 const ProblemResult& named(const std::vector<ProblemResult>& results, const std::string& name) {
   return *std::ranges::find(results, name, &ProblemResult::name);
-}
-
-/// How many instances took fewer checks with guidance; one that is not solved took more than any.
-std::size_t count_cheaper(const std::vector<ProblemResult>& uniform,
-                          const std::vector<ProblemResult>& guided) {
-  const auto cost = [](const ProblemResult& result) {
-    return std::pair(!result.solved, result.collision_checks);
-  };
-  return static_cast<std::size_t>(std::ranges::count_if(guided, [&](const ProblemResult& each) {
-    const auto other = std::ranges::find(uniform, each.name, &ProblemResult::name);
-    return other != uniform.end() && each.solved && cost(each) < cost(*other);
-  }));
 }
 
 /// Of one instance, if both searches are there and have nodes.
@@ -156,31 +141,19 @@ PageData read_run(const RunFiles& run) {
   const auto problems = read_problems(run.problems, run.robot);
   const auto uniform = read_results(run.uniform);
   const auto guided = read_results(run.guided);
-  Result<Comparison> comparison = compare(uniform, guided);
-  if (!comparison)
-    throw Failure(comparison.error().code, run.uniform.string() + " and " + run.guided.string() +
-                                               ": " + comparison.error().message);
-  data.comparison = *std::move(comparison);
-  data.also = compare_also(uniform, run.also);
-  data.uniform_checks = interval_of(uniform, checks_of);
-  data.guided_checks = interval_of(guided, checks_of);
-  data.uniform_time_s = interval_of(uniform, time_s_of);
-  data.guided_time_s = interval_of(guided, time_s_of);
+  data.figures = figures_of(run);
   data.distribution = read_distribution(run.distribution);
   if (!run.advice.empty())
     data.advice = read_distribution(run.advice).advice;
 
-  for (const ProblemResult& result : guided)
-    ++data.guides[result.guide];
-  data.cheaper_guided = count_cheaper(uniform, guided);
-
-  data.typical = find_typical(uniform, guided);
+  const nlohmann::ordered_json& typical = data.figures.at("typical");
   const Problem& shown = problem_of(
-      problems, data.typical ? data.typical->problem : uniform.front().name, run.uniform);
+      problems, typical.is_null() ? uniform.front().name : typical.at("problem").get<std::string>(),
+      run.uniform);
   for (const AttachedObject& each : shown.attached)
     data.held.push_back(each.name);
   data.obstacles = page::drawn_objects(shown.scene);
-  if (data.typical) {
+  if (!typical.is_null()) {
     const ProblemResult& result = named(guided, shown.name);
     data.newcomer =
         demonstrate(robot, shown, checked_path(robot, result, run.guided), result.collision_checks);

@@ -1,18 +1,15 @@
 #pragma once
 
-#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "client/experiments/comparison.hpp"
 #include "client/experiments/page/demonstration.hpp"
+#include "client/experiments/page/grown_search.hpp"
 #include "client/experiments/page/run_files.hpp"
-#include "client/experiments/page/typical_instance.hpp"
-#include "client/experiments/statistics.hpp"
 #include "client/page/bones.hpp"
 #include "proto/types/distribution.hpp"
-#include "proto/types/rehearsal.hpp"
 #include "proto/types/scene.hpp"
 
 namespace kinship::experiments {
@@ -37,15 +34,10 @@ struct PageData {
   std::vector<std::string> held;   ///< names of what it holds
   Distribution distribution;
   std::optional<Advice> advice;  ///< what the server makes of the new robot's attempts
-  Comparison comparison;
-  std::vector<AlsoCompared> also;              ///< may be empty
-  MeanInterval uniform_checks, guided_checks;  ///< means with 95 % intervals
-  MeanInterval uniform_time_s, guided_time_s;
-  std::map<Guide, std::size_t> guides;  ///< of the guided attempts, how many had each
-  std::size_t cheaper_guided = 0;       ///< instances that took fewer checks with guidance
-  /// The instance that is shown: a typical one, or the first problem where none was solved by both.
-  std::optional<TypicalInstance> typical;
-  std::vector<SceneObject> obstacles;     ///< of it
+  /// Members of the page's data that are statistics (analysis/page_figures.py). "typical" is null
+  /// where no instance was solved by both: the first problem is shown.
+  nlohmann::ordered_json figures;
+  std::vector<SceneObject> obstacles;     ///< of the instance that is shown
   std::optional<Demonstration> newcomer;  ///< its guided path
   std::optional<SearchPair> searches;     ///< if they were recorded
   DrawnSamples samples;

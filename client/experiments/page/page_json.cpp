@@ -1,12 +1,9 @@
 #include "client/experiments/page/page_json.hpp"
 
 #include <optional>
-#include <sstream>
 #include <vector>
 
-#include "client/experiments/comparison_table.hpp"
 #include "client/page/json_text.hpp"
-#include "proto/types/enum_text.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -40,15 +37,6 @@ std::string json_of(const FleetMember& member) {
          ",\"problems\":" + std::to_string(member.problems) +
          ",\"paths\":" + list(member.paths, [](const Poses& path) { return json_of(path); }) +
          ",\"example\":" + (member.example.frames.empty() ? "null" : json_of(member.example)) + "}";
-}
-
-std::string json_of(const TypicalInstance& typical) {
-  return "{\"problem\":" + json_string(typical.problem) +
-         ",\"uniform_checks\":" + std::to_string(typical.uniform_checks) +
-         ",\"guided_checks\":" + std::to_string(typical.guided_checks) +
-         ",\"ratio\":" + number(typical.ratio) +
-         ",\"median_ratio\":" + number(typical.median_ratio) +
-         ",\"candidates\":" + std::to_string(typical.candidates) + "}";
 }
 
 template <typename Number>
@@ -102,36 +90,11 @@ std::string json_of(const Distribution& distribution) {
          list(distribution.sources, [](const Source& source) { return json_of(source); }) + "}";
 }
 
-std::string json_of(const MeanInterval& interval) {
-  return "{\"mean\":" + number(interval.mean) + ",\"low\":" + number(interval.low) +
-         ",\"high\":" + number(interval.high) + "}";
-}
-
-std::string json_of(const Comparison& comparison) {
-  std::ostringstream text;
-  write_json(comparison, {}, text);
-  return text.str();
-}
-
-std::string json_of(const AlsoRow& row) {
-  return list(std::vector<std::string>{row.name, row.solved, row.checks, row.checks_ratio, row.time,
-                                       row.time_ratio},
-              json_string);
-}
-
-std::string guide_count(const std::pair<const Guide, std::size_t>& each) {
-  return "{\"guide\":" + json_string(to_text(each.first)) +
-         ",\"queries\":" + std::to_string(each.second) + "}";
-}
-
-/// The rows of the terminal's table, and what stands below it.
-std::string table_of(const Comparison& comparison) {
-  const auto row = [](const ComparisonRow& each) {
-    return list(std::vector<std::string>{each.name, each.uniform, each.guided, each.ratio, each.p},
-                json_string);
-  };
-  return "{\"rows\":" + list(comparison_rows(comparison), row) +
-         ",\"notes\":" + list(comparison_notes(comparison), json_string) + "}";
+std::string members_of(const nlohmann::ordered_json& object) {
+  std::string members;
+  for (const auto& [name, value] : object.items())
+    members += ",\n" + json_string(name) + ":" + value.dump();
+  return members;
 }
 
 }  // namespace
@@ -141,19 +104,10 @@ std::string to_json(const PageData& data) {
          ",\n\"fleet\":" +
          list(data.fleet, [](const FleetMember& member) { return json_of(member); }) +
          ",\n\"distribution\":" + json_of(data.distribution) +
-         ",\n\"advice\":" + or_null(data.advice) + ",\n\"typical\":" + or_null(data.typical) +
+         ",\n\"advice\":" + or_null(data.advice) +
          ",\n\"obstacles\":" + page::json_of(data.obstacles) +
          ",\n\"newcomer\":" + or_null(data.newcomer) + ",\n\"searches\":" + or_null(data.searches) +
-         ",\n\"samples\":" + json_of(data.samples) +
-         ",\n\"comparison\":" + json_of(data.comparison) +
-         ",\"table\":" + table_of(data.comparison) + ",\n\"also\":" +
-         list(also_rows(data.also), [](const AlsoRow& row) { return json_of(row); }) +
-         ",\n\"guides\":" + list(data.guides, guide_count) +
-         ",\n\"cheaper_guided\":" + std::to_string(data.cheaper_guided) +
-         ",\n\"uniform_checks\":" + json_of(data.uniform_checks) +
-         ",\"guided_checks\":" + json_of(data.guided_checks) +
-         ",\"uniform_time_s\":" + json_of(data.uniform_time_s) +
-         ",\"guided_time_s\":" + json_of(data.guided_time_s) + "}";
+         ",\n\"samples\":" + json_of(data.samples) + members_of(data.figures) + "}";
 }
 
 }  // namespace kinship::experiments

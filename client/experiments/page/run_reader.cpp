@@ -3,7 +3,6 @@
 #include <iterator>
 #include <utility>
 
-#include "client/experiments/result_file.hpp"
 #include "proto/files/lines.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
@@ -56,18 +55,6 @@ Distribution read_distribution(const std::filesystem::path& file) {
   if (!distribution->mixture)
     throw Failure(ErrorCode::InvalidInput, file.string() + ": the distribution has no mixture");
   return *std::move(distribution);
-}
-
-std::vector<AlsoCompared> compare_also(const std::vector<ProblemResult>& uniform,
-                                       const std::vector<AlsoFile>& also) {
-  std::vector<AlsoCompared> compared;
-  for (const auto& [name, results] : also) {
-    Result<Comparison> comparison = compare(uniform, read_results(results));
-    if (!comparison)
-      throw Failure(comparison.error().code, results.string() + ": " + comparison.error().message);
-    compared.push_back({name, *std::move(comparison)});
-  }
-  return compared;
 }
 
 std::map<std::string, RecordedSearch> read_searches(const std::filesystem::path& file) {

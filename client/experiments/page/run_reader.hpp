@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "client/experiments/comparison.hpp"
 #include "client/experiments/page/run_files.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/problem.hpp"
@@ -22,10 +21,6 @@ std::map<std::string, Problem> read_problems(const std::filesystem::path& file,
 
 /// Refuses one without a mixture.
 Distribution read_distribution(const std::filesystem::path& file);
-
-/// Each of the files compared with the results of uniform planning.
-std::vector<AlsoCompared> compare_also(const std::vector<ProblemResult>& uniform,
-                                       const std::vector<AlsoFile>& also);
 
 /// By the name of the problem. \param file  empty: none.
 std::map<std::string, RecordedSearch> read_searches(const std::filesystem::path& file);

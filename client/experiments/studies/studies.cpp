@@ -24,6 +24,14 @@ std::string_view name_of(InstanceSet set) {
   return "test";
 }
 
+InstanceSet parse_instance_set(std::string_view name) {
+  for (const InstanceSet set :
+       {InstanceSet::Calibration, InstanceSet::Learning, InstanceSet::Tuning, InstanceSet::Test})
+    if (name_of(set) == name)
+      return set;
+  throw Failure(ErrorCode::InvalidInput, "no set of instances '" + std::string(name) + "'");
+}
+
 std::uint64_t seed_of(InstanceSet set, std::size_t robot) {
   switch (set) {
     case InstanceSet::Calibration:

@@ -18,6 +18,9 @@ enum class InstanceSet { Calibration, Learning, Tuning, Test };
 
 std::string_view name_of(InstanceSet set);
 
+/// \throws Failure(InvalidInput) for a word that name_of gives none of.
+InstanceSet parse_instance_set(std::string_view name);
+
 /// A robot of a study and where it stands.
 struct StudyRobot {
   std::string model;  ///< its folder below robots/models, and its label

@@ -155,6 +155,12 @@ class Planning(WithServer):
         task, = [row for row in self.client.tasks() if row["task"] == "planned"]
         self.assertEqual((task["paths"], len(task["robots"])), (7, 2))
 
+    def test_a_rehearsal_is_waited_for(self):
+        self.report_sweeps("rehearsed", range(200))
+        self.client.register(self.ur10e)
+        guidance = self.client.guidance("rehearsed", self.ur10e, deadline=120, rehearsed=True)
+        self.assertRegex(guidance.message, "rehearsed on [0-9]+ recorded queries: guide ")
+
     def test_without_experience_there_is_no_guidance(self):
         self.client.register(self.ur10e)
         with self.assertRaisesRegex(kinship.NoExperience, "never_done"):

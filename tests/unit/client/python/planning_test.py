@@ -62,6 +62,17 @@ class Paths(OfAUr10e):
         self.assertEqual(first.collision_checks, again.collision_checks)
         self.assertNotEqual(first.collision_checks, other.collision_checks)
 
+    def test_depend_on_how_far_trees_grow(self):
+        usual, said, plain = (kinship.plan(self.robot, self.problem, **options) for options in ({}, {"overshoot": 1.5}, {"overshoot": 1}))
+        np.testing.assert_array_equal(said.waypoints, usual.waypoints)
+        self.assertNotEqual(plain.collision_checks, usual.collision_checks)
+
+    def test_far_from_all_that_is_known_are_planned_uniformly_unless_no_gate_doubts_it(self):
+        far = around(GOAL + 3, self.robot.digest)
+        gated, trusted = (kinship.plan(self.robot, self.problem, far, sampling_mode="guided", gate_distance=distance)
+                          for distance in (1.0, float("inf")))
+        self.assertEqual([plan.gate_fired for plan in (gated, trusted)], [True, False])
+
     def test_lead_to_a_pose_of_the_hand(self):
         pose = self.robot.fk(GOAL, frame="transfer")
         plan = kinship.plan(self.robot, kinship.Problem("hand", START, goal_pose=pose, scene=post()))

@@ -1,0 +1,137 @@
+"""Uniform against guided planning over the same problems: two result files of kinship-plan, paired by name."""
+import collections
+import dataclasses
+import json
+import math
+import pathlib
+import statistics
+from collections.abc import Sequence
+from typing import Any
+
+from .wilcoxon import Wilcoxon, wilcoxon
+
+Result = dict[str, Any]  # a line of a result file
+_NEEDED = ("name", "solved", "collision_checks", "planning_time_s")
+
+
+def read_results(file: pathlib.Path) -> list[Result]:
+    """Raises FileNotFoundError, or ValueError with the number of a line that is no result."""
+    results = []
+    with file.open(encoding="utf-8") as lines:
+        for number, line in enumerate(lines, 1):
+            try:
+                result = json.loads(line)
+                missing = [name for name in _NEEDED if not isinstance(result, dict) or name not in result]
+                if missing:
+                    raise ValueError(f"{missing[0]}: is missing")
+            except ValueError as error:
+                raise ValueError(f"{file} line {number}: {error}") from error
+            results.append(result)
+    return results
+
+
+@dataclasses.dataclass(frozen=True)
+class Figures:
+    """What one planner did on the problems that both answered.
+
+    Means count an unsolved attempt with what it had used when it gave up (a lower bound); medians count it as worse than any solved
+    one, so a median is infinite if half are unsolved.
+    """
+
+    solved: int
+    with_guidance: int  # attempts that drew from a distribution
+    mean_checks: float
+    median_checks: float
+    mean_time_s: float
+    median_time_s: float
+
+
+class Comparison:
+    """A problem that a side began no search for is no pair. Raises ValueError if a name is there twice, or there is no pair."""
+
+    def __init__(self, uniform: Sequence[Result], guided: Sequence[Result]) -> None:
+        ours, theirs = _by_name(uniform, "uniform"), _by_name(guided, "guided")
+        both = [(ours[name], theirs[name]) for name in sorted(ours.keys() & theirs.keys())]
+        self.unpaired = len(ours.keys() ^ theirs.keys())
+        self.not_planned = [first if first.get("not_planned") else second for first, second in both
+                            if first.get("not_planned") or second.get("not_planned")]
+        planned = [pair for pair in both if not any(each.get("not_planned") for each in pair)]
+        self.pairs = len(planned)
+        if not planned:
+            raise ValueError(f"no problem could be planned ({self.reasons()})" if both else "no problem was answered by both sides")
+        # Pairs of paths of which one is proven, the other is not.
+        self.proven_by_one = sum(first["solved"] and second["solved"] and first.get("proven", False) != second.get("proven", False)
+                                 for first, second in planned)
+        sides = [[pair[side] for pair in planned] for side in (0, 1)]
+        self.uniform, self.guided = (_figures(side) for side in sides)
+        self.checks_test, self.time_test = (wilcoxon(*(_ranked(side, what) for side in sides))
+                                            for what in ("collision_checks", "planning_time_s"))
+
+    def counts(self) -> dict[str, int]:
+        """Of what was not planned, by reason."""
+        return dict(collections.Counter(each["not_planned"] for each in self.not_planned))
+
+    def reasons(self) -> str:
+        """The most frequent one first."""
+        ordered = sorted(self.counts().items(), key=lambda each: -each[1])
+        return ", ".join(f"{reason.replace('_', ' ')}: {count}" for reason, count in ordered)
+
+    def ratio(self, what: str) -> float:
+        """Uniform / guided of a figure; NaN if both are infinite."""
+        first, second = getattr(self.uniform, what), getattr(self.guided, what)
+        if second == 0:
+            return math.nan if first == 0 else math.inf
+        return first / second
+
+    def ratios(self) -> dict[str, float]:
+        return {name: self.ratio(what) for name, what in (("mean_checks", "mean_checks"), ("median_checks", "median_checks"),
+                                                          ("mean_time", "mean_time_s"), ("median_time", "median_time_s"))}
+
+
+def _by_name(results: Sequence[Result], side: str) -> dict[str, Result]:
+    named: dict[str, Result] = {}
+    for result in results:
+        if result["name"] in named:
+            raise ValueError(f"{side} results: '{result['name']}' occurs more than once")
+        named[result["name"]] = result
+    return named
+
+
+def _ranked(results: Sequence[Result], what: str) -> list[float]:
+    """Unsolved is worst."""
+    return [result[what] if result["solved"] else math.inf for result in results]
+
+
+def _draws(result: Result) -> bool:
+    guidance = result.get("guidance") or {}
+    return bool(guidance.get("distribution_id")) and guidance.get("share", 0) > 0
+
+
+def _figures(results: Sequence[Result]) -> Figures:
+    def mean(what: str) -> float:
+        return sum(result[what] for result in results) / len(results)
+
+    return Figures(sum(result["solved"] for result in results), sum(map(_draws, results)), mean("collision_checks"),
+                   statistics.median(_ranked(results, "collision_checks")), mean("planning_time_s"),
+                   statistics.median(_ranked(results, "planning_time_s")))
+
+
+def document(comparison: Comparison, also: Sequence[tuple[str, Comparison]] = ()) -> dict[str, Any]:
+    """For programs; infinite and undefined numbers are None. also: named comparisons of uniform planning with something else."""
+    told: dict[str, Any] = _pair(comparison) | {
+        "wilcoxon_checks": _test(comparison.checks_test), "wilcoxon_time": _test(comparison.time_test), "unpaired": comparison.unpaired,
+        "not_planned": comparison.counts()}
+    return told | ({"also": [{"name": name} | _pair(each) for name, each in also]} if also else {})
+
+
+def _finite(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in values.items()}
+
+
+def _pair(comparison: Comparison) -> dict[str, Any]:
+    return {"pairs": comparison.pairs, "uniform": _finite(dataclasses.asdict(comparison.uniform)),
+            "guided": _finite(dataclasses.asdict(comparison.guided)), "ratio": _finite(comparison.ratios())}
+
+
+def _test(test: Wilcoxon) -> dict[str, Any]:
+    return dataclasses.asdict(test)
