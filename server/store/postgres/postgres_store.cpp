@@ -7,7 +7,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "proto/types/names.hpp"
 #include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/durable_writes.hpp"
@@ -22,22 +21,18 @@
 #include "server/store/postgres/rows/fit_lease_rows.hpp"
 #include "server/store/postgres/rows/listings.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
-#include "server/store/tables/audit.hpp"
+#include "server/store/sql_store.hpp"
 #include "server/store/tables/contents.hpp"
 #include "server/store/tables/distributions.hpp"
-#include "server/store/tables/experience.hpp"
-#include "server/store/tables/retirement.hpp"
-#include "server/store/tables/robots.hpp"
-#include "server/store/tables/settings.hpp"
-#include "server/store/tables/tasks.hpp"
 
 namespace kinship::store::postgres {
 namespace {
 
-class PostgresStore : public Store {
+class PostgresStore : public SqlStore {
  public:
   PostgresStore(const std::string& url, const PostgresOptions& options)
-      : options_(options),
+      : SqlStore(options.max_distribution_bytes),
+        options_(options),
         primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
         readers_([this] { return primary_.connect(); }),
         writes_([this] { return primary_.connect(); }, options.require_synchronous) {
@@ -99,9 +94,9 @@ class PostgresStore : public Store {
     if (status.rollbacks > 0)
       status.message = "rolled back, clients offer again what is missing: " + history_.trouble() +
                        "; " + status.message;
-    if (const std::size_t damaged = damaged_robots_; damaged > 0)
+    if (const std::size_t damaged = damaged_robots(); damaged > 0)
       status.message += std::to_string(damaged) + " damaged robots left out; ";
-    status.damaged = status.damaged || damaged_robots_ > 0;
+    status.damaged = status.damaged || damaged_robots() > 0;
     if (!trouble.empty()) {
       status.writable = false;
       status.message = "not writable: " + trouble + "; " + status.message;
@@ -109,55 +104,6 @@ class PostgresStore : public Store {
     if (!status.message.empty())
       status.message.resize(status.message.size() - 2);
     return status;
-  }
-
-  Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
-    if (readers_.read_snapshot(
-            [&](Connection& connection) { return is_registered(connection, robot.digest); }))
-      return RegisterStatus::Known;
-    Result<RegisterStatus> result =
-        writes_.write([&](Connection& connection) { return insert_robot(connection, robot); });
-    if (damaged_robots_ > 0)
-      static_cast<void>(robots());  // counts again: this may have been one of them
-    return result;
-  }
-
-  bool replace_geometry(const RobotRecord& robot) override {
-    return writes_.write([&](Connection& connection) { return update_robot(connection, robot); });
-  }
-
-  Result<bool> rename_robot(const Digest& robot, const std::string& label,
-                            const AuditEntry* audit) override {
-    if (const auto error = check_label(label))
-      return *error;
-    return writes_.write(
-        [&](Connection& connection) { return rename_audited(connection, robot, label, audit); });
-  }
-
-  Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
-                                    const AuditEntry* audit) override {
-    return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
-      return writes_.write([&](Connection& connection) {
-        return continue_removal(connection, robot, removed, retirement_in(connection), audit);
-      });
-    });
-  }
-
-  std::map<Digest, std::uint64_t> geometry_revisions() const override {
-    return readers_.read(
-        [](Connection& connection) { return select_geometry_revisions(connection); });
-  }
-
-  std::optional<RobotRecord> find_robot(const Digest& robot) const override {
-    return readers_.read_snapshot(
-        [&](Connection& connection) { return select_robot(connection, robot); });
-  }
-
-  std::vector<RobotRecord> robots() const override {
-    RobotsRead read =
-        readers_.read_snapshot([](Connection& connection) { return select_robots(connection); });
-    damaged_robots_ = read.damaged.size();
-    return std::move(read.robots);
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
@@ -195,26 +141,6 @@ class PostgresStore : public Store {
         [&](Connection& connection) { return postgres::retire_reports(connection, reports); });
   }
 
-  std::map<std::string, std::string> notes(std::string_view prefix) const override {
-    return readers_.read([&](Connection& connection) { return select_notes(connection, prefix); });
-  }
-
-  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
-    writes_.write([&](Connection& connection) {
-      write_notes(connection, notes);
-      return true;
-    });
-  }
-
-  std::vector<ExperienceSummary> experience(std::string_view task) const override {
-    return readers_.read([&](Connection& connection) { return experience_of(connection, task); });
-  }
-
-  std::uint64_t generation(const Digest& robot, std::string_view task) const override {
-    return readers_.read(
-        [&](Connection& connection) { return generation_of(connection, robot, task); });
-  }
-
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
     PathsRead read = fit_reads_.paths(robot, task, range);
@@ -240,24 +166,6 @@ class PostgresStore : public Store {
     });
   }
 
-  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
-                                const AuditEntry* audit) override {
-    const Result<TaskReset> reset =
-        writes_.write([&](Connection& connection) { return begin_reset(connection, task, audit); });
-    if (!reset)
-      return reset.error();
-    return reset_in_steps(task, stop, [&](const Retirement& retired) {
-      return writes_.write([&](Connection& connection) {
-        return continue_reset(connection, *reset, retired, retirement_in(connection), audit);
-      });
-    });
-  }
-
-  AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
-    return readers_.read_snapshot(
-        [&](Connection& connection) { return totals_of(connection, robot, task); });
-  }
-
   bool is_shared() const override { return true; }
   std::optional<StoreChanges> changes_since(std::string_view cursor) const override {
     return presence_.changes_since(cursor);
@@ -269,53 +177,8 @@ class PostgresStore : public Store {
     presence_.give_back_fit_right(id, right);
   }
 
-  std::uint64_t put_distribution(const Distribution& distribution, const FitRight& right) override {
-    return writes_.write([&](Connection& connection) {
-      if (right.fence > 0 && !has_fit_right(connection, distribution.id, right))
-        throw Failure(ErrorCode::Unavailable,
-                      "distribution " + distribution.id.short_hex() + ": another server fits it");
-      return upsert_distribution(connection, distribution, options_.max_distribution_bytes);
-    });
-  }
-
   void note_use(const Digest& id) const override {
     write_later([id](Connection& connection) { store::note_use(connection, id); });
-  }
-
-  bool evict_distribution(const Digest& id, const AuditEntry* audit) override {
-    return writes_.write(
-        [&](Connection& connection) { return evict_audited(connection, id, audit); });
-  }
-
-  void add_audit(const AuditEntry& entry) override {
-    writes_.write([&](Connection& connection) {
-      insert_audit(connection, entry);
-      return true;
-    });
-  }
-
-  std::optional<Distribution> find_distribution(const Digest& id) const override {
-    std::optional<Distribution> distribution =
-        readers_.read([&](Connection& connection) { return select_distribution(connection, id); })
-            .distribution;
-    if (distribution)
-      distribution->store_epoch = history_.epoch();
-    return distribution;
-  }
-
-  Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const override {
-    return readers_.read(
-        [&](Connection& connection) { return page_of_robots(connection, cursor, limit); });
-  }
-
-  Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const override {
-    return readers_.read_snapshot(
-        [&](Connection& connection) { return page_of_tasks(connection, cursor, limit); });
-  }
-
-  std::optional<TaskSummary> find_task(std::string_view task) const override {
-    return readers_.read_snapshot(
-        [&](Connection& connection) { return summary_of_task(connection, task); });
   }
 
   Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
@@ -362,12 +225,6 @@ class PostgresStore : public Store {
     });
   }
 
-  Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
-                              std::size_t limit) const override {
-    return readers_.read(
-        [&](Connection& connection) { return page_of_audit(connection, name, cursor, limit); });
-  }
-
   Result<bool> backup(const std::filesystem::path& file,
                       const std::function<bool(double)>& progress) const override {
     if (is_backing_up_.exchange(true))
@@ -380,6 +237,29 @@ class PostgresStore : public Store {
   }
 
  private:
+  void run_reading(View view, const Reading& reading) const override {
+    const auto run = [&](Connection& connection) {
+      reading(connection);
+      return true;
+    };
+    if (view == View::Snapshot)
+      readers_.read_snapshot(run);
+    else
+      readers_.read(run);
+  }
+  void run_writing(const Writing& writing) override {
+    writes_.write([&](Connection& connection) {
+      writing(connection, retirement_in(connection));
+      return true;
+    });
+  }
+  void require_fit_right(Session& session, const Digest& distribution,
+                         const FitRight& right) override {
+    if (right.fence > 0 && !has_fit_right(static_cast<Connection&>(session), distribution, right))
+      throw Failure(ErrorCode::Unavailable,
+                    "distribution " + distribution.short_hex() + ": another server fits it");
+  }
+
   template <typename Reported>
   void commit(std::vector<Reported> reported, ReportsDone done) {
     if (writer_->queued_bytes() <= options_.max_queued_bytes)
@@ -441,7 +321,6 @@ class PostgresStore : public Store {
   mutable FitReads fit_reads_{primary_, readers_, options_.read_replicas};
   mutable Presence presence_{readers_};
   mutable std::atomic<bool> is_backing_up_ = false;
-  mutable std::atomic<std::size_t> damaged_robots_ = 0;
   mutable std::mutex mutex_;
   mutable StoreStatus counts_;            // guarded by mutex_
   std::unique_ptr<ReportWriter> writer_;  // destroyed before all above, which it uses

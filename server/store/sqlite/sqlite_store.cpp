@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "proto/types/names.hpp"
+#include "server/store/sql_store.hpp"
 #include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
@@ -29,21 +29,16 @@
 #include "server/store/sqlite/upkeep/damage_search.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
-#include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
-#include "server/store/tables/experience.hpp"
-#include "server/store/tables/retirement.hpp"
-#include "server/store/tables/robots.hpp"
-#include "server/store/tables/settings.hpp"
-#include "server/store/tables/tasks.hpp"
 
 namespace kinship::store {
 namespace {
 
-class SqliteStore : public Store {
+class SqliteStore : public SqlStore {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
-      : options_(options),
+      : SqlStore(options.max_distribution_bytes),
+        options_(options),
         file_(locate_servable(file)),
         lock_(lock_store(file_)),
         history_(file_),
@@ -94,7 +89,7 @@ class SqliteStore : public Store {
           "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
-    describe_damage(status, damaged_robots_, scrub_->findings());
+    describe_damage(status, damaged_robots(), scrub_->findings());
     status.scrubbed_ms = scrub_->progress().ended_ms;
     status.scrub_part = scrub_->progress().part;
     if (const std::string advice = library_advice(sqlite3_libversion_number()); !advice.empty())
@@ -102,52 +97,6 @@ class SqliteStore : public Store {
     if (!status.message.empty())
       status.message.resize(status.message.size() - 2);
     return status;
-  }
-
-  Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
-    Result<RegisterStatus> result =
-        write([&](Batch& batch) { return insert_robot(batch.database(), robot); });
-    if (damaged_robots_ > 0)
-      static_cast<void>(robots());  // counts again: this may have been one of them
-    return result;
-  }
-
-  bool replace_geometry(const RobotRecord& robot) override {
-    return write([&](Batch& batch) { return update_robot(batch.database(), robot); });
-  }
-
-  Result<bool> rename_robot(const Digest& robot, const std::string& label,
-                            const AuditEntry* audit) override {
-    if (const auto error = check_label(label))
-      return *error;
-    return write(
-        [&](Batch& batch) { return rename_audited(batch.database(), robot, label, audit); });
-  }
-
-  Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
-                                    const AuditEntry* audit) override {
-    return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
-      return write([&](Batch& batch) {
-        return continue_removal(batch.database(), robot, removed, retirement_in(batch), audit);
-      });
-    });
-  }
-
-  std::map<Digest, std::uint64_t> geometry_revisions() const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return select_geometry_revisions(*reader);
-  }
-
-  std::optional<RobotRecord> find_robot(const Digest& robot) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return select_robot(*reader, robot);
-  }
-
-  std::vector<RobotRecord> robots() const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    RobotsRead read = select_robots(*reader);
-    damaged_robots_ = read.damaged.size();
-    return std::move(read.robots);
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
@@ -185,28 +134,6 @@ class SqliteStore : public Store {
     return write([&](Batch& batch) { return store::retire_reports(batch, reports); });
   }
 
-  std::map<std::string, std::string> notes(std::string_view prefix) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return select_notes(*reader, prefix);
-  }
-
-  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
-    write([&](Batch& batch) {
-      write_notes(batch.database(), notes);
-      return true;
-    });
-  }
-
-  std::vector<ExperienceSummary> experience(std::string_view task) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return experience_of(*reader, task);
-  }
-
-  std::uint64_t generation(const Digest& robot, std::string_view task) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return generation_of(*reader, robot, task);
-  }
-
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
     const ReaderPool::Lease reader = readers_.lease();
@@ -228,70 +155,12 @@ class SqliteStore : public Store {
     return write([&](Batch& batch) { return store::retire_path(batch, report_uuid, audit); });
   }
 
-  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
-                                const AuditEntry* audit) override {
-    const Result<TaskReset> reset =
-        write([&](Batch& batch) { return begin_reset(batch.database(), task, audit); });
-    if (!reset)
-      return reset.error();
-    return reset_in_steps(task, stop, [&](const Retirement& retired) {
-      return write([&](Batch& batch) {
-        return continue_reset(batch.database(), *reset, retired, retirement_in(batch), audit);
-      });
-    });
-  }
-
-  AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return totals_of(*reader, robot, task);
-  }
-
-  std::uint64_t put_distribution(const Distribution& distribution, const FitRight&) override {
-    return write([&](Batch& batch) {
-      return upsert_distribution(batch.database(), distribution, options_.max_distribution_bytes);
-    });
-  }
-
   void note_use(const Digest& id) const override {
     const auto note = [id](Batch& batch) {
       store::note_use(batch.database(), id);
       return true;
     };
     writer_->submit(std::make_unique<CallItem<decltype(note)>>(note));
-  }
-
-  bool evict_distribution(const Digest& id, const AuditEntry* audit) override {
-    return write([&](Batch& batch) { return evict_audited(batch.database(), id, audit); });
-  }
-
-  void add_audit(const AuditEntry& entry) override {
-    write([&](Batch& batch) {
-      insert_audit(batch.database(), entry);
-      return true;
-    });
-  }
-
-  std::optional<Distribution> find_distribution(const Digest& id) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    std::optional<Distribution> distribution = select_distribution(*reader, id).distribution;
-    if (distribution)
-      distribution->store_epoch = history_.epoch();
-    return distribution;
-  }
-
-  Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return page_of_robots(*reader, cursor, limit);
-  }
-
-  Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return page_of_tasks(*reader, cursor, limit);
-  }
-
-  std::optional<TaskSummary> find_task(std::string_view task) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return summary_of_task(*reader, task);
   }
 
   Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
@@ -334,18 +203,23 @@ class SqliteStore : public Store {
     return page_of_distributions(*reader, {robot, task}, cursor, limit);
   }
 
-  Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
-                              std::size_t limit) const override {
-    const ReaderPool::Lease reader = readers_.lease();
-    return page_of_audit(*reader, name, cursor, limit);
-  }
-
   Result<bool> backup(const std::filesystem::path& file,
                       const std::function<bool(double)>& progress) const override {
     return back_up(*writer_, file, progress);
   }
 
  private:
+  void run_reading(View /*view*/, const Reading& reading) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    reading(*reader);
+  }
+  void run_writing(const Writing& writing) override {
+    write([&](Batch& batch) {
+      writing(batch.database(), retirement_in(batch));
+      return true;
+    });
+  }
+
   template <typename Reported>
   void commit(std::vector<Reported> reported, ReportsDone done) {
     std::string why = lack_of_room();
@@ -424,7 +298,6 @@ class SqliteStore : public Store {
   History history_;
   mutable ReaderPool readers_;
   mutable DiskSpace space_;
-  mutable std::atomic<std::size_t> damaged_robots_ = 0;
   DamagedReports damaged_reports_;
   std::unique_ptr<Writer> writer_;  // destroyed before all above, which it uses
   std::unique_ptr<Scrub> scrub_;    // and this before the writer

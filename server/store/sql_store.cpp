@@ -1,0 +1,138 @@
+#include "server/store/sql_store.hpp"
+
+#include "proto/types/names.hpp"
+#include "server/store/tables/audit.hpp"
+#include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
+#include "server/store/tables/robots.hpp"
+#include "server/store/tables/settings.hpp"
+#include "server/store/tables/tasks.hpp"
+
+namespace kinship::store {
+
+Result<RegisterStatus> SqlStore::register_robot(const RobotRecord& robot) {
+  if (read(View::Snapshot, [&](Session& session) { return is_registered(session, robot.digest); }))
+    return RegisterStatus::Known;
+  Result<RegisterStatus> result =
+      write([&](Session& session, const RetireSome&) { return insert_robot(session, robot); });
+  if (damaged_robots_ > 0)
+    static_cast<void>(robots());  // counts again: this may have been one of them
+  return result;
+}
+
+bool SqlStore::replace_geometry(const RobotRecord& robot) {
+  return write([&](Session& session, const RetireSome&) { return update_robot(session, robot); });
+}
+
+Result<bool> SqlStore::rename_robot(const Digest& robot, const std::string& label,
+                                    const AuditEntry* audit) {
+  if (const auto error = check_label(label))
+    return *error;
+  return write([&](Session& session, const RetireSome&) {
+    return rename_audited(session, robot, label, audit);
+  });
+}
+
+Result<RemovedRobot> SqlStore::remove_robot(const Digest& robot, const std::stop_token& stop,
+                                            const AuditEntry* audit) {
+  return remove_in_steps(robot, stop, [&](const RemovedRobot& removed) {
+    return write([&](Session& session, const RetireSome& retire_some) {
+      return continue_removal(session, robot, removed, retire_some, audit);
+    });
+  });
+}
+
+std::map<Digest, std::uint64_t> SqlStore::geometry_revisions() const {
+  return read(View::EachStatement, select_geometry_revisions);
+}
+
+std::optional<RobotRecord> SqlStore::find_robot(const Digest& robot) const {
+  return read(View::Snapshot, [&](Session& session) { return select_robot(session, robot); });
+}
+
+std::vector<RobotRecord> SqlStore::robots() const {
+  RobotsRead found = read(View::Snapshot, select_robots);
+  damaged_robots_ = found.damaged.size();
+  return std::move(found.robots);
+}
+
+std::vector<ExperienceSummary> SqlStore::experience(std::string_view task) const {
+  return read(View::EachStatement, [&](Session& session) { return experience_of(session, task); });
+}
+
+std::uint64_t SqlStore::generation(const Digest& robot, std::string_view task) const {
+  return read(View::EachStatement,
+              [&](Session& session) { return generation_of(session, robot, task); });
+}
+
+AttemptTotals SqlStore::attempt_totals(const Digest& robot, std::string_view task) const {
+  return read(View::Snapshot, [&](Session& session) { return totals_of(session, robot, task); });
+}
+
+Result<Retirement> SqlStore::reset_task(std::string_view task, const std::stop_token& stop,
+                                        const AuditEntry* audit) {
+  const Result<TaskReset> reset =
+      write([&](Session& session, const RetireSome&) { return begin_reset(session, task, audit); });
+  if (!reset)
+    return reset.error();
+  return reset_in_steps(task, stop, [&](const Retirement& retired) {
+    return write([&](Session& session, const RetireSome& retire_some) {
+      return continue_reset(session, *reset, retired, retire_some, audit);
+    });
+  });
+}
+
+std::uint64_t SqlStore::put_distribution(const Distribution& distribution, const FitRight& right) {
+  return write([&](Session& session, const RetireSome&) {
+    require_fit_right(session, distribution.id, right);
+    return upsert_distribution(session, distribution, max_distribution_bytes_);
+  });
+}
+
+std::optional<Distribution> SqlStore::find_distribution(const Digest& id) const {
+  std::optional<Distribution> distribution = read(View::EachStatement, [&](Session& session) {
+                                               return select_distribution(session, id);
+                                             }).distribution;
+  if (distribution)
+    distribution->store_epoch = epoch();
+  return distribution;
+}
+
+bool SqlStore::evict_distribution(const Digest& id, const AuditEntry* audit) {
+  return write(
+      [&](Session& session, const RetireSome&) { return evict_audited(session, id, audit); });
+}
+
+void SqlStore::add_audit(const AuditEntry& entry) {
+  run_writing([&](Session& session, const RetireSome&) { insert_audit(session, entry); });
+}
+
+std::map<std::string, std::string> SqlStore::notes(std::string_view prefix) const {
+  return read(View::EachStatement, [&](Session& session) { return select_notes(session, prefix); });
+}
+
+void SqlStore::put_notes(const std::map<std::string, std::optional<std::string>>& notes) {
+  run_writing([&](Session& session, const RetireSome&) { write_notes(session, notes); });
+}
+
+Page<RobotSummary> SqlStore::list_robots(std::string_view cursor, std::size_t limit) const {
+  return read(View::EachStatement,
+              [&](Session& session) { return page_of_robots(session, cursor, limit); });
+}
+
+Page<TaskSummary> SqlStore::list_tasks(std::string_view cursor, std::size_t limit) const {
+  return read(View::Snapshot,
+              [&](Session& session) { return page_of_tasks(session, cursor, limit); });
+}
+
+std::optional<TaskSummary> SqlStore::find_task(std::string_view task) const {
+  return read(View::Snapshot, [&](Session& session) { return summary_of_task(session, task); });
+}
+
+Page<AuditEntry> SqlStore::list_audit(std::string_view name, std::string_view cursor,
+                                      std::size_t limit) const {
+  return read(View::EachStatement,
+              [&](Session& session) { return page_of_audit(session, name, cursor, limit); });
+}
+
+}  // namespace kinship::store
