@@ -5,8 +5,8 @@
 -- Times are Unix time in ms, UTC. A pose is a BLOB of 7 float64 little-endian: x y z (m), then the
 -- quaternion x y z w. Digests are SHA-256, checksums CRC-32C.
 --
--- row_crc32c is the checksum of the other columns of its row but for its largest, which has a
--- checksum of its own (server/store/sqlite/database/row_checksums). A row whose checksum is wrong
+-- row_crc32c is the checksum of the other columns of its row; a large one has a checksum of its own
+-- (server/store/sqlite/database/row_checksums). A row whose checksum is wrong
 -- is not read. What is damaged is set aside by its id, in a table of its own: the row itself may
 -- not be writable. For the same reason nothing is UNIQUE that a report may bring again. The one
 -- writer sees to it that there is one row which is not set aside.
@@ -226,6 +226,7 @@ CREATE TABLE set_aside (
   replaced_by  INTEGER,  -- the row that a report brought in its place
   retired_ms   INTEGER CHECK (retired_ms > 0),  -- of a path that was retired before or after
   reason       TEXT NOT NULL,
+  row_crc32c   INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (kind, id)
 ) STRICT, WITHOUT ROWID;
 
@@ -243,6 +244,7 @@ CREATE TABLE retired_report (
 CREATE TABLE same_content (
   path_id      INTEGER NOT NULL,
   report_uuid  BLOB NOT NULL CHECK (length(report_uuid) = 16),
+  row_crc32c   INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (path_id, report_uuid)
 ) STRICT, WITHOUT ROWID;
 

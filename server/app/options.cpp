@@ -266,7 +266,7 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
     return command;
   };
   app.require_subcommand(0, 1);
-  add("check", OfflineVerb::Check, "Read every page, row and checksum of the store",
+  add("check", OfflineVerb::Check, "Read every row and checksum of the store",
       "kinshipd check --store fleet.db --json")
       ->add_flag("--json", options.json, "One document on stdout");
   add("backup", OfflineVerb::Backup, "Copy the store into a new file",

@@ -265,9 +265,10 @@ class SqliteSide : public Side {
         "DELETE FROM setting WHERE key LIKE '" + std::string(kPairRecord) +
         "%';"
         "DELETE FROM same_content;"
-        "INSERT INTO same_content SELECT path_id, report_uuid FROM attempt"
+        "INSERT INTO same_content (path_id, report_uuid) SELECT path_id, report_uuid FROM attempt"
         " WHERE status = 2 AND path_id IS NOT NULL;"
-        "INSERT OR IGNORE INTO set_aside SELECT 5, id, 1, NULL, NULL, 'its attempt is lost'"
+        "INSERT OR IGNORE INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
+        " SELECT 5, id, 1, NULL, NULL, 'its attempt is lost'"
         " FROM path WHERE NOT EXISTS (SELECT 1 FROM set_aside AS aside WHERE kind = 1"
         " AND aside.id = path.id) AND NOT EXISTS (SELECT 1 FROM attempt"
         " WHERE attempt.report_uuid = path.report_uuid AND attempt.path_id = path.id)");
@@ -338,7 +339,8 @@ class SqliteSide : public Side {
     }
     const bool is_path = table.name == "path";
     const auto insert = database_->cached(
-        "INSERT OR REPLACE INTO set_aside VALUES (?, ?, ?, ?, ?, 'was set aside before a move')");
+        "INSERT OR REPLACE INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
+        " VALUES (?, ?, ?, ?, ?, 'was set aside before a move')");
     insert->bind_all(std::int64_t{table.aside_kind}, integer_of(row, 0), integer_of(row, damaged));
     constexpr int kReplacedBy = 4, kRetired = 5;
     if (is_path) {

@@ -32,6 +32,8 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
     if (error.is_damage()) {
       const std::string why = describe(uuid, error.what());
       damaged.note(uuid, why);
+      if (error.is_of_row())
+        return {uuid, ReceiptStatus::TryAgain, why};
     }
     if (!error.concerns_one_row())
       throw;

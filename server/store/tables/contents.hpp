@@ -36,8 +36,8 @@ struct PathsRead {
 };
 
 /// The paths in use of a robot and task in order of ids; damaged ones do not count towards the
-/// limit. Fetches some megabytes at a time. Call
-/// it in a snapshot.
+/// limit. Fetches some megabytes at a time. Call it in a
+/// snapshot.
 PathsRead select_paths(Session& session, const Digest& robot, std::string_view task,
                        const PathRange& range);
 

@@ -113,9 +113,10 @@ void make_room_beside(Session& session, std::int64_t row, std::uint64_t max_byte
   const std::int64_t floor = revision_floor(session);
   std::int64_t newest = floor;
   for (const std::int64_t id : oldest) {
-    // A row that cannot be read stays in the index, with its revision.
     const auto revision = session.unless_damaged([&] {
-      return session.find_integer("SELECT revision FROM distribution WHERE id = $1", id);
+      return session.find_integer("SELECT revision FROM distribution WHERE id = $1 AND " +
+                                      session.is_intact("distribution"),
+                                  id);
     });
     newest = std::max(newest, revision.value_or(0));
     remove_row(session, id);

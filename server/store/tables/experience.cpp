@@ -19,16 +19,23 @@ std::string of_robot_and_task(Session& session) {
          " AND robot_id = " + id_of_robot(session, "$2");
 }
 
-/// Where of_robot_and_task() finds none: there is none, or its row, its robot's or its task's is
-/// damaged. \throws Failure(Storage) then.
-void require_none(Session& session, const Digest& robot, std::string_view task) {
-  if (session.find_integer("SELECT 1 FROM experience"
-                           " WHERE task_id = (SELECT id FROM task WHERE name = $1)"
-                           " AND robot_id = (SELECT id FROM robot WHERE digest = $2)",
-                           task, robot))
+/// What `find` finds with of_robot_and_task(), or nothing.
+/// \throws Failure(Storage) if there is a row, but it, its robot's or its task's is damaged.
+template <typename Find>
+std::invoke_result_t<Find> find_undamaged(Session& session, const Digest& robot,
+                                          std::string_view task, Find find) {
+  std::invoke_result_t<Find> found = find();
+  if (found || !session.find_integer("SELECT 1 FROM experience"
+                                     " WHERE task_id = (SELECT id FROM task WHERE name = $1)"
+                                     " AND robot_id = (SELECT id FROM robot WHERE digest = $2)",
+                                     task, robot))
+    return found;
+  found = find();  // the first report may have come between
+  if (!found)
     throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ", task '" +
                                           std::string(task) +
                                           "': a row of its experience is damaged");
+  return found;
 }
 
 /// Parameter $1 task.
@@ -98,10 +105,9 @@ std::vector<ExperienceKey> lock_pairs_of_task(Session& session, std::int64_t tas
 }
 
 std::uint64_t generation_of(Session& session, const Digest& robot, std::string_view task) {
-  const std::optional<std::int64_t> generation =
-      session.find_integer("SELECT generation " + of_robot_and_task(session), task, robot);
-  if (!generation)
-    require_none(session, robot, task);
+  const std::optional<std::int64_t> generation = find_undamaged(session, robot, task, [&] {
+    return session.find_integer("SELECT generation " + of_robot_and_task(session), task, robot);
+  });
   return static_cast<std::uint64_t>(generation.value_or(0));
 }
 
@@ -118,18 +124,23 @@ std::vector<ExperienceSummary> experience_of(Session& session, std::string_view 
 }
 
 AttemptTotals totals_of(Session& session, const Digest& robot, std::string_view task) {
-  const Rows rows = session.query(
-      "SELECT " + std::string(kTotalsColumns) + ", task_id, robot_id " + of_robot_and_task(session),
-      task, robot);
-  if (rows.empty()) {
-    require_none(session, robot, task);
-    return {};
-  }
   constexpr int kTask = 10, kRobot = 11;
-  const Row& row = rows.front();
-  AttemptTotals totals = read_totals(row);
-  totals.recent = recent_of(session, {row.column_integer(kTask), row.column_integer(kRobot)});
-  return totals;
+  ExperienceKey key;
+  std::optional<AttemptTotals> totals =
+      find_undamaged(session, robot, task, [&]() -> std::optional<AttemptTotals> {
+        const Rows rows = session.query("SELECT " + std::string(kTotalsColumns) +
+                                            ", task_id, robot_id " + of_robot_and_task(session),
+                                        task, robot);
+        if (rows.empty())
+          return std::nullopt;
+        const Row& row = rows.front();
+        key = {row.column_integer(kTask), row.column_integer(kRobot)};
+        return read_totals(row);
+      });
+  if (!totals)
+    return {};
+  totals->recent = recent_of(session, key);
+  return *std::move(totals);
 }
 
 }  // namespace kinship::store

@@ -139,7 +139,9 @@ void write_robot(Session& session, const RobotRecord& robot) {
 }
 
 std::optional<std::int64_t> geometry_revision_of(Session& session, std::int64_t robot_id) {
-  return session.find_integer("SELECT revision FROM robot_geometry WHERE robot_id = $1", robot_id);
+  return session.find_integer("SELECT revision FROM robot_geometry WHERE robot_id = $1 AND " +
+                                  session.is_intact("robot_geometry"),
+                              robot_id);
 }
 
 }  // namespace

@@ -152,7 +152,9 @@ class RowCopy {
 
   /// Marks of damage are columns in PostgreSQL and a table of its own in SQLite.
   void copy_damage() {
-    Statement insert(target_->connection(), "INSERT INTO set_aside VALUES (?, ?, ?, ?, ?, ?)");
+    Statement insert(target_->connection(),
+                     "INSERT INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
+                     " VALUES (?, ?, ?, ?, ?, ?)");
     const std::vector<Column> columns = columns_of(*target_, "set_aside");
     const std::string reason = "'was set aside in PostgreSQL'";
     insert_all(insert, columns,

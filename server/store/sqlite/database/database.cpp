@@ -82,12 +82,14 @@ const std::string& Database::text_of(std::map<std::string, std::string, std::les
 std::string Database::is_intact(std::string_view table) {
   return text_of(conditions_, table, [&](const CheckedTable& checked) {
     const std::string row = std::string(table) + ".";
-    return "(" + row + "row_crc32c = " + checked.checksum(row) + ")";
+    return "(" + row + "row_crc32c IS " + checked.checksum(row) + ")";
   });
 }
 
 void Database::keep_checksums() {
   checked_tables_ = read_checked_tables(*connection_);
+  conditions_.clear();
+  inserts_.clear();
   execute(checksum_triggers(checked_tables_));
 }
 

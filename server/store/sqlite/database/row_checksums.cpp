@@ -21,7 +21,8 @@ constexpr std::array<std::string_view, 3> kLargeBlobs = {"waypoints", "scene", "
 /// Part of the checksum of a robot's description. SQLite reads a text to tell its length.
 constexpr std::array<std::string_view, 2> kLargeOfRobot = {"urdf", "mesh_solids"};
 /// An UPDATE of their rows sets some columns and keeps the others.
-constexpr std::array<std::string_view, 3> kUpdatedInPart = {"attempt", "experience", "path"};
+constexpr std::array<std::string_view, 4> kUpdatedInPart = {"attempt", "experience", "path",
+                                                            "set_aside"};
 
 template <typename Names>
 bool contains(const Names& names, std::string_view name) {
@@ -107,9 +108,9 @@ std::string triggers_of(const std::string& name, const CheckedTable& table) {
                     " WHEN NEW.row_crc32c = 0" + write + begin("_changed") + " AFTER" + changed +
                     write;
   if (contains(kUpdatedInPart, name))
-    sql += begin("_is_sound") + " BEFORE" + changed + " WHEN OLD.row_crc32c <> " +
-           table.checksum("OLD.") + " BEGIN SELECT RAISE(ABORT, 'a row of table " + name +
-           " is damaged (checksum)'); END;";
+    sql += begin("_is_sound") + " BEFORE" + changed + " WHEN OLD.row_crc32c IS NOT " +
+           table.checksum("OLD.") + " BEGIN SELECT RAISE(ABORT, '" + name +
+           std::string(kRowIsDamaged) + "'); END;";
   return sql;
 }
 

@@ -10,8 +10,8 @@ struct sqlite3;
 /// Checksums of rows. SQLite has none: a flipped bit is read as data.
 ///
 /// A table with a column row_crc32c has in it the CRC-32C of the other columns of the row, but for
-/// the one that holds a large text or blob (kLargeColumns), which has a checksum of its own and
-/// counts with its length. The columns that a statement reads from an index count as they stand
+/// the one that holds a large text or blob, which has a checksum of its own; a blob counts with its
+/// length. The columns that a statement reads from an index count as they stand
 /// there, so that an entry that leads to another row is found as well.
 namespace kinship::store {
 
@@ -32,8 +32,8 @@ void add_checksum_function(sqlite3& connection);
 std::map<std::string, CheckedTable, std::less<>> read_checked_tables(sqlite3& connection);
 
 /// The triggers, of one connection alone, that give each row that it writes its checksum. An UPDATE
-/// of a row whose checksum is wrong is refused where it would carry over a part of the old row
-/// (SqliteError::is_damage()).
+/// of a row whose checksum is wrong is refused where the tables' statements keep a part of the old
+/// row (SqliteError::is_of_row()).
 std::string checksum_triggers(const std::map<std::string, CheckedTable, std::less<>>& tables);
 
 /// An INSERT of all columns of a table, with parameters in their order, and the checksum: for rows

@@ -28,12 +28,13 @@ bool SqliteError::concerns_one_row() const noexcept {
 bool SqliteError::is_damage() const noexcept {
   const int primary = sqlite_code_ & 0xFF;
   return primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB ||
-         sqlite_code_ == SQLITE_CONSTRAINT_TRIGGER || sqlite_code_ == SQLITE_IOERR_DATA ||
+         sqlite_code_ == SQLITE_CONSTRAINT_PRIMARYKEY ||  // of a number that should be new
+         sqlite_code_ == SQLITE_CONSTRAINT_ROWID || sqlite_code_ == SQLITE_IOERR_DATA ||
          sqlite_code_ == SQLITE_IOERR_CORRUPTFS;
 }
 
 SqliteError damaged_row(const std::string& what) {
-  return {kDamagedRow, what + ": its row is damaged (checksum)"};
+  return {kDamagedRow, what + kRowIsDamaged.data()};
 }
 
 void throw_sqlite_error(sqlite3& connection, std::string_view doing) {
@@ -44,7 +45,8 @@ void throw_sqlite_error(sqlite3& connection, std::string_view doing) {
   message += lack_of_room(connection) + ") in '";
   message += doing.substr(0, kMaxShown);
   message += "'";
-  throw SqliteError(sqlite3_extended_errcode(&connection), message);
+  const bool is_of_row = std::string_view(sqlite3_errmsg(&connection)).ends_with(kRowIsDamaged);
+  throw SqliteError(is_of_row ? kDamagedRow : sqlite3_extended_errcode(&connection), message);
 }
 
 }  // namespace kinship::store

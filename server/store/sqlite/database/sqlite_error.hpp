@@ -12,6 +12,9 @@ namespace kinship::store {
 /// The code of damaged_row(): one of SQLITE_CORRUPT that SQLite itself does not know.
 inline constexpr int kDamagedRow = 11 | (75 << 8);
 
+/// Ends the messages of damaged_row(), and of the triggers of row_checksums.
+inline constexpr std::string_view kRowIsDamaged = ": its row is damaged (checksum)";
+
 /// The error of a failed SQLite call: a Failure(Storage) with the result code.
 class SqliteError : public Failure {
  public:
@@ -28,7 +31,7 @@ class SqliteError : public Failure {
   /// content that SQLite finds malformed, after which a transaction takes no writes. Rows on other
   /// pages are fine.
   bool is_damage() const noexcept;
-  /// True if it is damaged_row().
+  /// True if it is damaged_row(), also from a trigger: its part of a transaction can be undone.
   bool is_of_row() const noexcept { return sqlite_code_ == kDamagedRow; }
 
  private:

@@ -188,7 +188,7 @@ bool Writer::write_whole(WriteItem& item) {
 }
 
 /// After damage that undid the batch: each item in a transaction of its own, so that only the one
-/// that needs damaged pages fails. An item learns which of its parts that was, and leaves it out in
+/// that meets damage fails. An item learns which of its parts that was, and leaves it out in
 /// its next try. The rest of the file is fine, nothing is opened again.
 void Writer::write_apart(Items& items) {
   for (auto& item : items) {

@@ -38,7 +38,8 @@ void append_from_attempts(Database& database, const ExperienceKey& key, std::int
   const auto query = database.cached(
       "SELECT report_uuid FROM attempt INDEXED BY attempt_by_task_robot "
       "WHERE task_id = ?1 AND robot_id = ?2 AND (path_id = ?3 OR path_id IN "
-      "(SELECT id FROM set_aside WHERE kind = 1 AND replaced_by = ?3))");
+      "(SELECT id FROM set_aside WHERE kind = 1 AND replaced_by = ?3)) AND " +
+      database.is_intact("attempt"));
   query->bind_all(key.task_id, key.robot_id, path_id);
   append_reports(*query, reports);
 }
@@ -66,7 +67,9 @@ bool note_retired_report(Database& database, const Uuid& report_uuid) {
 void note_retired_path(Database& database, const ExperienceKey& key, std::int64_t path_id) {
   std::vector<Uuid> reports;
   {
-    const auto others = database.cached("SELECT report_uuid FROM same_content WHERE path_id = ?");
+    const auto others =
+        database.cached("SELECT report_uuid FROM same_content WHERE path_id = ? AND " +
+                        database.is_intact("same_content"));
     append_reports(others->bind(1, path_id), reports);
   }
   bool is_whole = false;

@@ -12,7 +12,8 @@ std::int64_t kind_code(AsideKind kind) { return static_cast<std::int64_t>(kind);
 
 std::optional<Aside> find_aside(Database& database, AsideKind kind, std::int64_t id) {
   const auto query = database.cached(
-      "SELECT replaced_by, retired_ms IS NOT NULL FROM set_aside WHERE kind = ? AND id = ?");
+      "SELECT replaced_by, retired_ms IS NOT NULL FROM set_aside WHERE kind = ? AND id = ? AND " +
+      database.is_intact("set_aside"));
   if (!query->bind_all(kind_code(kind), id).step())
     return std::nullopt;
   Aside aside;

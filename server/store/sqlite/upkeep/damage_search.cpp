@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
@@ -78,6 +79,20 @@ bool has_damaged_rows(Database& database, const std::string& table) {
          !check_rows(database, table, 0, std::numeric_limits<std::int64_t>::max()).damaged.empty();
 }
 
+/// \return whether they fit now. If a row of the table is damaged, it is that row that does not
+/// fit;
+///         and two rows with one key are for a repair.
+bool make_indexes_anew(Database& database, const std::string& table) try {
+  if (has_damaged_rows(database, table))
+    return false;
+  database.execute("REINDEX \"" + table + "\"");
+  return true;
+} catch (const SqliteError& error) {
+  if (!error.is_damage() && !error.concerns_one_row())
+    throw;
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::string> tables_of(Database& database) {
@@ -116,15 +131,17 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
                                             not_in_quarantine(table) + " ORDER BY " + id +
                                             " LIMIT ?");
   rows.bind_all(after_id, limit);
-  RowsChecked checked;
+  RowsChecked checked{.last_id = after_id};
   while (rows.step()) {
-    checked.last_id = rows.column_integer(0);
+    const std::int64_t row = rows.column_integer(0);  // a flipped one may be out of order
+    checked.last_id = std::max(checked.last_id, row);
     ++checked.rows;
-    if (rows.column_integer(1) != 0 && has_right_content(database, table, checked.last_id))
+    if (rows.column_integer(1) != 0 && has_right_content(database, table, row))
       continue;
-    checked.damaged.push_back(std::to_string(checked.last_id));
-    checked.damaged_ids.push_back(checked.last_id);
+    checked.damaged.push_back(std::to_string(row));
+    checked.damaged_ids.push_back(row);
   }
+  checked.is_last = std::cmp_less(checked.rows, limit) || checked.last_id == after_id;
   return checked;
 }
 
@@ -154,13 +171,7 @@ std::vector<std::string> mend_indexes(Database& database) {
   tables.erase("");
   std::vector<std::string> mended;
   for (const std::string& table : tables) {
-    const bool is_mended = database.unless_damaged([&] {
-      if (has_damaged_rows(database, table))
-        return false;  // then it is the row that does not fit its index
-      database.execute("REINDEX \"" + table + "\"");
-      return true;
-    });
-    if (is_mended)
+    if (make_indexes_anew(database, table))
       mended.push_back("the indexes of table " + table +
                        " did not fit its rows and were made anew");
   }

@@ -22,7 +22,8 @@ std::vector<std::string> check_structure(Database& database, const std::string& 
 /// Rows of a table that were checked.
 struct RowsChecked {
   std::uint64_t rows = 0;
-  std::int64_t last_id = 0;               ///< 0 in a table without ids, which is checked at once
+  std::int64_t last_id = 0;
+  bool is_last = true;  ///< no row is left; a table without ids is checked at once
   std::vector<std::string> damaged = {};  ///< names of rows whose checksum is wrong
   std::vector<std::int64_t> damaged_ids = {};
 };
@@ -32,8 +33,8 @@ struct RowsChecked {
 RowsChecked check_rows(Database& database, const std::string& table, std::int64_t after_id,
                        std::int64_t limit);
 
-/// The name of a row with a wrong checksum that is not in quarantine, of any table. It does not read
-/// contents.
+/// The name of a row with a wrong checksum that is not in quarantine, of any table. It does not
+/// read contents.
 std::optional<std::string> find_damaged_row(Database& database);
 
 /// Makes indexes anew whose entries do not fit the rows of their table, if all of its rows are as

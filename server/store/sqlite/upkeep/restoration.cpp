@@ -19,6 +19,7 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/upkeep/schema_recovery.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 #include "server/store/sqlite/upkeep/store_repair.hpp"
 #include "server/store/tables/audit.hpp"
@@ -33,6 +34,7 @@ namespace fs = std::filesystem;
 void remove_with_companions(const fs::path& file) {
   for (const char* const companion : kCompanions)
     unlink((file.string() + companion).c_str());
+  unlink((file.string() + std::string(SchemaCopy::kSuffix)).c_str());
   unlink(file.c_str());
 }
 
@@ -82,7 +84,11 @@ void copy_missing_audit(Database& database, Database& other) {
                       ") SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11 "
                       "WHERE NOT EXISTS (SELECT 1 FROM audit WHERE id = ?12 AND (" +
                       columns + ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11))");
-  Statement rows(other.connection(), "SELECT " + columns + ", id FROM audit ORDER BY id");
+  Statement rows(
+      other.connection(),
+      "SELECT " + columns + ", id FROM audit WHERE " +
+          (other.checked_tables().contains("audit") ? other.is_intact("audit") : "TRUE") +
+          " ORDER BY id");
   while (rows.step()) {
     for (int column = 0; column <= kColumns; ++column)
       insert->bind_column(column + 1, rows, column);

@@ -97,7 +97,7 @@ SchemaState state_of_schema(Database& store, const std::filesystem::path& file, 
 
 SchemaCopy::SchemaCopy(const std::filesystem::path& file, Database& fresh,
                        const std::filesystem::path& fresh_file)
-    : file_(fresh_file.string() + ".source") {
+    : file_(fresh_file.string() + std::string(kSuffix)) {
   std::filesystem::copy_file(file, file_, std::filesystem::copy_options::overwrite_existing);
   take_over_schema(file_, fresh, fresh_file);
   database_ = std::make_unique<Database>(file_, Access::ReadOnly);

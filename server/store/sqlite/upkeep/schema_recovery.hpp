@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "server/store/sqlite/database/database.hpp"
 
@@ -22,6 +23,9 @@ SchemaState state_of_schema(Database& store, const std::filesystem::path& file, 
 /// A copy of a store, with the schema of a new one, while it lives.
 class SchemaCopy {
  public:
+  static constexpr std::string_view kSuffix =
+      ".source";  ///< of the copy, behind the new store's name
+
   SchemaCopy(const std::filesystem::path& file, Database& fresh,
              const std::filesystem::path& fresh_file);
   SchemaCopy(const SchemaCopy&) = delete;

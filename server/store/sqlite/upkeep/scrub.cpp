@@ -125,8 +125,7 @@ void Scrub::search(Database& database) {
       is_structure_checked_ = true;
       return;
     }
-    search_rows(database, table);
-    if (last_id_ > 0)
+    if (!search_rows(database, table))
       return;
   } catch (const SqliteError& error) {
     if (!error.is_damage())
@@ -140,13 +139,15 @@ void Scrub::search(Database& database) {
   ++table_;
 }
 
-void Scrub::search_rows(Database& database, const std::string& table) {
+/// \return whether these were the last ones.
+bool Scrub::search_rows(Database& database, const std::string& table) {
   RowsChecked part = check_rows(database, table, last_id_, kRowsOfASlice);
   last_id_ = part.last_id;
   for (const std::string& row : part.damaged)
     found_.push_back("row " + row + " (checksum)");
   if (const auto kind = kind_of(table); kind && !part.damaged_ids.empty())
     writer_->submit(std::make_unique<DamageItem>(*kind, std::move(part.damaged_ids)));
+  return part.is_last;
 }
 
 void Scrub::note(const std::string& table, std::vector<std::string> found) {

@@ -28,8 +28,9 @@ struct ScrubProgress {
   std::int64_t ended_ms = 0;  ///< end of the last complete search; 0: never
 };
 
-/// A thread of low priority that searches a store for damage repeatedly, at a bounded rate: table
-/// by table, the structure of a table in one slice, then its rows in slices of 1000. Damaged paths,
+/// A thread of low priority that searches a store for damage repeatedly: table by table, the
+/// structure of a table in one slice, then its rows in slices of 1000, with pauses that bound the
+/// rate. Damaged paths,
 /// attempts, scenes and distributions go into quarantine. A slice reads one snapshot, and so delays
 /// checkpoints for as long.
 class Scrub {
@@ -50,7 +51,7 @@ class Scrub {
   /// \return the pause before the next step.
   std::chrono::milliseconds step();
   void search(Database& database);
-  void search_rows(Database& database, const std::string& table);
+  bool search_rows(Database& database, const std::string& table);
   void note(const std::string& table, std::vector<std::string> found);
   void log_news();
 

@@ -169,6 +169,7 @@ class Checker {
   Database* database_;
   const std::function<void(double)>* progress_;
   StoreCheck check_;
+  std::size_t damaged_robots_ = 0;  // named by their labels
 };
 
 StoreCheck Checker::run(const std::filesystem::path& file) {
@@ -268,20 +269,21 @@ void Checker::check_epoch() {
 }
 
 void Checker::check_robots() {
-  for (const std::string& label : select_robots(*database_).damaged)
+  const std::vector<std::string> damaged = select_robots(*database_).damaged;
+  damaged_robots_ = damaged.size();
+  for (const std::string& label : damaged)
     note("robot", "'" + label + "': its row is damaged (checksum)");
 }
 
 void Checker::check_rows(const std::string& table) {
-  if (table == "robot")
-    return;  // by their labels
   constexpr std::int64_t kRows = 1000;
   RowsChecked part;
   do {
     part = store::check_rows(*database_, table, part.last_id, kRows);
     for (const std::string& row : part.damaged)
-      note(table, row + ": damaged (checksum)");
-  } while (part.last_id > 0);
+      if (table != "robot" || damaged_robots_ == 0)  // they have their names
+        note(table, row + ": damaged (checksum)");
+  } while (!part.is_last);
 }
 
 }  // namespace

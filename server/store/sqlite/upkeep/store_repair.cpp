@@ -50,12 +50,13 @@ class Salvager {
   /// Reads the source by SQL, as far as it goes: a damaged page ends it.
   template <typename Take>
   void for_each_of_source(const std::string& sql, Take take) const;
+  bool try_step(const std::string& sql, std::optional<Statement>& query) const;
   /// Copies a small table row by row, as far as it goes.
   void copy_table(const std::string& name) const;
   /// Copies the rows that can be read, by their ids.
   void copy_by_id(const std::string& name);
-  /// Copies rows from an id on. \return the id that could not be read; `is_whole`: there is none.
-  std::int64_t copy_from(const std::string& name, std::int64_t id, bool& is_whole);
+  /// Copies rows from an id on. \return the first id that could not be read.
+  std::optional<std::int64_t> copy_from(const std::string& name, std::int64_t first);
   std::optional<std::int64_t> next_readable(const std::string& name, std::int64_t id) const;
   void keep_revision(Bytes digest, std::int64_t revision) const;
   void set_bad_content_aside() const;
@@ -77,15 +78,20 @@ class Salvager {
 
 template <typename Take>
 void Salvager::for_each_of_source(const std::string& sql, Take take_row) const {
-  try {
-    Statement query(source_->connection(), sql);
-    while (query.step())
-      take_row(query);
-  } catch (const SqliteError& error) {
-    // Damage of any kind; without its schema the source does not even know its tables.
-    if (!error.is_damage() && error.sqlite_code() != kSqlError)
-      throw;
-  }
+  std::optional<Statement> query;
+  while (try_step(sql, query))
+    take_row(*query);
+}
+
+/// Damage of any kind ends it; without its schema the source does not even know its tables.
+bool Salvager::try_step(const std::string& sql, std::optional<Statement>& query) const try {
+  if (!query)
+    query.emplace(source_->connection(), sql);
+  return query->step();
+} catch (const SqliteError& error) {
+  if (!error.is_damage() && error.sqlite_code() != kSqlError)
+    throw;
+  return false;
 }
 
 void Salvager::copy_table(const std::string& name) const {
@@ -98,36 +104,36 @@ void Salvager::copy_table(const std::string& name) const {
 void Salvager::copy_by_id(const std::string& name) {
   std::optional<std::int64_t> next = 0;
   while (next) {
-    bool is_whole = false;
-    const std::int64_t unread = copy_from(name, *next, is_whole);
-    if (is_whole)
+    const std::optional<std::int64_t> unread = copy_from(name, *next);
+    if (!unread)
       return;
     ++salvaged_.damaged_places;
-    next = next_readable(name, unread);
+    next = next_readable(name, *unread);
   }
 }
 
-std::int64_t Salvager::copy_from(const std::string& name, std::int64_t id, bool& is_whole) {
-  try {
-    // The columns of the new store: the same, whatever became of the old one's schema.
-    Statement rows(source_->connection(), "SELECT *, " + source_->is_intact(name) + " FROM " +
-                                              name + " NOT INDEXED WHERE id >= ? ORDER BY id");
-    rows.bind(1, id);
-    while (rows.step()) {
-      const int columns = rows.columns() - 1;
-      if (rows.column_integer(columns) != 0)
-        insert_row(*target_, name, rows, columns);
-      else
-        ++salvaged_.damaged_places;
-      id = rows.column_integer(0) + 1;
+std::optional<std::int64_t> Salvager::copy_from(const std::string& name, std::int64_t first) {
+  std::int64_t next = first;
+  const std::string sql = "SELECT *, " + source_->is_intact(name) + " FROM " + name +
+                          " NOT INDEXED WHERE id >= " + std::to_string(first) + " ORDER BY id";
+  Statement rows(source_->connection(), sql);
+  while (true) {
+    try {
+      if (!rows.step())
+        return std::nullopt;
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+      return next;
     }
-    is_whole = true;
-  } catch (const SqliteError& error) {
-    if (!error.is_damage() && error.sqlite_code() != kSqlError)
-      throw;
-    is_whole = error.sqlite_code() == kSqlError;  // there is no such table
+    const int columns = rows.columns() - 1;
+    if (rows.column_integer(columns) == 0) {
+      ++salvaged_.damaged_places;
+      continue;  // its id may be damaged, too
+    }
+    insert_row(*target_, name, rows, columns);
+    next = std::max(next, rows.column_integer(0) + 1);
   }
-  return id;
 }
 
 /// The next id after one whose page cannot be read: by longer and longer steps, then back.
@@ -136,10 +142,12 @@ std::optional<std::int64_t> Salvager::next_readable(const std::string& name,
   constexpr std::int64_t kLongestSearch = std::int64_t{1} << 40U;
   const auto from = [&](std::int64_t step) -> std::optional<std::int64_t> {
     std::optional<std::int64_t> found;
+    if (id > std::numeric_limits<std::int64_t>::max() - step)
+      return found;
     for_each_of_source("SELECT id FROM " + name + " NOT INDEXED WHERE id >= " +
                            std::to_string(id + step) + " ORDER BY id LIMIT 1",
                        [&](const Statement& row) { found = row.column_integer(0); });
-    return found;
+    return found > id ? found : std::nullopt;
   };
   std::int64_t step = 1;
   while (step < kLongestSearch && !from(step))
@@ -196,11 +204,14 @@ void Salvager::name_lost_tasks() const {
   while (lost.step()) {
     const std::int64_t id = lost.column_integer(0);
     const auto name = names.find(id);
-    target_->cached("INSERT INTO task (id, name) VALUES (?, ?)")
-        ->bind(1, id)
-        .bind(2, std::string_view(name != names.end() ? name->second
-                                                      : "lost-task-" + std::to_string(id)))
-        .run();
+    const auto insert = [&](const std::string& as) {
+      target_->cached("INSERT OR IGNORE INTO task (id, name) VALUES (?, ?)")
+          ->bind_all(id, std::string_view(as))
+          .run();
+      return target_->changed_rows() > 0;
+    };
+    if (name == names.end() || !insert(name->second))  // another one may have it
+      insert("lost-task-" + std::to_string(id));
   }
 }
 
@@ -221,16 +232,22 @@ void Salvager::name_lost_robots() {
                  "WHERE robot_id NOT IN (SELECT id FROM robot)");
   while (lost.step()) {
     const std::int64_t id = lost.column_integer(0);
-    const std::string label = labels.contains(id) ? labels[id] : "lost-robot-" + std::to_string(id);
-    const Bytes digest(digests[id].bytes);
-    target_
-        ->cached(
-            "INSERT INTO robot (id, digest, label, dof, base_link, tip_link, T_tip_transfer,"
-            " task_axes, registered_ms, crc32c, urdf)"
-            " VALUES (?, iif(?, ?, randomblob(32)), ?, ?, '', '', zeroblob(56), 0, 0, 0, '')")
-        ->bind_all(id, std::int64_t{digests[id] == Digest() ? 0 : 1}, digest,
-                   std::string_view(label), lost.column_integer(1))
-        .run();
+    std::string label = labels.contains(id) ? labels[id] : "lost-robot-" + std::to_string(id);
+    const auto insert = [&](const Digest& digest) {
+      target_
+          ->cached(
+              "INSERT OR IGNORE INTO robot (id, digest, label, dof, base_link, tip_link,"
+              " T_tip_transfer, task_axes, registered_ms, crc32c, urdf)"
+              " VALUES (?, iif(?, ?, randomblob(32)), ?, ?, '', '', zeroblob(56), 0, 0, 0, '')")
+          ->bind_all(id, std::int64_t{digest == Digest() ? 0 : 1}, Bytes(digest.bytes),
+                     std::string_view(label), lost.column_integer(1))
+          .run();
+      return target_->changed_rows() > 0;
+    };
+    if (!insert(digests[id])) {  // another one may have the digest or the label
+      label = "lost-robot-" + std::to_string(id);
+      insert(Digest());
+    }
     salvaged_.lost.push_back({"robot", label, "", 1});
   }
 }
@@ -303,7 +320,9 @@ void Salvager::count_lost(const std::string& table, const std::string& index) {
   std::map<Pair, std::uint64_t> lost;
   const bool paths = table == "path";
   for_each_of_source("SELECT task_id, robot_id, id FROM " + table + " INDEXED BY " + index +
-                         (paths ? " WHERE retired_ms IS NULL" : ""),
+                         (paths ? " WHERE retired_ms IS NULL"
+                                : " WHERE NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2"
+                                  " AND set_aside.id = attempt.id)"),
                      [&](const Statement& row) {
                        const auto found =
                            target_->cached("SELECT 1 FROM " + table + " WHERE id = ?");
@@ -316,7 +335,8 @@ void Salvager::count_lost(const std::string& table, const std::string& index) {
 
 void Salvager::note_orphans() const {
   target_->execute(
-      "INSERT OR IGNORE INTO set_aside SELECT 5, id, 1, NULL, NULL, 'lost in a repair' FROM path "
+      "INSERT OR IGNORE INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
+      " SELECT 5, id, 1, NULL, NULL, 'lost in a repair' FROM path "
       "WHERE NOT EXISTS (SELECT 1 FROM set_aside AS aside WHERE kind = 1 AND aside.id = path.id) "
       "AND NOT EXISTS (SELECT 1 FROM attempt WHERE attempt.report_uuid = path.report_uuid "
       "AND attempt.path_id = path.id)");
@@ -385,11 +405,15 @@ Salvaged Salvager::run(const Progress& progress) {
     progress(static_cast<double>(i + 1) / static_cast<double>(kCopiedById.size()));
   }
   // An attempt that came again stands there twice; the new row is enough.
-  for_each_of_source("SELECT id FROM set_aside WHERE kind = 2", [&](const Statement& row) {
-    target_->cached("DELETE FROM attempt WHERE id = ?")->bind(1, row.column_integer(0)).run();
-  });
   for_each_of_source(
-      "SELECT kind, id, replaced_by, retired_ms IS NOT NULL FROM set_aside WHERE kind IN (1, 3)",
+      "SELECT id FROM set_aside WHERE kind = 2 AND " + source_->is_intact("set_aside"),
+      [&](const Statement& row) {
+        target_->cached("DELETE FROM attempt WHERE id = ?")->bind(1, row.column_integer(0)).run();
+      });
+  for_each_of_source(
+      "SELECT kind, id, replaced_by, retired_ms IS NOT NULL FROM set_aside WHERE kind IN (1, 3)"
+      " AND " +
+          source_->is_intact("set_aside"),
       [&](const Statement& row) {
         const auto kind = static_cast<AsideKind>(row.column_integer(0));
         std::optional<std::int64_t> by;
