@@ -18,17 +18,6 @@ std::string message_of(const std::string& text) {
   return line ? "accepted" : line.error().message;
 }
 
-TEST(ExperienceLine, RobotIsReadBack) {
-  RobotDescription robot = test::RandomValues(kSeed).robot_description();
-  robot.T_tip_transfer.setIdentity();  // others come back within rounding
-  const std::string text = to_experience_line(robot);
-  EXPECT_EQ(text.find(R"({"robot_description":{"label":)"), 0U);
-  EXPECT_EQ(text.find('\n'), std::string::npos);
-  const ExperienceLine line = experience_line_from_json(text).value_or_throw();
-  ASSERT_TRUE(std::holds_alternative<RobotDescription>(line));
-  EXPECT_EQ(to_experience_line(std::get<RobotDescription>(line)), text);
-}
-
 TEST(ExperienceLine, AttemptIsReadBack) {
   Attempt attempt = test::RandomValues(kSeed).attempt();
   attempt.T_task_base = Eigen::Isometry3d::Identity();
