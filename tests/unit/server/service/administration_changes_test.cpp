@@ -90,15 +90,6 @@ TEST_F(AdministrationChanges, AnExportBeginsWithTheRobotsItNeeds) {
   EXPECT_EQ(export_all("dwarf", "", 100).size(), 0U);
 }
 
-TEST_F(AdministrationChanges, AnExportOfWhatIsNotThereIsNotFoundAndAForeignCursorRefused) {
-  AdminRequest request = fleet::question(AdminVerb::ExportPaths);
-  request.task = "bin";
-  EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
-  request.task.clear();
-  request.cursor = "17";
-  EXPECT_EQ(administer(request).status, AdminStatus::Refused);
-}
-
 TEST_F(AdministrationChanges, ARetiredPathIsNotExported) {
   const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 2, 1);
   report(attempts);
