@@ -1,11 +1,9 @@
 """`import kinship` with credentials of `kinshipd secure`, against a kinshipd with security."""
-import contextlib
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
-import time
 import unittest
 import warnings
 
@@ -82,17 +80,6 @@ class WhoHasCredentials(SecuredServer):
 
 
 class WhoHasNone(SecuredServer):
-    def test_hears_nothing_of_the_server(self):
-        with self.assertRaisesRegex(kinship.NoServer, "no server answered"):
-            self.open_client(timeout=1).register(self.panda)
-
-    def test_nor_with_those_of_another_authority(self):
-        other = self.server.folder / "other"
-        secure("init", other)
-        client = self.open_client(timeout=1, security=self.add("stranger", fleet=other))
-        with self.assertRaisesRegex(kinship.NoServer, "no server answered"):
-            client.register(self.panda)
-
     def test_is_told_which_file_is_wrong(self):
         with self.assertRaisesRegex(kinship.NotFound, "nowhere.*key.pem"):
             self.open_client(security=self.server.folder / "nowhere")
@@ -130,18 +117,6 @@ class WhoMayNot(SecuredServer):
         receipt, = client.deliver([attempt(self.panda, "bin", 1)])
         self.assertEqual(receipt.status, "refused")
         self.assertRegex(receipt.message, "arm_6 .role robot. may not report for task 'bin'")
-
-    def test_nor_once_it_is_revoked(self):
-        client = self.open_client(security=self.add("arm_7"))
-        client.register(self.panda)
-        secure("revoke", "arm_7", "--security", self.fleet)
-        end = time.monotonic() + 10
-        with self.assertRaisesRegex(kinship.Refused, "client 'arm_7': revoked at"):
-            while time.monotonic() < end:  # the server looks at records once a second
-                with contextlib.suppress(kinship.NoExperience):
-                    client.fetch("never_done", self.panda, deadline=1)
-        with self.assertRaisesRegex(kinship.Refused, "client 'arm_7': revoked at"):
-            client.register(self.panda)
 
 
 if __name__ == "__main__":
