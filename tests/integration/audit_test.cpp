@@ -71,9 +71,7 @@ TEST(Insecure, OtherHostsAreServedOnlyIfThatIsSpeltOutAndIsToldAtTheStart) {
   const auto serve = [&](std::vector<std::string> more) {
     std::vector<std::string> arguments = {"--store", store, "--log-level", "off"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    test::Program program("kinshipd", arguments, folder / "err");
-    const int code = program.wait();
-    return Answer{code, "", test::read_text(folder / "err")};
+    return test::run_to_end("kinshipd", arguments);
   };
   const Answer refused = serve({"--interface", "nosuch0"});
   EXPECT_EQ(refused.code, 2);

@@ -100,23 +100,6 @@ TEST_F(Fleet, WhatOneRobotReportedGuidesAnotherAlsoAfterARestart) {
   EXPECT_EQ(status_of(*client).fits, 0U);
 }
 
-TEST_F(Fleet, ReportsToAnAbsentServerArriveWhenItComesBackAlsoFromAClientThatEnded) {
-  start_server();
-  const Digest panda = register_model(*make_client(), "panda");
-  EXPECT_EQ(server_->terminate(), 0);
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    const auto client = make_client();
-    client->report(test::panda_attempt(panda, "sweep", i));
-    EXPECT_EQ(client->outbox().pending, i + 1);
-  }
-  start_server();
-  const auto client = make_client();
-  const link::Client::OutboxState outbox = client->flush(seconds(30));
-  EXPECT_EQ(outbox.pending, 0U) << outbox.problem;
-  EXPECT_EQ(outbox.accepted, 5U);
-  EXPECT_EQ(listed_paths(*client).size(), 5U);
-}
-
 TEST_F(Fleet, AnUnknownRobotsReportsWaitUntilItIsRegistered) {
   start_server();
   const auto client = make_client();

@@ -64,10 +64,9 @@ class StudyCell : public testing::Test {
 
   /// The output of a program that must succeed.
   std::string run(const std::string& program, const std::vector<std::string>& arguments) const {
-    test::Program process(program, arguments, directory_ / "messages.txt");
-    std::string output = process.read_all();
-    EXPECT_EQ(process.wait(), 0) << test::read_text(directory_ / "messages.txt");
-    return output;
+    test::Answer answer = test::run_to_end(program, arguments);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return std::move(answer.out);
   }
 
   /// Plans the cell, and the same robot uniformly, with the files of the study alone.
