@@ -1,9 +1,11 @@
 """`import kinship` with credentials of `kinshipd secure`, against a kinshipd with security."""
+import contextlib
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 import warnings
 
@@ -117,6 +119,18 @@ class WhoMayNot(SecuredServer):
         receipt, = client.deliver([attempt(self.panda, "bin", 1)])
         self.assertEqual(receipt.status, "refused")
         self.assertRegex(receipt.message, "arm_6 .role robot. may not report for task 'bin'")
+
+    def test_nor_once_it_is_revoked(self):
+        client = self.open_client(security=self.add("arm_7"))
+        client.register(self.panda)
+        secure("revoke", "arm_7", "--security", self.fleet)
+        end = time.monotonic() + 10
+        with self.assertRaisesRegex(kinship.Refused, "client 'arm_7': revoked at"):
+            while time.monotonic() < end:  # the server looks at records once a second
+                with contextlib.suppress(kinship.NoExperience):
+                    client.fetch("never_done", self.panda, deadline=1)
+        with self.assertRaisesRegex(kinship.Refused, "client 'arm_7': revoked at"):
+            client.register(self.panda)
 
 
 if __name__ == "__main__":

@@ -215,6 +215,21 @@ std::string why_not_together(const std::filesystem::path& a, const std::filesyst
   return why_refused(a, b) + why_refused(b, a);
 }
 
+TEST_F(SecurityFolderTest, WhileThereAreTwoAuthoritiesFilesOfBothAreAccepted) {
+  SecurityFolder folder = init();
+  folder.add({.name = "old"}, out_, now_s());
+  folder.renew_authority(kDefaultDays, now_s());
+  folder.add({.name = "new"}, scratch_ / "new", now_s());
+  folder.renew("old", kDefaultDays, scratch_ / "renewed", now_s());
+
+  for (const auto& client : {out_, scratch_ / "new", scratch_ / "renewed"}) {
+    EXPECT_EQ(why_not_together(folder.server_credentials(), client), "") << client;
+    EXPECT_TRUE(read_credentials(client, now_s())) << client;
+  }
+  EXPECT_EQ(read_credentials(scratch_ / "new", now_s()).value_or_throw().authorities, 2U);
+  EXPECT_TRUE(read_credentials(folder.server_credentials(), now_s()));
+}
+
 TEST_F(SecurityFolderTest, ARetiredAuthoritysFilesAreRefusedAndTheNewOnesStayGood) {
   SecurityFolder folder = init();
   folder.add({.name = "old"}, out_, now_s());

@@ -196,6 +196,20 @@ TEST_F(AccessGate, WhoFindsNoRoomForItsRobotsNamesIsToldWhenToComeAgain) {
   first.get_future().wait();
 }
 
+TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  report({attempt});
+  caller_.tasks = {"shelf"};
+  caller_.robots = {"teacher"};
+  EXPECT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready);
+  const FetchReply task = fetch(*teacher_, "bin");
+  EXPECT_EQ(task.status, FetchStatus::Refused);
+  EXPECT_EQ(task.message,
+            "robot_7 (role robot) may not fetch for task 'bin': its certificate is "
+            "for tasks shelf, robots teacher");
+  EXPECT_EQ(fetch(*pupil_, "shelf").status, FetchStatus::Refused);
+}
+
 TEST_F(AccessGate, AFetchForSomeRobotsDoesNotSayWhichOthersItIsMadeOf) {
   report({fleet::solved(*teacher_, "shelf", 1), fleet::solved(*pupil_, "shelf", 2)});
   experience_bytes_ = kDefaultExperienceBytes;
