@@ -5,69 +5,26 @@
 //
 //   postgres_bench
 
-#include <chrono>
-#include <cstdlib>
-#include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <random>
-#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "server/store/postgres/postgres_store.hpp"
+#include "tests/bench/durable_reports.hpp"
 #include "tests/bench/figure.hpp"
-#include "tests/bench/measure.hpp"
 #include "tests/bench/pgbench.hpp"
 #include "tests/support/postgres_cluster.hpp"
 #include "tests/support/postgres_programs.hpp"
-#include "tests/support/store_values.hpp"
 
 namespace kinship::store {
 namespace {
 
-constexpr Eigen::Index kDof = 7;
-constexpr Eigen::Index kWaypoints = 146;  // 8176 bytes as float64
-constexpr int kTasks = 4;
+constexpr std::size_t kTasks = 4;
 constexpr int kRounds = 3;  // in turn, because the disk's own rate comes and goes
 constexpr double kRound_s = 1.5;
-
-/// What was seen in all rounds of one way to write.
-struct Seen {
-  std::vector<double> latencies_ms;
-  double seconds = 0;
-
-  double per_s() const { return static_cast<double>(latencies_ms.size()) / seconds; }
-};
-
-const RobotRecord& robot() {
-  static const RobotRecord kRobot = [] {
-    RobotRecord made = test::make_robot("bench", 1);
-    made.dof = kDof;
-    return made;
-  }();
-  return kRobot;
-}
-
-/// A random walk, moved: the worst that a planner's path can be to a compressor, and cheap to make.
-Attempt make_report(int task, std::mt19937_64& generator) {
-  static const Eigen::MatrixXd kWalk = [] {
-    std::mt19937_64 steps(1);
-    std::normal_distribution<double> step(0, 0.05);
-    Eigen::MatrixXd waypoints = Eigen::MatrixXd::Zero(kDof, kWaypoints);
-    for (Eigen::Index i = 1; i < kWaypoints; ++i)
-      for (Eigen::Index joint = 0; joint < kDof; ++joint)
-        waypoints(joint, i) = waypoints(joint, i - 1) + step(steps);
-    return waypoints;
-  }();
-  std::uniform_real_distribution<double> offset(-1, 1);
-  Attempt attempt =
-      test::make_attempt(robot().digest, "bench_" + std::to_string(task), generator());
-  attempt.path = Path(Eigen::MatrixXd((kWalk.array() + offset(generator)).matrix()));
-  return attempt;
-}
 
 /// Clients of some stores over one database, each with one report on its way.
 class PostgresClients {
@@ -75,48 +32,20 @@ class PostgresClients {
   explicit PostgresClients(const std::string& url, std::size_t stores) {
     for (std::size_t i = 0; i < stores; ++i)
       stores_.push_back(open_postgres_store(url));
-    static_cast<void>(stores_.front()->register_robot(robot()));
+    static_cast<void>(stores_.front()->register_robot(bench::reporting_robot()));
   }
 
-  void run(std::size_t clients, Seen& seen) {
-    std::vector<std::vector<double>> latencies_ms(clients);
-    std::vector<std::thread> threads;
-    const double begin_s = bench::wall_s();
-    for (std::size_t client = 0; client < clients; ++client)
-      threads.emplace_back([&, client] {
-        std::mt19937_64 generator(std::random_device{}());
-        Store& store = *stores_[client % stores_.size()];
-        while (bench::wall_s() < begin_s + kRound_s)
-          latencies_ms[client].push_back(report_once(store, static_cast<int>(client), generator));
-      });
-    for (std::thread& thread : threads)
-      thread.join();
-    seen.seconds += bench::wall_s() - begin_s;
-    for (const std::vector<double>& one : latencies_ms)
-      seen.latencies_ms.insert(seen.latencies_ms.end(), one.begin(), one.end());
+  void run(std::size_t clients, bench::Seen& seen) {
+    bench::run_reporters(
+        clients, kRound_s, seen, [&](std::size_t client, std::mt19937_64& generator) {
+          return bench::report_once(*stores_[client % stores_.size()],
+                                    "bench_" + std::to_string(client % kTasks), generator);
+        });
   }
 
  private:
-  static double report_once(Store& store, int client, std::mt19937_64& generator) {
-    Attempt attempt = make_report(client % kTasks, generator);
-    const double start_s = bench::wall_s();
-    const Receipt receipt = test::report(store, {std::move(attempt)}).at(0);
-    if (receipt.status != ReceiptStatus::Stored) {
-      std::cerr << "postgres_bench: not stored: " << receipt.message << '\n';
-      std::exit(1);
-    }
-    return 1e3 * (bench::wall_s() - start_s);
-  }
-
   std::vector<std::unique_ptr<Store>> stores_;
 };
-
-std::string latencies(const Seen& seen) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << "p50 " << bench::median(seen.latencies_ms)
-       << " ms, p99 " << bench::percentile(seen.latencies_ms, 0.99) << " ms";
-  return text.str();
-}
 
 test::PostgresCluster::Options durable(const std::string& name, const std::string& standbys) {
   return {.name = name,
@@ -129,8 +58,8 @@ void measure_rates() {
   const std::string url = cluster.create_database("bench");
   bench::prepare_pgbench(cluster, "bench");
   std::vector<double> inserts_per_s;
-  std::map<std::size_t, Seen> seen;  // by the number of stores
-  Seen before;
+  std::map<std::size_t, bench::Seen> seen;  // by the number of stores
+  bench::Seen before;
   PostgresClients(url, 1).run(16, before);
   cluster.query("ANALYZE", "bench");  // as autovacuum does within a minute
   for (int round = 0; round < kRounds; ++round) {
@@ -146,7 +75,7 @@ void measure_rates() {
                   .better = bench::Better::Higher,
                   .reference = bench::Reference{"pgbench's inserts of 8 KB, 16 clients",
                                                 bench::median(inserts_per_s)},
-                  .note = latencies(of_stores)});
+                  .note = of_stores.latencies()});
 }
 
 void measure_receipts(bool has_standby) {
@@ -156,7 +85,7 @@ void measure_receipts(bool has_standby) {
   if (has_standby)
     standby = std::make_unique<test::PostgresCluster>(primary, durable("b", ""));
   PostgresClients clients(url, 1);
-  Seen before, seen;
+  bench::Seen before, seen;
   clients.run(1, before);
   primary.query("ANALYZE", "bench");
   for (int round = 0; round < kRounds; ++round)

@@ -17,6 +17,7 @@
 #include "proto/dds/wire.hpp"
 #include "proto/types/limits.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/raw_conversation.hpp"
 #include "tests/support/robots.hpp"
 
 namespace kinship::test {
@@ -24,46 +25,27 @@ namespace {
 
 using std::chrono::seconds;
 
-/// A writer of requests, beside a reader of which nothing is ever taken.
+/// A line to a server of whose replies nothing is ever taken.
 template <typename Conversation>
 class DeafLine {
  public:
   explicit DeafLine(const dds::Participant& participant)
-      : topics_(dds::Wire<Conversation>::topics()),
-        request_topic_(dds_create_topic(participant.get(), &topics_.request,
-                                        topics_.request_topic().c_str(), nullptr, nullptr),
-                       "request topic"),
-        reply_topic_(dds_create_topic(participant.get(), &topics_.reply,
-                                      topics_.reply_topic().c_str(), nullptr, nullptr),
-                     "reply topic"),
-        subscriber_(
-            dds_create_subscriber(
-                participant.get(),
-                dds::partition_qos(dds::reply_partition(dds::reply_partition_of(client_id_))).get(),
-                nullptr),
-            "subscriber"),
-        reader_(dds_create_reader(subscriber_.get(), reply_topic_.get(), dds::reply_qos().get(),
-                                  nullptr),
-                "reader"),
-        writer_(dds_create_writer(participant.get(), request_topic_.get(), dds::request_qos().get(),
-                                  nullptr),
-                "writer"),
-        waitset_(dds_create_waitset(participant.get()), "waitset") {
-    dds::require(dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS), "status");
-    dds::require(dds_waitset_attach(waitset_.get(), writer_.get(), 0), "waitset");
+      : line_(participant), waitset_(dds_create_waitset(participant.get()), "waitset") {
+    const dds_entity_t writer = line_.writer().get();
+    dds::require(dds_set_status_mask(writer, DDS_PUBLICATION_MATCHED_STATUS), "status");
+    dds::require(dds_waitset_attach(waitset_.get(), writer, 0), "waitset");
     dds::require(dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_SECS(20)), "a server");
   }
 
   void send(const typename Conversation::Request& request) {
-    const auto message = codec::encode({client_id_, ++sequence_number_}, request).value_or_throw();
-    dds_write(writer_.get(), &message.wire);  // waits for 100 ms at most; what was lost is lost
+    const auto message = codec::encode(line_.next_head(), request).value_or_throw();
+    // Waits for 100 ms at most; what was lost is lost.
+    dds_write(line_.writer().get(), &message.wire);
   }
 
  private:
-  const Uuid client_id_ = Uuid::random();
-  std::uint64_t sequence_number_ = 0;
-  dds::Topics topics_;
-  dds::Entity request_topic_, reply_topic_, subscriber_, reader_, writer_, waitset_;
+  RawLine<Conversation> line_;
+  dds::Entity waitset_;
 };
 
 /// \param make  the request of a number.

@@ -7,13 +7,13 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <iostream>
 #include <random>
 
 #include "client/link/outbox.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/faults/reporting_fleet.hpp"
+#include "tests/support/long_run.hpp"
 #include "tests/support/panda_experience.hpp"
 
 namespace kinship::outbox_kill_test {
@@ -21,8 +21,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20261123;
 
-bool is_long() { return std::getenv("KINSHIP_LONG") != nullptr; }
-int rounds() { return is_long() ? 300 : 12; }
+int rounds() { return test::is_long_run() ? 300 : 12; }
 
 class OutboxKill : public test::ReportingFleet {
  protected:
@@ -75,7 +74,7 @@ TEST_F(OutboxKill, WhatWasReportedReachesTheStoreOnceWhoeverIsKilled) {
   EXPECT_EQ(reports_in("outbox", "sent"), attempts);
   std::cout << kills << " kills, " << ledger_.size() << " reports in the ledger, " << attempts
             << " stored, " << in_doubt << " batches sent again after their commit\n";
-  EXPECT_TRUE(!is_long() || in_doubt > 0);
+  EXPECT_TRUE(!test::is_long_run() || in_doubt > 0);
 }
 
 /// In a child process: its own mounts end with it.

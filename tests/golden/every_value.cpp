@@ -34,14 +34,6 @@ Source every_source(Distinct& next, Relation relation) {
   return source;
 }
 
-ModeEvidence every_evidence(Distinct& next) {
-  ModeEvidence evidence;
-  evidence.solved = next.count();
-  evidence.attempts = next.count();
-  evidence.checks_per_solution = next.real();
-  return evidence;
-}
-
 Advice every_advice(Distinct& next) {
   Advice advice;
   advice.recommended_share = next.share();
@@ -79,6 +71,14 @@ TaskSpaceRegion every_region() {
 }
 
 }  // namespace
+
+ModeEvidence every_evidence(Distinct& next) {
+  ModeEvidence evidence;
+  evidence.solved = next.count();
+  evidence.attempts = next.count();
+  evidence.checks_per_solution = next.real();
+  return evidence;
+}
 
 PlanningRecord every_record(Distinct& next) {
   PlanningRecord record;

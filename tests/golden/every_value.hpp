@@ -18,6 +18,10 @@
 /// the bytes. They keep the rules of the contract.
 namespace kinship::test {
 
+class Distinct;
+ModeEvidence every_evidence(Distinct& next);
+PlanningRecord every_record(Distinct& next);
+
 /// Numbers, texts and ids that do not repeat; equal for equal beginnings.
 class Distinct {
  public:
@@ -55,13 +59,52 @@ class Distinct {
     return numbers;
   }
 
+  /// A value whose table says what fields it has: each is set, and not to its default.
+  template <Described Value>
+  Value described() {
+    Value value;
+    for_each_field<Value>(
+        [&](const auto& field) { set(value.*field.member, std::string(field.name), field.rules); });
+    return value;
+  }
+
  private:
+  template <typename T>
+  void set(T& value, const std::string& what, const FieldRules& rules) {
+    if constexpr (std::is_same_v<T, bool>) {
+      value = !value;
+    } else if constexpr (std::is_enum_v<T>) {
+      value = static_cast<T>(value == T{} ? 1 : 0);
+    } else if constexpr (std::is_integral_v<T>) {
+      value = static_cast<T>(what.ends_with("_ms") ? time_ms() : std::int64_t{count32()});
+    } else if constexpr (std::is_floating_point_v<T>) {
+      value = rules.max <= 1 ? share() : real();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = name(what);
+    } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
+      value = pose();
+    } else if constexpr (kIsOptional<T>) {
+      set(value.emplace(), what, rules);
+    } else if constexpr (kIsList<T>) {
+      value.resize(2);
+      for (auto& element : value)
+        set(element, what, {});
+    } else if constexpr (std::is_same_v<T, PlanningRecord>) {
+      value = every_record(*this);
+    } else if constexpr (std::is_same_v<T, ModeEvidence>) {
+      value = every_evidence(*this);
+    } else if constexpr (Described<T>) {
+      value = described<T>();
+    } else {
+      value = id<T>();
+    }
+  }
+
   std::uint64_t next_;
 };
 
 inline constexpr Eigen::Index kJoints = 4;  ///< of paths and mixtures
 
-PlanningRecord every_record(Distinct& next);
 RobotDescription every_robot_description();
 RecordedScene every_recorded_scene();
 Attempt every_attempt();            ///< solved, with a scene
@@ -72,22 +115,7 @@ Distribution every_failure();       ///< without all that may be missing
 Selection every_selection();
 Rehearsal every_rehearsal();
 
-RobotSummary every_robot_summary();
-TaskSummary every_task_summary();
-PathSummary every_path_summary();
-AttemptSummary every_attempt_summary();
-DistributionSummary every_distribution_summary();
 Explanation every_explanation();
-Retirement every_retirement();
-RobotRemoval every_robot_removal();
-Job every_job();
-ClientUse every_client_use();
-BackupSummary every_backup();
-AuditEntry every_audit_entry();
-ServerStatus every_status();
-StoreCheck every_store_check();
-CredentialList every_credential_list();
-
 Problem every_problem();            ///< to configurations, in a scene
 Problem every_pose_problem();       ///< to a pose
 Problem every_problem_from_pose();  ///< to a pose, too

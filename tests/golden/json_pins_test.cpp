@@ -48,6 +48,11 @@ Case readable(const std::string& name, const Value& value, Result<Value> (*read)
   return {name, to_json(value), again, has_faults};
 }
 
+template <typename Row>
+Case row(const std::string& name, std::uint64_t first) {
+  return readable(name, test::Distinct(first).described<Row>(), row_from_json<Row>);
+}
+
 std::string attempt_again(const std::string& text) {
   return error_or<NamedAttempt>(attempt_from_json(text), [](const NamedAttempt& named) {
     return named.label + to_json(named.attempt);
@@ -72,28 +77,27 @@ std::vector<Case> cases() {
       readable("distribution", every_distribution(), distribution_from_json),
       readable("distribution_kernels", every_kernels(), distribution_from_json, false),
       readable("distribution_failed", every_failure(), distribution_from_json),
-      readable("robot_summary", every_robot_summary(), row_from_json<RobotSummary>),
-      readable("task_summary", every_task_summary(), row_from_json<TaskSummary>),
-      readable("path_summary", every_path_summary(), row_from_json<PathSummary>),
-      readable("attempt_summary", every_attempt_summary(), row_from_json<AttemptSummary>),
-      readable("distribution_summary", every_distribution_summary(),
-               row_from_json<DistributionSummary>),
-      readable("server_status", every_status(), row_from_json<ServerStatus>),
+      row<RobotSummary>("robot_summary", 900),
+      row<TaskSummary>("task_summary", 1000),
+      row<PathSummary>("path_summary", 1100),
+      row<AttemptSummary>("attempt_summary", 1150),
+      row<DistributionSummary>("distribution_summary", 1200),
+      row<ServerStatus>("server_status", 1600),
       readable("explanation", every_explanation(), row_from_json<Explanation>),
-      readable("retirement", every_retirement(), row_from_json<Retirement>),
-      readable("robot_removal", every_robot_removal(), row_from_json<RobotRemoval>),
-      readable("job", every_job(), row_from_json<Job>),
-      readable("client_use", every_client_use(), row_from_json<ClientUse>),
-      readable("backup", every_backup(), row_from_json<BackupSummary>),
-      readable("audit_entry", every_audit_entry(), row_from_json<AuditEntry>),
-      readable("eviction", Eviction{every_distribution().id}, row_from_json<Eviction>),
+      row<Retirement>("retirement", 1400),
+      row<RobotRemoval>("robot_removal", 1450),
+      row<Job>("job", 1500),
+      row<ClientUse>("client_use", 1550),
+      row<BackupSummary>("backup", 1580),
+      row<AuditEntry>("audit_entry", 1650),
+      row<Eviction>("eviction", 500),
       readable("problem", every_problem(), problem_from_json),
       readable("problem_to_pose", every_pose_problem(), problem_from_json, false),
       readable("problem_from_pose", every_problem_from_pose(), problem_from_json, false),
       readable("problem_result", every_problem_result(), problem_result_from_json),
       {"event", to_json(every_event())},
-      {"store_check", to_json(every_store_check())},
-      {"credential_list", to_json(every_credential_list())},
+      {"store_check", to_json(Distinct(1700).described<StoreCheck>())},
+      {"credential_list", to_json(Distinct(3300).described<CredentialList>())},
       {"inverse_answer", to_json(every_inverse_answer())},
       {"robot_check", to_json(every_robot_check())},
       {"register_reply", to_json(every_register_reply(), "label")},

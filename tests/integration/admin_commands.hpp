@@ -23,10 +23,7 @@ namespace kinship::admin_commands_test {
 
 using std::chrono::seconds;
 
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
+using test::Answer;
 
 /// One kinshipd and its domain.
 class Server {
@@ -51,13 +48,7 @@ class Server {
     return arguments;
   }
   Answer kinship(const std::vector<std::string>& words, const char* timeout_s = "30") const {
-    const test::TemporaryDirectory folder;
-    Answer answer;
-    test::Program program("kinship", with_domain(words, timeout_s), folder / "err");
-    answer.out = program.read_all();
-    answer.code = program.wait();
-    answer.err = test::read_text(folder / "err");
-    return answer;
+    return test::run_to_end("kinship", with_domain(words, timeout_s));
   }
   std::unique_ptr<link::Client> client(const std::filesystem::path& outbox) const {
     return std::make_unique<link::Client>(

@@ -113,15 +113,13 @@ class BroughtRobot : public testing::Test {
     if (with_srdf)
       arguments.insert(arguments.end(), {"--srdf", directory_ / "lifter.srdf"});
     arguments.insert(arguments.end(), more.begin(), more.end());
-    std::filesystem::remove(directory_ / "messages");
-    test::Program program("kinship-plan", arguments, directory_ / "messages");
-    std::istringstream lines(program.read_all());
-    const int code = program.wait();
-    messages_ = test::read_text(directory_ / "messages");
+    const test::Answer answer = test::run_to_end("kinship-plan", arguments);
+    messages_ = answer.err;
     results_.clear();
+    std::istringstream lines(answer.out);
     for (std::string line; std::getline(lines, line);)
       results_.push_back(json::problem_result_from_json(line).value_or_throw());
-    return code;
+    return answer.code;
   }
 
   std::vector<std::string> with_server(const std::vector<std::string>& more) const {

@@ -1,11 +1,9 @@
 // The whole way: clients and kinshipd as processes of their own, over loopback DDS.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <memory>
 #include <set>
-#include <thread>
 
 #include "client/link/client.hpp"
 #include "proto/json/admin_rows_json.hpp"
@@ -102,23 +100,6 @@ TEST_F(Fleet, WhatOneRobotReportedGuidesAnotherAlsoAfterARestart) {
   EXPECT_EQ(status_of(*client).fits, 0U);
 }
 
-TEST_F(Fleet, ReportsToAnAbsentServerArriveWhenItComesBackAlsoFromAClientThatEnded) {
-  start_server();
-  const Digest panda = register_model(*make_client(), "panda");
-  EXPECT_EQ(server_->terminate(), 0);
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    const auto client = make_client();
-    client->report(test::panda_attempt(panda, "sweep", i));
-    EXPECT_EQ(client->outbox().pending, i + 1);
-  }
-  start_server();
-  const auto client = make_client();
-  const link::Client::OutboxState outbox = client->flush(seconds(30));
-  EXPECT_EQ(outbox.pending, 0U) << outbox.problem;
-  EXPECT_EQ(outbox.accepted, 5U);
-  EXPECT_EQ(listed_paths(*client).size(), 5U);
-}
-
 TEST_F(Fleet, AnUnknownRobotsReportsWaitUntilItIsRegistered) {
   start_server();
   const auto client = make_client();
@@ -144,34 +125,6 @@ TEST_F(Fleet, EveryListIsTheSameInPages) {
   }
   ASSERT_EQ(client->flush(seconds(30)).accepted, 20U);
   EXPECT_EQ(listed_paths(*client), reported);
-}
-
-TEST_F(Fleet, KilledBetweenReportsItHasEveryAcknowledgedOneOnceAfterARestart) {
-  start_server();
-  const auto client = make_client();
-  const Digest panda = register_model(*client, "panda");
-  std::multiset<Uuid> ledger;
-  std::uint64_t seed = 0;
-  for (int life = 0; life < 3; ++life) {
-    // Some reports are acknowledged, some are on their way, some find nobody.
-    std::thread reporter([&] {
-      for (int i = 0; i < 40; ++i) {
-        const Attempt attempt = test::panda_attempt(panda, "sweep", seed++);
-        ledger.insert(attempt.report_uuid);
-        client->report(attempt);
-      }
-    });
-    const std::size_t enough = 40 * static_cast<std::size_t>(life) + 10;
-    while (client->outbox().accepted < enough)
-      client->flush(std::chrono::milliseconds(1));
-    server_->kill();
-    reporter.join();
-    start_server();
-  }
-  const link::Client::OutboxState outbox = client->flush(seconds(60));
-  EXPECT_EQ(outbox.pending, 0U) << outbox.problem;
-  EXPECT_EQ(outbox.refused, 0U);
-  EXPECT_EQ(listed_paths(*client), ledger);
 }
 
 }  // namespace

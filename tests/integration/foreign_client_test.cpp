@@ -51,22 +51,6 @@ TEST(ForeignClient, AMessageThatLiesAboutItsLengthsHarmsNobody) {
   EXPECT_EQ(server.terminate(), 0);
 }
 
-TEST(ForeignClient, RegistersReportsAndFetches) {
-  const ReservedDomain domain;
-  const TemporaryDirectory directory;
-  ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
-  Program client("../tests/foreign_client", {std::to_string(domain.number())}, directory / "error");
-  const std::vector<std::string> lines = lines_of(client.read_all());
-  ASSERT_EQ(client.wait(), 0) << read_text(directory / "error");
-  ASSERT_EQ(lines.size(), 3U);
-  EXPECT_TRUE(lines[0].starts_with("registered status=0 dof=3 solver=")) << lines[0];
-  EXPECT_EQ(lines[1], "reported stored=6");
-  EXPECT_TRUE(lines[2].starts_with("fetched revision=1 ")) << lines[2];
-  EXPECT_TRUE(lines[2].ends_with(" paths=6")) << lines[2];
-  EXPECT_EQ(server.terminate(), 0);
-}
-
 TEST(ForeignClient, RegistersReportsFetchesAndHearsOfTheNewerRevision) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;

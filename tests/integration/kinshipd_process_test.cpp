@@ -48,11 +48,10 @@ class KinshipdProcess : public testing::Test {
   }
   /// Exit code of a kinshipd that is expected to end by itself; its messages go to `error_`.
   int run(const std::vector<std::string>& arguments) {
-    test::Program program("kinshipd", arguments, directory_ / "error");
-    output_ = program.read_all();
-    const int code = program.wait();
-    error_ = test::read_text(directory_ / "error");
-    return code;
+    const test::Answer answer = test::run_to_end("kinshipd", arguments);
+    output_ = answer.out;
+    error_ = answer.err;
+    return answer.code;
   }
 
   int run_on(std::uint32_t domain) {

@@ -20,10 +20,7 @@ namespace {
 
 using std::chrono::seconds;
 
-struct Answer {
-  int code = 0;
-  std::string out, err;
-};
+using test::Answer;
 
 /// A planar arm of bars, each a mesh in a file named after its length in mm.
 std::string arm_urdf(const std::vector<int>& lengths_mm) {
@@ -93,14 +90,7 @@ class MeshRobots : public testing::Test {
   Answer run(const std::string& program, std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(),
                      {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
-    const std::filesystem::path errors = directory_ / "errors";
-    std::filesystem::remove(errors);
-    test::Program process(program, arguments, errors);
-    Answer answer;
-    answer.out = process.read_all();
-    answer.code = process.wait();
-    answer.err = test::read_text(errors);
-    return answer;
+    return test::run_to_end(program, arguments);
   }
 
   std::vector<std::string> of_robot(const std::string& name) const {

@@ -33,11 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Ended {
-  int code = 0;
-  std::string out, err;
-  bool says(const std::string& words) const { return (out + err).find(words) != std::string::npos; }
-};
+using Ended = test::Answer;
 
 class MigrateStore : public testing::Test {
  protected:
@@ -57,15 +53,8 @@ class MigrateStore : public testing::Test {
   static std::vector<std::string> arguments(const std::string& from, const std::string& to) {
     return {"migrate-store", "--from", from, "--to", to};
   }
-  Ended run(const std::vector<std::string>& arguments) const {
-    const fs::path errors = folder_ / "errors";
-    fs::remove(errors);
-    test::Program program("kinshipd", arguments, errors);
-    Ended ended;
-    ended.out = program.read_all();
-    ended.code = program.wait();
-    ended.err = test::read_text(errors);
-    return ended;
+  static Ended run(const std::vector<std::string>& arguments) {
+    return test::run_to_end("kinshipd", arguments);
   }
   Ended move(const std::string& from, const std::string& to) const {
     return run(arguments(from, to));

@@ -49,10 +49,10 @@ class Refit : public testing::Test {
   Distribution next(const Distribution& before) { return fetch(before.sources[0].generation + 1); }
 
   std::string explained(const Digest& id) {
-    test::Program program("kinship",
-                          {"--domain", std::to_string(domain_.number()), "--timeout", "60",
-                           "distributions", "explain", "--distribution", id.hex()});
-    return program.read_all();
+    return test::run_to_end("kinship",
+                            {"--domain", std::to_string(domain_.number()), "--timeout", "60",
+                             "distributions", "explain", "--distribution", id.hex()})
+        .out;
   }
 
   const test::ReservedDomain domain_;

@@ -38,8 +38,7 @@ class Retention : public testing::Test {
   }
   std::string kinship(std::vector<std::string> words) {
     words.insert(words.begin(), {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
-    test::Program program("kinship", words);
-    return program.read_all();
+    return test::run_to_end("kinship", words).out;
   }
   /// UUIDs of what can be exported.
   std::set<std::string> exported() {

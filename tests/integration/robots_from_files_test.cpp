@@ -18,24 +18,14 @@ namespace {
 
 const std::string kModels = test::source_dir() + "/robots/models/";
 
-struct Answer {
-  int code = 0;
-  std::string out, err;
-};
+using test::Answer;
 
 class RobotsFromFiles : public testing::Test {
  protected:
   Answer run(const std::string& program, std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(),
                      {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
-    const std::filesystem::path errors = directory_ / "errors";
-    std::filesystem::remove(errors);
-    test::Program process(program, arguments, errors);
-    Answer answer;
-    answer.out = process.read_all();
-    answer.code = process.wait();
-    answer.err = test::read_text(errors);
-    return answer;
+    return test::run_to_end(program, arguments);
   }
 
   std::string write(const char* name, const std::string& text) const {

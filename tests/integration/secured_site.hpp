@@ -32,11 +32,6 @@ class Site {
  public:
   using seconds = std::chrono::seconds;
 
-  struct Answer {
-    int code = -1;
-    std::string text;  ///< output and errors
-  };
-
   /// \param fleet  its security folder; empty: none.
   /// \param admin  credentials of an admin; empty: none.
   Site(const std::filesystem::path& store, const std::filesystem::path& fleet,
@@ -108,17 +103,11 @@ class Site {
 
   /// `kinship` as a process.
   Answer kinship(const std::filesystem::path& credentials, std::vector<std::string> words) const {
-    const TemporaryDirectory folder;
     std::vector<std::string> all = {"--domain", std::to_string(domain()), "--timeout", "30"};
     if (!credentials.empty())
       all.insert(all.end(), {"--security", credentials.string()});
     all.insert(all.end(), words.begin(), words.end());
-    Program program("kinship", all, folder / "err");
-    Answer answer;
-    answer.text = program.read_all();
-    answer.code = program.wait();
-    answer.text += read_text(folder / "err");
-    return answer;
+    return run_to_end("kinship", all);
   }
 
  private:

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <future>
 #include <string>
 #include <vector>
 
@@ -42,18 +41,10 @@ class SecuredServer : public testing::Test {
     options.outbox = folder_ / "outbox";
     return options;
   }
-  struct Answer {
-    int code = 0;
-    std::string out;
-  };
-  Answer kinship(std::vector<std::string> arguments) const {
+  test::Answer kinship(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(),
                      {"--domain", std::to_string(domain_.number()), "--timeout", "1"});
-    test::Program program("kinship", arguments, folder_ / "kinship.err");
-    Answer answer;
-    answer.out = program.read_all();
-    answer.code = program.wait();
-    return answer;
+    return test::run_to_end("kinship", arguments);
   }
 
   const test::TemporaryDirectory folder_;
@@ -100,10 +91,7 @@ TEST_F(SecuredServer, CommandsNeedCredentials) {
   unsetenv("KINSHIP_SECURITY");
   EXPECT_NE(kinship({"--security", folder_ / "fleet", "status"}).code, 0);
   fleet_.revoke("anna", now());
-  const auto is_told = [&] {
-    kinship({"--security", admin, "status"});
-    return test::read_text(folder_ / "kinship.err").find("revoked") != std::string::npos;
-  };
+  const auto is_told = [&] { return kinship({"--security", admin, "status"}).says("revoked"); };
   const auto end = std::chrono::steady_clock::now() + 10s;
   while (!is_told())
     ASSERT_LT(std::chrono::steady_clock::now(), end);
@@ -117,16 +105,14 @@ TEST_F(SecuredServer, FormerCredentialsAreGoodUntilTheyAreRevoked) {
   EXPECT_EQ(kinship({"--security", second, "status"}).code, 0);
   fleet_.revoke_former("anna");
   const auto is_told = [&] {
-    kinship({"--security", first, "status"});
-    return test::read_text(folder_ / "kinship.err").find("credentials were replaced (1 of 2)") !=
-           std::string::npos;
+    return kinship({"--security", first, "status"}).says("credentials were replaced (1 of 2)");
   };
   const auto end = std::chrono::steady_clock::now() + 10s;
   while (!is_told())
     ASSERT_LT(std::chrono::steady_clock::now(), end);
   EXPECT_EQ(kinship({"--security", second, "status"}).code, 0);
   EXPECT_EQ(kinship({"--security", second, "tasks", "reset", "none"}).code, 3);
-  const Answer log = kinship({"--security", second, "audit", "--json"});
+  const test::Answer log = kinship({"--security", second, "audit", "--json"});
   EXPECT_EQ(log.code, 0);
   EXPECT_EQ(log.out.find("anna.2"), std::string::npos) << "one name, whichever credentials";
 }

@@ -1,6 +1,7 @@
 // What people see of a server while it works: `kinship watch`, and listings as tables.
 
 #include <csignal>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -9,51 +10,61 @@
 namespace kinship::admin_commands_test {
 namespace {
 
-TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {
-  test::Program watch("kinship", server_.with_domain({"watch", "--json", "--task", "sweep"}),
-                      folder_ / "watch.err");
-  // It watches once its first words are there: those of the server.
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+/// `kinship watch` beside what people do.
+class Watch : public AdminCommands {
+ protected:
+  void begin(const std::vector<std::string>& words) {
+    watch_.emplace("kinship", words, folder_ / "watch.err");
+  }
+  /// On the server of the fixture; returns once its first words are there: those of the server.
+  void watch(std::vector<std::string> words) {
+    words.insert(words.begin(), "watch");
+    begin(server_.with_domain(words));
+    wait_for_words("the server is there");
+  }
+  std::string said() const { return test::read_text(folder_ / "watch.err"); }
+  void wait_for_words(const std::string& words) const {
+    while (said().find(words) == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  void end() {
+    watch_->signal(SIGINT);
+    EXPECT_EQ(watch_->wait(), 0);
+  }
+
+  std::optional<test::Program> watch_;
+};
+
+TEST_F(Watch, TellsWhatHappensAndThatTheServerGoes) {
+  watch({"--json", "--task", "sweep"});
   teach(server_);
-  const std::string event = watch.read_line();
+  const std::string event = watch_->read_line();
   EXPECT_NE(event.find("\"kind\":\"report\""), std::string::npos) << event;
   server_.process().terminate();
-  while (test::read_text(folder_ / "watch.err").find("the server has gone") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
+  wait_for_words("the server has gone");
+  end();
 }
 
-TEST_F(AdminCommands, WatchTellsOfTheExperienceThatSomebodyAskedForAsAFetch) {
+TEST_F(Watch, TellsOfTheExperienceThatSomebodyAskedForAsAFetch) {
   teach(server_);
-  test::Program watch("kinship", server_.with_domain({"watch", "--json"}), folder_ / "watch.err");
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  watch({"--json"});
   EXPECT_EQ(server_.kinship({"tasks", "experience", "sweep"}).code, 0);
-  const std::string event = watch.read_line();
+  const std::string event = watch_->read_line();
   EXPECT_NE(event.find("\"kind\":\"fetch\",\"task\":\"sweep\""), std::string::npos) << event;
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
+  end();
 }
 
-TEST_F(AdminCommands, WatchSaysAtOnceThatThereIsNoServerAndThenHowBusyItIs) {
+TEST_F(Watch, SaysAtOnceThatThereIsNoServerAndThenHowBusyItIs) {
   const test::ReservedDomain domain;
-  test::Program watch(
-      "kinship",
-      {"--domain", std::to_string(domain.number()), "watch", "--every", "1", "--robot", "panda"},
-      folder_ / "watch.err");
-  EXPECT_EQ(watch.read_line().substr(0, 28), "TIME                  KIND  ");
-  while (test::read_text(folder_ / "watch.err").find("no server at 127.0.0.1, domain ") ==
-         std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  begin({"--domain", std::to_string(domain.number()), "watch", "--every", "1", "--robot", "panda"});
+  EXPECT_EQ(watch_->read_line().substr(0, 28), "TIME                  KIND  ");
+  wait_for_words("no server at 127.0.0.1, domain ");
   const test::ServerProcess late(
       {.store = folder_ / "late.db", .domain = domain.number(), .arguments = {}});
-  const std::string line = watch.read_line();
+  const std::string line = watch_->read_line();
   EXPECT_NE(line.find("  rates       reports 0.0/s, fetches "), std::string::npos) << line;
-  EXPECT_NE(test::read_text(folder_ / "watch.err").find("the server is there"), std::string::npos);
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
+  EXPECT_NE(said().find("the server is there"), std::string::npos);
+  end();
 }
 
 TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
@@ -88,30 +99,22 @@ TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
     EXPECT_LE(line.size(), 80U) << line;
 }
 
-TEST_F(AdminCommands, WatchTakesARobotByItsDigestAndTellsNothingOfOthers) {
+TEST_F(Watch, TakesARobotByItsDigestAndTellsNothingOfOthers) {
   teach(server_);
   const std::string panda = attempts_.front().robot.hex().substr(0, 8);
-  test::Program watch("kinship", server_.with_domain({"watch", "--json", "--robot", panda}),
-                      folder_ / "watch.err");
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  watch({"--json", "--robot", panda});
   for (const std::string robot : {"ur10e", "panda"})
     EXPECT_EQ(server_.kinship({"distributions", "fetch", "--task", "dance", "--robot", robot}).code,
               3);
-  const std::string event = watch.read_line();
+  const std::string event = watch_->read_line();
   EXPECT_NE(event.find("\"robot\":\"panda\""), std::string::npos) << event;
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
+  end();
 }
 
-TEST_F(AdminCommands, WatchSaysThatItDoesNotKnowARobot) {
-  test::Program watch("kinship", server_.with_domain({"watch", "--robot", "nobody"}),
-                      folder_ / "watch.err");
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_NE(test::read_text(folder_ / "watch.err").find("no robot 'nobody'"), std::string::npos);
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
+TEST_F(Watch, SaysThatItDoesNotKnowARobot) {
+  watch({"--robot", "nobody"});
+  EXPECT_NE(said().find("no robot 'nobody'"), std::string::npos);
+  end();
 }
 
 }  // namespace

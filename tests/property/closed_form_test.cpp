@@ -131,32 +131,5 @@ INSTANTIATE_TEST_SUITE_P(
                     Subject{"on_track", test::arms::on_track}),
     [](const auto& instance) { return instance.param.name; });
 
-TEST(ClosedFormLimits, LeaveTheOneBranchThatTheyAllow) {
-  const kinematics::Chain chain = test::arms::industrial();
-  std::mt19937_64 generator(kSeed);
-  for (int i = 0; i < 20; ++i) {
-    const Eigen::VectorXd q = test::random_configuration(chain, generator);
-    kinematics::ChainParts parts;
-    parts.base_link = chain.base_link();
-    parts.tip_link = chain.tip_link();
-    parts.joints = chain.joints();
-    parts.T_last_tip = chain.T_last_tip();
-    for (std::size_t j = 0; j < 6; ++j) {  // half of them exactly at a limit
-      parts.joints[j].lower = q[static_cast<Eigen::Index>(j)] - (j % 2 == 0 ? 0 : 0.1);
-      parts.joints[j].upper = q[static_cast<Eigen::Index>(j)] + 0.1;
-    }
-    const kinematics::Chain narrow(parts);
-    Branches branches;
-    const auto form = find_closed_form(narrow).form;
-    ASSERT_TRUE(form);
-    form->append(kinematics::T_base_transfer(chain, q), {}, branches);
-    ASSERT_EQ(branches.size(), 1);
-    EXPECT_TRUE(branches.outside_limits());
-    Eigen::VectorXd found = Eigen::Map<const Eigen::VectorXd>(branches[0], 6);
-    EXPECT_TRUE(normalize(narrow, found));
-    EXPECT_LT((found - q).norm(), 1e-6);
-  }
-}
-
 }  // namespace
 }  // namespace kinship::inverse::closed_form_test

@@ -60,22 +60,5 @@ INSTANTIATE_TEST_SUITE_P(Models, InverseOfModel,
                                          "planar_5r_a", "planar_5r_b", "planar_7r_c"),
                          [](const auto& instance) { return instance.param; });
 
-TEST(InverseOfUr10e, AllBranchesHoldTheOneThePoseCameFrom) {
-  const kinematics::Chain chain = test::model_chain("ur10e");
-  std::mt19937_64 generator(kSeed);
-  constexpr int kCount = 200;
-  int recovered = 0;
-  for (int i = 0; i < kCount; ++i) {
-    Eigen::VectorXd q = test::random_configuration(chain, generator);
-    ASSERT_TRUE(normalize(chain, q));
-    const Eigen::MatrixXd all =
-        inverse(chain, kinematics::T_base_tip(chain, q), {.max_solutions = 0, .min_distance = 0.05})
-            .configurations;
-    EXPECT_LE(all.cols(), 8);
-    recovered += ((all.colwise() - q).colwise().norm().array() < 1e-3).any() ? 1 : 0;
-  }
-  EXPECT_GE(recovered, 0.97 * kCount);
-}
-
 }  // namespace
 }  // namespace kinship::inverse::inverse_test

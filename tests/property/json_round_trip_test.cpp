@@ -8,6 +8,7 @@
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
+#include "tests/support/random_values.hpp"
 
 namespace kinship::json::json_round_trip_test {
 namespace {
@@ -15,30 +16,21 @@ namespace {
 constexpr std::uint64_t kSeed = 8;
 constexpr int kCases = 200;
 
-/// Random values of the types that files carry, doubles of every magnitude among them.
-class Values {
+/// Values of the contract with doubles of every magnitude and any printable text.
+class Values : public test::RandomValues {
  public:
+  Values() : RandomValues(kSeed) {}
+
   double any_double() {
     for (;;) {
-      const auto value = std::bit_cast<double>(generator_());
+      const auto value = std::bit_cast<double>(generator()());
       if (std::isfinite(value))
         return value;
     }
   }
   double positive() { return std::abs(any_double()); }
-  double share() { return std::uniform_real_distribution<double>(0, 1)(generator_); }
-  std::uint64_t count() { return generator_() >> (generator_() % 64); }
-  int below(int limit) { return std::uniform_int_distribution<int>(0, limit - 1)(generator_); }
-  bool coin() { return below(2) == 1; }
-
-  Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd any_matrix(Eigen::Index rows, Eigen::Index columns) {
     return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return any_double(); });
-  }
-  Digest digest() {
-    Digest digest;
-    for (auto& byte : digest.bytes)
-      byte = static_cast<std::uint8_t>(generator_());
-    return digest;
   }
   std::string printable(int max_size) {
     std::string text(static_cast<std::size_t>(below(max_size + 1)), ' ');
@@ -46,57 +38,22 @@ class Values {
       c = static_cast<char>(' ' + below('~' - ' ' + 1));
     return text;
   }
-  Eigen::Isometry3d pose() {
-    std::normal_distribution<double> normal;
-    const auto draw = [&] { return normal(generator_); };
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = Eigen::Quaterniond(draw(), draw(), draw(), draw()).normalized().toRotationMatrix();
-    T.translation() << draw(), draw(), draw();
-    return T;
-  }
 
   Attempt attempt() {
-    Attempt attempt;
-    for (auto& byte : attempt.report_uuid.bytes)
-      byte = static_cast<std::uint8_t>(generator_());
-    attempt.robot = digest();
+    Attempt attempt = RandomValues::attempt();
     attempt.machine = printable(128);
-    attempt.task = "task:" + std::to_string(count());
-    if (coin())
-      attempt.T_task_base = pose();
-    attempt.record.outcome = coin() ? Outcome::Solved : Outcome::Timeout;
     attempt.record.planner = printable(128);
     attempt.record.planner_options = printable(1024);
     attempt.record.planning_time_s = positive();
-    attempt.record.collision_checks = count();
-    attempt.record.projections = count();
     attempt.record.time_limit_s = positive();
-    attempt.record.sampling_mode = coin() ? SamplingMode::Guided : SamplingMode::Control;
-    attempt.record.share = share();
-    if (coin())
-      attempt.record.distribution_id = digest();
-    attempt.record.distribution_revision = count();
-    if (attempt.record.outcome == Outcome::Solved)
-      attempt.path = Path(matrix(1 + below(32), 2 + below(50)));
+    if (attempt.path)
+      attempt.path = Path(any_matrix(attempt.path->dof(), attempt.path->size()));
     return attempt;
   }
-
   Mixture mixture(Eigen::Index dof) {
-    const Eigen::Index components = 1 + below(20);
-    Eigen::VectorXd weights =
-        Eigen::VectorXd::NullaryExpr(components, [&] { return 0.01 + share(); });
-    weights /= weights.sum();
-    std::vector<Eigen::MatrixXd> covariances;
-    for (Eigen::Index i = 0; i < components; ++i) {
-      const Eigen::MatrixXd factor =
-          Eigen::MatrixXd::NullaryExpr(dof, dof, [&] { return share(); });
-      covariances.emplace_back(factor * factor.transpose());
-    }
-    return {weights, matrix(dof, components), covariances};
+    const Mixture mixture = RandomValues::mixture(dof);
+    return {mixture.weights(), any_matrix(dof, mixture.size()), mixture.covariances()};
   }
-
- private:
-  std::mt19937_64 generator_{kSeed};
 };
 
 bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -170,9 +127,9 @@ TEST(JsonRoundTrip, ProblemWritesTheSameTextAgain) {
   for (int i = 0; i < kCases; ++i) {
     Problem written;
     written.name = values.printable(40);
-    written.start = values.matrix(1 + values.below(32), 1);
+    written.start = values.any_matrix(1 + values.below(32), 1);
     if (values.coin())
-      written.goal_configurations = values.matrix(written.start.size(), 1 + values.below(5));
+      written.goal_configurations = values.any_matrix(written.start.size(), 1 + values.below(5));
     else
       written.T_task_goal = Eigen::Isometry3d::Identity();
     if (values.coin()) {

@@ -192,6 +192,7 @@ class StoreModel : public testing::TestWithParam<std::tuple<Engine, std::size_t>
     const std::optional<std::size_t> expected = model_.retire(uuid);
     ASSERT_EQ(retired.has_value(), expected.has_value());
     EXPECT_EQ(expected ? retired->paths : 0, expected.value_or(0));
+    EXPECT_EQ(expected ? retired->robots.size() : 0, expected.value_or(0));
   }
   void reset_one(std::size_t task) {
     const Result<Retirement> reset = store_->reset_task(kTasks[task]);

@@ -1,7 +1,9 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -83,7 +85,8 @@ Program::Program(const std::string& name, const std::vector<std::string>& argume
     throw std::system_error(errno, std::system_category(), "pipe");
   output_ = pipe_ends[0];
   try {
-    pid_ = SpawnSettings(pipe_ends[1], error_file).spawn(test::bin_dir() + "/" + name, arguments);
+    pid_ = SpawnSettings(pipe_ends[1], error_file)
+               .spawn(std::filesystem::path(test::bin_dir()) / name, arguments);
   } catch (...) {
     close(pipe_ends[0]);
     close(pipe_ends[1]);
@@ -93,9 +96,7 @@ Program::Program(const std::string& name, const std::vector<std::string>& argume
 }
 
 Program::~Program() {
-  if (is_running_)
-    signal(SIGKILL);
-  wait();
+  kill();
   close(output_);
 }
 
@@ -115,13 +116,34 @@ std::string Program::read_all() {
   return text;
 }
 
+bool Program::has_output_within(std::chrono::milliseconds patience) const {
+  pollfd waits{output_, POLLIN, 0};
+  return poll(&waits, 1, static_cast<int>(patience.count())) > 0;
+}
+
 void Program::signal(int number) const { ::kill(pid_, number); }
+
+void Program::kill() {
+  if (is_running_)
+    signal(SIGKILL);
+  wait();
+}
 
 int Program::wait() {
   if (is_running_)
     waitpid(pid_, &status_, 0);
   is_running_ = false;
   return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+}
+
+Answer run_to_end(const std::string& name, const std::vector<std::string>& arguments) {
+  const TemporaryDirectory folder;
+  Program program(name, arguments, folder / "err");
+  Answer answer;
+  answer.out = program.read_all();
+  answer.code = program.wait();
+  answer.err = read_text(folder / "err");
+  return answer;
 }
 
 ServerProcess::ServerProcess(const Options& options)
@@ -138,10 +160,7 @@ int ServerProcess::terminate() {
   return program_.wait();
 }
 
-void ServerProcess::kill() {
-  program_.signal(SIGKILL);
-  program_.wait();
-}
+void ServerProcess::kill() { program_.kill(); }
 
 std::string read_text(const std::filesystem::path& file) {
   std::ifstream stream(file);

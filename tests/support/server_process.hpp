@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -9,10 +10,11 @@
 
 namespace kinship::test {
 
-/// A program of Kinship, from the folder of the build, that runs beside the test: its standard
-/// output is read here, its standard error goes into a file. Killed on destruction.
+/// A program that runs beside the test: its standard output is read here, its standard error goes
+/// into a file. Killed on destruction.
 class Program {
  public:
+  /// \param name         of a program of Kinship, in the folder of the build; or a path.
   /// \param arguments    without the program's name.
   /// \param error_file   appended to; empty: the test's own standard error.
   /// \throws std::runtime_error if it cannot be started.
@@ -25,7 +27,11 @@ class Program {
   pid_t pid() const noexcept { return pid_; }
   std::string read_line();  ///< next line of its output; empty at the end of it
   std::string read_all();   ///< what is left of its output, up to its end
+  bool has_output() const { return has_output_within(std::chrono::milliseconds(0)); }
+  /// Waits for something to read, which may be the end.
+  bool has_output_within(std::chrono::milliseconds patience) const;
   void signal(int number) const;
+  void kill();  ///< SIGKILL; returns when it is gone
 
   /// Waits for its end. \return exit code, or 128 + the signal that ended it.
   int wait();
@@ -36,6 +42,17 @@ class Program {
   int status_ = 0;
   bool is_running_ = true;
 };
+
+/// What a program that ended left behind.
+struct Answer {
+  int code = -1;
+  std::string out, err;
+
+  bool says(const std::string& words) const { return (out + err).find(words) != std::string::npos; }
+};
+
+/// A program from its start to its end.
+Answer run_to_end(const std::string& name, const std::vector<std::string>& arguments);
 
 /// kinshipd as a process, from its readiness line on.
 class ServerProcess {

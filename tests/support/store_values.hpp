@@ -24,6 +24,13 @@ Id id_from(std::uint64_t number) {
   return id;
 }
 
+inline std::vector<Uuid> uuids_from(const std::vector<std::uint64_t>& numbers) {
+  std::vector<Uuid> uuids;
+  for (const std::uint64_t number : numbers)
+    uuids.push_back(id_from<Uuid>(number));
+  return uuids;
+}
+
 inline store::RobotRecord make_robot(const std::string& label, std::uint64_t number) {
   store::RobotRecord robot;
   robot.digest = id_from<Digest>(number);

@@ -82,17 +82,6 @@ class WhoHasCredentials(SecuredServer):
 
 
 class WhoHasNone(SecuredServer):
-    def test_hears_nothing_of_the_server(self):
-        with self.assertRaisesRegex(kinship.NoServer, "no server answered"):
-            self.open_client(timeout=1).register(self.panda)
-
-    def test_nor_with_those_of_another_authority(self):
-        other = self.server.folder / "other"
-        secure("init", other)
-        client = self.open_client(timeout=1, security=self.add("stranger", fleet=other))
-        with self.assertRaisesRegex(kinship.NoServer, "no server answered"):
-            client.register(self.panda)
-
     def test_is_told_which_file_is_wrong(self):
         with self.assertRaisesRegex(kinship.NotFound, "nowhere.*key.pem"):
             self.open_client(security=self.server.folder / "nowhere")

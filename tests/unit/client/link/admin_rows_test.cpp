@@ -1,11 +1,13 @@
-// Pages and jobs against an admin replier in this process, over loopback.
+// Pages, jobs and names of robots against an admin replier in this process, over loopback.
 
 #include "client/link/admin_rows.hpp"
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <thread>
 
+#include "client/link/robot_names.hpp"
 #include "proto/dds/replier.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "tests/support/reserved_domain.hpp"
@@ -41,8 +43,8 @@ class AdminServer {
   std::thread thread_;
 };
 
-Client client(std::uint32_t domain) {
-  return Client({.domain = domain, .outbox = {}, .has_outbox = false, .timeout = 30s});
+Client client(std::uint32_t domain, std::chrono::milliseconds timeout = 30s) {
+  return Client({.domain = domain, .outbox = {}, .has_outbox = false, .timeout = timeout});
 }
 
 AdminReply page(std::vector<std::string> rows, const std::string& next_cursor,
@@ -142,6 +144,60 @@ TEST(AdminRows, AJobThatGoesOnIsTheAnswerWhenTheTimeHasCome) {
   const auto job = wait_for_job(asker, "00c0ffee", Clock::now());
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_FALSE(has_ended(*job));
+}
+
+/// Knows robots by name, as `robots show` answers.
+AdminServer::Answer shown(std::map<std::string, Digest> robots) {
+  return [robots = std::move(robots)](const AdminRequest& request) {
+    AdminReply reply;
+    const auto robot = robots.find(request.argument);
+    if (request.verb != AdminVerb::ShowRobot || robot == robots.end()) {
+      reply.status = AdminStatus::NotFound;
+      reply.message = "no robot '" + request.argument + "'";
+      return reply;
+    }
+    RobotSummary summary;
+    summary.robot = robot->second;
+    summary.label = request.argument;
+    reply.status = AdminStatus::Ok;
+    reply.rows = {json::to_json(summary), "{\"label\":\"a description\"}"};
+    return reply;
+  };
+}
+
+Digest digest(std::uint8_t first) {
+  Digest digest;
+  digest.bytes[0] = first;
+  return digest;
+}
+
+TEST(ResolveRobots, GivesAscendingDistinctDigests) {
+  const test::ReservedDomain domain;
+  const AdminServer server(
+      domain.number(), shown({{"panda", digest(9)}, {"iiwa14", digest(3)}, {"0900", digest(9)}}));
+  Client asker = client(domain.number());
+  EXPECT_EQ(*resolve_robots(asker, {"panda", "iiwa14", "0900"}),
+            (std::vector<Digest>{digest(3), digest(9)}));
+  EXPECT_TRUE(resolve_robots(asker, {})->empty());
+  EXPECT_EQ(find_robot(asker, "iiwa14")->robot, digest(3));
+}
+
+TEST(ResolveRobots, NamesTheRobotThatIsNotThere) {
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), shown({{"panda", digest(9)}}));
+  Client asker = client(domain.number());
+  const auto robots = resolve_robots(asker, {"panda", "sawyer"});
+  ASSERT_FALSE(robots);
+  EXPECT_EQ(robots.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(robots.error().message, "no robot 'sawyer'");
+}
+
+TEST(ResolveRobots, WithoutAServerIsUnavailable) {
+  const test::ReservedDomain domain;
+  Client asker = client(domain.number(), 200ms);
+  const auto robots = resolve_robots(asker, {"panda"});
+  ASSERT_FALSE(robots);
+  EXPECT_EQ(robots.error().code, ErrorCode::Unavailable);
 }
 
 }  // namespace

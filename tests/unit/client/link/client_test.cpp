@@ -77,30 +77,6 @@ class ClientTest : public testing::Test {
   test::TemporaryDirectory folder;
 };
 
-TEST_F(ClientTest, ReportsReachTheServer) {
-  test::RandomValues values(kSeed);
-  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
-  Client client(options());
-  for (int i = 0; i < 20; ++i)
-    client.report(values.attempt());
-  const auto state = client.flush(10s);
-  EXPECT_EQ(state.pending, 0U);
-  EXPECT_EQ(state.accepted, 20U);
-  EXPECT_EQ(state.problem, "");
-}
-
-TEST_F(ClientTest, ReportsWaitForAServerAndSurviveTheClient) {
-  test::RandomValues values(kSeed);
-  {
-    Client client(options());
-    client.report(values.attempt());
-    EXPECT_EQ(client.flush(50ms).pending, 1U);
-  }
-  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
-  Client client(options());
-  EXPECT_EQ(client.flush(10s).pending, 0U);
-}
-
 TEST_F(ClientTest, ReportThatTheServerWouldRefuseIsNotWritten) {
   test::RandomValues values(kSeed);
   Client client(options());

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+#include <array>
 #include <cstdlib>
 
+#include "client/link/host_name.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::link::environment_test {
@@ -44,6 +47,22 @@ TEST_F(Environment, ADomainThatIsNoneIsRefusedByName) {
                 "KINSHIP_DOMAIN '" + std::string(text) + "' is not a domain from 0 to 230");
     }
   }
+}
+
+TEST(HostName, AddressesAreKnownAndSomeNamesAreNot) {
+  for (const char* const known : {"127.0.0.1", "localhost", "192.0.2.1"})
+    EXPECT_EQ(why_unknown(known), "") << known;
+  EXPECT_NE(why_unknown("nobody..invalid"), "");
+}
+
+TEST(HostName, TellsThisMachineFromOthers) {
+  std::array<char, 256> name{};
+  ASSERT_EQ(gethostname(name.data(), name.size() - 1), 0);
+  for (const std::string here : {"127.0.0.1", "127.1.2.3", "localhost", "::1"})
+    EXPECT_TRUE(is_this_machine(here)) << here;
+  EXPECT_TRUE(is_this_machine(name.data()));
+  EXPECT_FALSE(is_this_machine("192.0.2.1"));
+  EXPECT_FALSE(is_this_machine(std::string(name.data()) + ".elsewhere.invalid"));
 }
 
 }  // namespace

@@ -190,28 +190,6 @@ TEST_F(ReportSenderTest, ReceiptsForOthersAreIgnored) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "sent" / (mine.text() + ".json")));
 }
 
-TEST_F(ReportSenderTest, RestoredStoreGetsEverythingAgain) {
-  add();
-  std::atomic<int> sent = 0;
-  std::atomic<bool> is_restored = false;
-  const Uuid before = Uuid::random();
-  const Uuid after = Uuid::random();
-  ReportSender sender(outbox, [&](const ReportRequest& batch) {
-    sent += static_cast<int>(batch.attempts.size());
-    return answer(batch, ReceiptStatus::Stored, "", is_restored ? after : before);
-  });
-  sender.wait_until_empty(in(10s));
-  is_restored = true;
-  add();
-  sender.wake();
-  while (sent < 3) {
-    sender.wake();
-    sender.wait_until_empty(in(1s));
-  }
-  sender.wait_until_empty(in(10s));
-  EXPECT_EQ(sent, 3);
-}
-
 TEST_F(ReportSenderTest, SentReportsGrowOlderByTheTimeInWhichItRunsHourByHour) {
   const auto start = std::chrono::steady_clock::now();
   std::atomic<int> minutes = 0;

@@ -121,17 +121,6 @@ TEST_F(UnknownRobot, WithoutADescriptionItsReportsStayAndDoNotHoldUpOthers) {
   EXPECT_NE(sender.counts().problem.find(robot.short_hex()), std::string::npos);
 }
 
-TEST_F(UnknownRobot, ItsReportsAreSentWhenItWasRegisteredByOthers) {
-  add(robot);
-  ReportSender sender(outbox, send());
-  store.wait_for_batches(1);
-  store.add_robot(robot);
-  sender.retry();
-  sender.wait_until_empty(in(20s));
-  EXPECT_EQ(outbox.pending_count(), 0U);
-  EXPECT_EQ(sender.counts().problem, "");
-}
-
 TEST_F(UnknownRobot, RefusedRegistrationIsToldAndItsReportsStay) {
   RobotDescription description = values.robot_description();
   description.label = "ur5e_3";

@@ -125,22 +125,6 @@ TaskSpaceRegion level() {
   return region;
 }
 
-TEST(ReportCodec, AConstraintComesBackWithItsInfiniteBounds) {
-  ReportRequest request;
-  request.attempts = {solved_attempt(7, 3), solved_attempt(7, 3)};
-  request.attempts[0].scene = RecordedScene{};
-  request.attempts[0].scene->constraint = level();
-  request.attempts[1].scene = cups_on_a_table(1);
-  const auto message = encode({}, request).value_or_throw();
-  const ReportRequest read = decode(message.wire).value_or_throw();
-  ASSERT_EQ(read.attempts.size(), 2U);
-  ASSERT_TRUE(read.attempts[0].scene && read.attempts[0].scene->constraint);
-  const TaskSpaceRegion& region = *read.attempts[0].scene->constraint;
-  EXPECT_EQ(region.bounds, level().bounds);
-  EXPECT_TRUE(region.T_region_end.isApprox(level().T_region_end, 1e-12));
-  EXPECT_FALSE(read.attempts[1].scene->constraint);
-}
-
 TEST(ReportCodec, ABadConstraintIsRefusedByName) {
   ReportRequest request;
   request.attempts = {solved_attempt(7, 3)};

@@ -43,16 +43,6 @@ std::string text_of(const Result<AdminReply>& reply) {
   return reply->rows.empty() ? reply->message : reply->rows.front();
 }
 
-TEST(Processes, RequestIsAnswered) {
-  const test::ReservedDomain domain;
-  const Participant participant({.domain = domain.number()});
-  AdminRequester requester(participant, Uuid::random());
-  test::ChildProcess server = start_server(domain.number());
-  ASSERT_EQ(server.read_line(), "ready");
-  EXPECT_EQ(text_of(requester.call(echo("hello"), in(10s))), "hello");
-  EXPECT_EQ(text_of(requester.call(echo("again"), in(10s))), "again");
-}
-
 TEST(Processes, CallWaitsForAServerThatStartsLater) {
   const test::ReservedDomain domain;
   const Participant participant({.domain = domain.number()});
@@ -62,20 +52,6 @@ TEST(Processes, CallWaitsForAServerThatStartsLater) {
   EXPECT_EQ(reply.wait_for(200ms), std::future_status::timeout);
   test::ChildProcess server = start_server(domain.number());
   EXPECT_EQ(text_of(reply.get()), "late");
-}
-
-TEST(Processes, CallIsAnsweredByTheServerAfterOneThatWasKilled) {
-  const test::ReservedDomain domain;
-  const Participant participant({.domain = domain.number()});
-  AdminRequester requester(participant, Uuid::random());
-  test::ChildProcess first = start_server(domain.number());
-  ASSERT_EQ(first.read_line(), "ready");
-  ASSERT_EQ(text_of(requester.call(echo("first"), in(10s))), "first");
-  first.kill();
-  auto reply =
-      std::async(std::launch::async, [&] { return requester.call(echo("second"), in(20s)); });
-  test::ChildProcess second = start_server(domain.number());
-  EXPECT_EQ(text_of(reply.get()), "second");
 }
 
 TEST(Processes, ClientsOfOnePartitionGetTheirOwnReplies) {

@@ -38,21 +38,6 @@ TEST_F(Security, TheServerKnowsAClientByItsCertificate) {
   EXPECT_EQ(ask(one, "first"), "first");
 }
 
-// Without security there is nothing to revoke: what stops her is seen by her being served before.
-TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
-  ASSERT_EQ(server_.read_line(), "ready");
-  const Participant participant = join(alice_);
-  AdminRequester requester(participant, Uuid::random());
-  ASSERT_EQ(ask(requester, "before"), "before");
-  fleet_.revoke("alice", now());
-  const auto deadline = AdminRequester::Clock::now() + 5s;
-  std::string answer = "again";
-  while (answer == "again" && AdminRequester::Clock::now() < deadline)
-    answer = ask(requester, "again");  // the record is looked at once a second
-  EXPECT_NE(answer.find("alice"), std::string::npos) << answer;
-  EXPECT_NE(answer.find("revoked"), std::string::npos) << answer;
-}
-
 TEST_F(Security, AFloodOfWhoIsRevokedIsNotAllAnswered) {
   constexpr int kAtOnce = 40;  // ten a second are answered
   ASSERT_EQ(server_.read_line(), "ready");
@@ -101,12 +86,6 @@ TEST_F(Security, NobodyElseIsHeard) {
   EXPECT_NE(ask_as(namesake, "other authority", 1500ms).find("no server answered"),
             std::string::npos);
   EXPECT_NE(ask_as({}, "no certificate", 1000ms).find("no server answered"), std::string::npos);
-}
-
-TEST_F(Security, ARoleWithoutPartInAConversationIsToldSo) {
-  const fs::path robot = add(fleet_, {.name = "r1"}, "r1");
-  const std::string answer = ask_as(robot, "who");
-  EXPECT_NE(answer.find("admin: not for the role 'robot'"), std::string::npos) << answer;
 }
 
 TEST_F(Security, CredentialsThatCannotBeAreRefusedInWords) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <string>
 
 namespace kinship::json::attempt_json_test {
@@ -30,25 +29,6 @@ std::string solved_line() {
 std::string message_of(const std::string& line) {
   const auto result = attempt_from_json(line);
   return result ? "accepted" : result.error().message;
-}
-
-TEST(AttemptJson, ReadsTheLineOfTheFileFormat) {
-  const auto named = attempt_from_json(solved_line());
-  ASSERT_TRUE(named) << named.error().message;
-  EXPECT_EQ(named->label, "panda-2");
-  EXPECT_EQ(named->attempt.robot, Digest{});
-  EXPECT_EQ(named->attempt.report_uuid.text(), kUuid);
-  EXPECT_EQ(named->attempt.machine, "Zelle 3, Süd");
-  EXPECT_EQ(named->attempt.T_task_base->translation(), Eigen::Vector3d(1, 2, 3));
-  ASSERT_TRUE(named->attempt.path);
-  EXPECT_EQ(named->attempt.path->dof(), 2);
-  EXPECT_EQ(named->attempt.path->waypoints().col(2), Eigen::Vector2d(0.5, 0.6));
-  const PlanningRecord& record = named->attempt.record;
-  EXPECT_EQ(record.outcome, Outcome::Solved);
-  EXPECT_EQ(record.sampling_mode, SamplingMode::Guided);
-  EXPECT_EQ(record.collision_checks, 1234U);
-  EXPECT_EQ(record.distribution_id->hex(), std::string(64, 'a'));
-  EXPECT_EQ(record.distribution_revision, 7U);
 }
 
 TEST(AttemptJson, RobotOfSixtyFourDigitsIsADigest) {
@@ -109,46 +89,12 @@ std::string with_scene(const std::string& scene) {
   return replaced(solved_line(), "\"scene\":null", "\"scene\":" + scene);
 }
 
-TEST(AttemptJson, SceneIsAsInAProblemWithWhatWasHeld) {
-  const auto named = attempt_from_json(with_scene(
-      R"({"boxes":[{"name":"table","pose":[1,0,0,0,0,0,1],"size":[1,2,0.1]}],)"
-      R"("spheres":[{"name":"ball","center":[0,0,1],"radius":0.2}],)"
-      R"("held":[{"name":"can","shape":{"cylinder":[0.03,0.1]},"T_transfer_object":[0,0,0.05,0,0,0,1]}],)"
-      R"("allowed_collisions":[["can","table"]]})"));
-  ASSERT_TRUE(named) << named.error().message;
-  const RecordedScene& scene = named->attempt.scene.value();
-  ASSERT_EQ(scene.objects.size(), 2U);
-  EXPECT_EQ(scene.objects[0].name, "table");
-  EXPECT_EQ(std::get<BoxShape>(scene.objects[0].shape).size, Eigen::Vector3d(1, 2, 0.1));
-  EXPECT_EQ(std::get<SphereShape>(scene.objects[1].shape).radius_m, 0.2);
-  ASSERT_EQ(scene.held.size(), 1U);
-  EXPECT_EQ(std::get<CylinderShape>(scene.held[0].shape).length_m, 0.1);
-  EXPECT_EQ(scene.held[0].T_transfer_object.translation(), Eigen::Vector3d(0, 0, 0.05));
-  EXPECT_EQ(scene.allowed_collisions.front(), std::pair(std::string("can"), std::string("table")));
-  EXPECT_TRUE(attempt_from_json(with_scene("{}"))->attempt.scene.has_value());
-}
-
 constexpr const char* kUpright =
     R"({"T0_w":[0,0,0,0,0,0,1],"Tw_e":[0,0,0.1,1,0,0,0],)"
     R"("Bw":[[null,null],[-0.5,0.5],[0,null],[-0.1,0.1],[-0.1,0.1],[null,null]]})";
 
 std::string with_constraint(const std::string& constraint) {
   return with_scene(R"({"constraint":)" + constraint + "}");
-}
-
-TEST(AttemptJson, TheConstraintOfASceneIsThatOfAProblem) {
-  const auto named = attempt_from_json(with_constraint(kUpright));
-  ASSERT_TRUE(named) << named.error().message;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const TaskSpaceRegion& region = named->attempt.scene.value().constraint.value();
-  EXPECT_EQ(region.bounds.col(0), Eigen::Vector2d(-kInfinity, kInfinity));
-  EXPECT_EQ(region.bounds.col(2), Eigen::Vector2d(0, kInfinity));
-  EXPECT_EQ(region.T_region_end.translation(), Eigen::Vector3d(0, 0, 0.1));
-  const auto back = attempt_from_json(to_json(named->attempt));
-  ASSERT_TRUE(back) << back.error().message;
-  ASSERT_TRUE(back->attempt.scene->constraint);
-  EXPECT_EQ(back->attempt.scene->constraint->bounds, region.bounds);
-  EXPECT_EQ(content_digest(*back->attempt.scene), content_digest(*named->attempt.scene));
 }
 
 TEST(AttemptJson, ASceneWithoutAConstraintIsWrittenAsEver) {

@@ -86,19 +86,6 @@ TEST(DistributionJson, DetailsOutsideTheirRangeAreRefused) {
             "recent[1]: is older than the one before, must be oldest first");
 }
 
-TEST(DistributionJson, FailedHasNoMixtureAndSaysWhy) {
-  Distribution failed = two_components();
-  failed.mixture.reset();
-  failed.state = DistributionState::Failed;
-  failed.reason = "no pose of 12 paths is within reach";
-  failed.limits.resize(2, 0);
-  const auto back = distribution_from_json(to_json(failed));
-  ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(back->state, DistributionState::Failed);
-  EXPECT_EQ(back->reason, failed.reason);
-  EXPECT_FALSE(back->mixture);
-}
-
 TEST(DistributionJson, ThinIsServedWithItsMixture) {
   Distribution thin = two_components();
   thin.state = DistributionState::Thin;
@@ -141,14 +128,6 @@ TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
   EXPECT_EQ(message_of(changed("\"k_curve\":null",
                                R"("k_curve":[{"K":20,"score":1},{"K":20,"score":0}])")),
             "k_curve[1]: K does not fall");
-}
-
-TEST(DistributionJson, ComponentsAreLimited) {
-  std::string weights = "[0";
-  for (int i = 0; i < 1024; ++i)
-    weights += ",0";
-  EXPECT_EQ(message_of(changed("[0.25,0.75]", weights + "]")),
-            "weights: 1025 elements exceed 1024");
 }
 
 }  // namespace

@@ -29,23 +29,6 @@ std::string message_of(const std::string& text) {
   return result ? "accepted" : result.error().message;
 }
 
-TEST(ProblemJson, ReadsTheLineOfTheFileFormat) {
-  const auto problem = problem_from_json(kProblem);
-  ASSERT_TRUE(problem) << problem.error().message;
-  EXPECT_EQ(problem->start, Eigen::Vector2d(0.1, 0.2));
-  EXPECT_EQ(problem->goal_configurations.col(1), Eigen::Vector2d(3, 4));
-  EXPECT_FALSE(problem->T_task_goal);
-  ASSERT_EQ(problem->scene.objects.size(), 3U);
-  EXPECT_EQ(std::get<BoxShape>(problem->scene.objects[0].shape).size, Eigen::Vector3d(1, 2, 0.1));
-  EXPECT_EQ(std::get<CylinderShape>(problem->scene.objects[1].shape).length_m, 2);
-  EXPECT_EQ(problem->scene.objects[2].T_task_object.translation(), Eigen::Vector3d(0, 0, 1));
-  ASSERT_EQ(problem->attached.size(), 1U);
-  EXPECT_EQ(problem->attached[0].touch_links, std::vector<std::string>{"finger"});
-  EXPECT_EQ(problem->allowed_collisions[0].second, "table");
-  EXPECT_EQ(problem->time_limit_s, 5);
-  EXPECT_EQ(problem->seed, 42U);
-}
-
 TEST(ProblemJson, OnlyNameStartAndGoalAreRequired) {
   const auto problem =
       problem_from_json(R"({"name": "n", "start": [0], "goal": {"pose": [1, 0, 0, 0, 0, 0, 1]}})");

@@ -5,8 +5,10 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
+#include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::mixture::sampler_test {
@@ -190,6 +192,29 @@ TEST(Sampler, RefusesACovarianceThatIsNotPositiveDefinite) {
   const Mixture flat(Eigen::VectorXd::Ones(1), Eigen::MatrixXd::Zero(2, 1),
                      {Eigen::Matrix2d::Zero()});
   EXPECT_THROW(Sampler(flat, limits_of(-1, 1, 2)), Failure);
+}
+
+/// A continuous joint, cut at 0, about half a turn, beside one that has limits.
+Distribution turning_distribution() {
+  Distribution distribution;
+  distribution.mixture.emplace(Eigen::VectorXd::Ones(1), Eigen::Vector2d(std::numbers::pi, 0.4),
+                               std::vector<Eigen::MatrixXd>{Eigen::Matrix2d::Identity()});
+  distribution.limits.resize(2, 2);
+  distribution.limits << 0, -0.5, 2 * std::numbers::pi, 0.5;
+  distribution.cuts = {0.0, std::nullopt};
+  return distribution;
+}
+
+TEST(DistributionSampler, ManyAtOnceTurnContinuousJointsAndKeepLimitsOfOthers) {
+  const DistributionSampler sampler(turning_distribution());
+  std::mt19937_64 generator(3);
+  const Eigen::MatrixXd drawn = sampler.sample(generator, 2000);
+  ASSERT_EQ(drawn.cols(), 2000);
+  EXPECT_LE(drawn.row(0).cwiseAbs().maxCoeff(), std::numbers::pi);
+  EXPECT_LE(drawn.row(1).cwiseAbs().maxCoeff(), 0.5);
+  // About half a turn lies on both sides of where angles begin anew.
+  EXPECT_NEAR((drawn.row(0).array() > 0).cast<double>().mean(), 0.5, 0.05);
+  EXPECT_GT(drawn.row(0).cwiseAbs().mean(), 2);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "proto/types/fit_origin.hpp"
 #include "proto/types/mixture.hpp"
 #include "proto/types/path.hpp"
 #include "proto/types/profile.hpp"
@@ -59,6 +60,14 @@ TEST(Profile, KnowsDefaultAndPaper) {
   ASSERT_TRUE(find_profile("paper"));
   EXPECT_EQ(find_profile("paper")->transfer.max_solutions, 5);
   EXPECT_FALSE(find_profile("Default"));
+}
+
+TEST(FitOrigin, SaysWhichOfTheTwoHappened) {
+  EXPECT_EQ(describe({4, 2, 525, 25, 25, ""}), "incremental from revision 4, 25 of 525 paths new");
+  EXPECT_EQ(describe({4, 2, 525, 25, 525, ""}),
+            "incremental from revision 4, 25 of 525 paths new, 525 transferred");
+  EXPECT_EQ(describe({0, 0, 500, 500, 500, "the first"}), "full (the first), 500 paths");
+  EXPECT_EQ(describe({0, 0, 40, 40, 20, ""}), "full, 40 paths, 20 transferred");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "robots/collision/lane_layout.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision::body_pairs_test {
@@ -52,6 +53,26 @@ TEST(NeighbouringLinks, MeetThroughAShapelessRoot) {
   EXPECT_EQ(
       neighbouring_links(chain_with_fixed_links(), {false, false, false, true, false, false, true}),
       (Pairs{{3, 6}}));
+}
+
+Eigen::Matrix3d turned(double angle_rad, const Eigen::Vector3d& axis) {
+  return Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix();
+}
+
+TEST(LaneLayout, QuarterTurnsMapAxesToAxes) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
+  EXPECT_TRUE(is_of_quarter_turns(Eigen::Matrix3d::Identity()));
+  EXPECT_TRUE(is_of_quarter_turns(turned(M_PI / 2, z) * turned(-M_PI, x)));
+  EXPECT_FALSE(is_of_quarter_turns(turned(1e-6, z)));
+  EXPECT_FALSE(is_of_quarter_turns(turned(M_PI / 4, x)));
+}
+
+TEST(LaneLayout, TheAxesOfMostBoxesAreTaken) {
+  const Eigen::Matrix3d square = turned(0.4, {1, 2, 3}), odd = turned(1.1, {3, -1, 1});
+  const Eigen::Matrix3d quarter = turned(M_PI / 2, Eigen::Vector3d::UnitY());
+  const Eigen::Matrix3d found = common_axes({odd, square, square * quarter, square});
+  EXPECT_TRUE(is_of_quarter_turns(found.transpose() * square));
+  EXPECT_TRUE(common_axes({}).isIdentity());
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <random>
 
@@ -53,25 +52,6 @@ TEST(Inverse, APoseBeyondTheArmIsOutOfReach) {
   EXPECT_EQ(solutions.reason, NoSolution::OutOfReach);
 }
 
-TEST(Inverse, APoseInTheHoleOfTheWorkspaceIsOutOfReach) {
-  const auto chain = PlanarArm{.lengths_m = {1, 0.5}, .yaw = false}.chain();
-  EXPECT_EQ(inverse(chain, planar_pose(0.2, 0.1, 0)).reason, NoSolution::OutOfReach);
-}
-
-TEST(Inverse, LimitsAreTheReasonWhenOnlyTheyForbid) {
-  const auto chain = PlanarArm{.lengths_m = {1, 1}, .limit = 1, .yaw = false}.chain();
-  const auto solutions = inverse(chain, planar_pose(-1, 1, 0));
-  EXPECT_EQ(solutions.configurations.cols(), 0);
-  EXPECT_EQ(solutions.reason, NoSolution::Limits);
-}
-
-TEST(Inverse, SolutionsOutsideLimitsAreLeftOut) {
-  const auto chain = PlanarArm{.lengths_m = {1, 1}, .limit = 1.8, .yaw = false}.chain();
-  const auto solutions = inverse(chain, planar_pose(0.5, 1.3, 0));
-  ASSERT_EQ(solutions.configurations.cols(), 1);
-  EXPECT_TRUE(chain.within_limits(solutions.configurations.col(0)));
-}
-
 TEST(Inverse, RedundantArmFillsUpToLAtLeastDApart) {
   const auto chain = PlanarArm{.lengths_m = {0.3, 0.25, 0.2, 0.15, 0.1}, .limit = 2.5}.chain();
   const auto solutions =
@@ -114,13 +94,6 @@ TEST(Inverse, DistanceIsWrappedForContinuousJointsOnly) {
   arm.type = JointType::Continuous;
   const auto solutions = inverse(arm.chain(), T, options);
   ASSERT_EQ(solutions.configurations.cols(), 1);
-  EXPECT_LE(solutions.configurations.cwiseAbs().maxCoeff(), kPi);
-}
-
-TEST(Inverse, OfTurnedCopiesOnlyTheOneNearestMidRangeIsReturned) {
-  const auto chain = PlanarArm{.lengths_m = {1, 1}, .limit = 3 * kPi, .yaw = false}.chain();
-  const auto solutions = inverse(chain, planar_pose(1, 1, 0), {.max_solutions = 0});
-  ASSERT_EQ(solutions.configurations.cols(), 2);
   EXPECT_LE(solutions.configurations.cwiseAbs().maxCoeff(), kPi);
 }
 

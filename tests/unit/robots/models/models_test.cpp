@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/jacobian.hpp"
 #include "tests/support/robots.hpp"
 
 namespace kinship::models_test {
@@ -162,23 +161,6 @@ TEST_P(Models, ForwardKinematicsAgreesWithTheTableOfTheArm) {
     const Eigen::Matrix4d error =
         (T_base_tip(chain_, q).matrix() - GetParam().expected(q).matrix());
     ASSERT_LT(error.cwiseAbs().maxCoeff(), GetParam().tolerance);
-  }
-}
-
-TEST_P(Models, JacobianAgreesWithDifferenceQuotients) {
-  constexpr double kStep = 1e-6;
-  for (int i = 0; i < 20; ++i) {
-    const Eigen::VectorXd q = random_configuration(chain_, generator_);
-    const kinematics::Jacobian J = J_base_tip(chain_, q);
-    for (Eigen::Index k = 0; k < chain_.dof(); ++k) {
-      const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(chain_.dof(), k);
-      const Eigen::Isometry3d after = T_base_tip(chain_, q + step);
-      const Eigen::Isometry3d before = T_base_tip(chain_, q - step);
-      const Eigen::AngleAxisd turn(after.linear() * before.linear().transpose());
-      Eigen::Matrix<double, 6, 1> expected;
-      expected << after.translation() - before.translation(), turn.angle() * turn.axis();
-      EXPECT_TRUE(J.col(k).isApprox(expected / (2 * kStep), 1e-7));
-    }
   }
 }
 

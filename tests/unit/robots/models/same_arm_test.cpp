@@ -56,14 +56,6 @@ TEST_F(Ur10eTwin, CalibratedUnitsAreNear) {
   }
 }
 
-TEST_F(Ur10eTwin, OtherLimitsAreTheSameArm) {
-  for (Joint& joint : twin_.joints) {
-    joint.lower = -0.5;
-    joint.upper = 2.5;
-  }
-  EXPECT_EQ(likeness(), ArmLikeness::Exact);
-}
-
 TEST_F(Ur10eTwin, ATurnedAxisIsAnotherArm) {
   for (std::size_t i = 0; i < twin_.joints.size(); ++i) {
     twin_ = test::parts_of(ur10e_);

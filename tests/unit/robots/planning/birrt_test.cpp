@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <limits>
-#include <vector>
 
 #include "tests/support/planar_arm.hpp"
 #include "tests/unit/robots/planning/wall_world.hpp"
@@ -89,13 +88,6 @@ TEST(Birrt, AMixtureThatCoversNoWayOutDelaysAPathButNeverPreventsIt) {
   }
 }
 
-TEST(Birrt, CountsEveryConfigurationItAsksAbout) {
-  WallWorld world;
-  const PlanSummary summary = plan(world, kGoal, 1);
-  EXPECT_EQ(summary.collision_checks, world.asked);
-  EXPECT_GT(summary.iterations, 0u);
-}
-
 TEST(Birrt, EndsInAnyOfTheGoals) {
   Eigen::MatrixXd goals(2, 3);
   goals << at(0, 0), at(0.8, -0.5), at(-0.8, 0.9);  // in the wall, behind it, on this side
@@ -104,24 +96,6 @@ TEST(Birrt, EndsInAnyOfTheGoals) {
   ASSERT_TRUE(summary.waypoints);
   const Eigen::VectorXd end = summary.waypoints->rightCols(1);
   EXPECT_TRUE(end == goals.col(1) || end == goals.col(2));
-}
-
-TEST(Birrt, TheSmallerTreeGrowsAndABlockedExtensionCostsOneCheck) {
-  // The start cannot move, so its tree stays the smaller one.
-  std::vector<Eigen::VectorXd> asked;
-  const IsFree is_free = [&](const Eigen::VectorXd& q) {
-    asked.push_back(q);
-    return q == kStart || q[0] > 0;
-  };
-  const ConfigurationSampler sampler(square_bounds());
-  BirrtOptions limited = options();
-  limited.max_checks = 500;
-  std::mt19937_64 generator(8);
-  const PlanSummary summary = plan_birrt(kStart, kGoal, is_free, sampler, limited, generator);
-  EXPECT_EQ(summary.reason, NoPath::MaxChecks);
-  EXPECT_EQ(summary.iterations, 500U - 3) << "start, goal and the straight line cost one each";
-  for (const Eigen::VectorXd& q : asked)
-    EXPECT_TRUE(q == kGoal || (q - kStart).norm() < limited.step + 1e-9);
 }
 
 TEST(Birrt, SamplesInTheGapMakeItFast) {
@@ -138,14 +112,6 @@ TEST(Birrt, SamplesInTheGapMakeItFast) {
     guided_checks += plan(world, kGoal, seed, options(), guided).collision_checks;
   }
   EXPECT_LT(2 * guided_checks, uniform_checks);
-}
-
-TEST(Birrt, EqualSeedEqualPath) {
-  WallWorld world;
-  const PlanSummary one = plan(world, kGoal, 3), two = plan(world, kGoal, 3);
-  ASSERT_TRUE(one.waypoints && two.waypoints);
-  EXPECT_EQ(*one.waypoints, *two.waypoints);
-  EXPECT_EQ(one.collision_checks, two.collision_checks);
 }
 
 TEST(Birrt, SaysWhyItDidNotPlan) {
@@ -232,18 +198,6 @@ TEST(Birrt, PlansTheSameWhetherItAsksForOneOrForSeveralAtOnce) {
     EXPECT_EQ(summary.collision_checks, expected.collision_checks);
     EXPECT_LT(asked, summary.collision_checks);
     asked = 0;
-  }
-}
-
-TEST(Birrt, EndsAtTheLastCheckInTheMiddleOfSeveral) {
-  WallWorld world;
-  for (const std::uint64_t most : {3U, 7U, 40U}) {
-    BirrtOptions few = options();
-    few.max_checks = most;
-    const PlanSummary summary = plan(world, kGoal, 1, few);
-    EXPECT_FALSE(summary.waypoints);
-    EXPECT_EQ(summary.reason, NoPath::MaxChecks);
-    EXPECT_EQ(summary.collision_checks, most);
   }
 }
 

@@ -104,15 +104,6 @@ TEST_F(AccessGate, ARobotThatCannotBeReadNowIsTriedAgain) {
   EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::TryAgain);
 }
 
-TEST_F(AccessGate, WithoutTheRoleNothingIsReportedOrRegistered) {
-  caller_.role = AccessRole::Operator;
-  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
-  EXPECT_EQ(of(report({attempt}), attempt).message,
-            "robot_7 (role operator) may not report: needs role robot or admin");
-  EXPECT_EQ(register_robot(fleet::planar("new", {0.1, 0.2, 0.3})).status, RegisterStatus::Refused);
-  EXPECT_NE(fetch(*teacher_, "shelf").status, FetchStatus::Refused);
-}
-
 TEST_F(AccessGate, ARobotRegistersUnderTheLabelsOfItsCertificate) {
   caller_.robots = {"cell_*"};
   const RegisterReply refused = register_robot(fleet::planar("other", {0.4, 0.3, 0.2, 0.15}));

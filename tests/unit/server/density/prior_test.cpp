@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -100,16 +99,6 @@ TEST(Prior, OneComponentIsWidenedByItsShareOfThePoints) {
   EXPECT_EQ(with.prior, 48);
 }
 
-TEST(Prior, CovariancesArePositiveDefiniteAlsoWhereAJointStandsStill) {
-  Paths paths = paths_of(15, 2);
-  paths.configurations.row(1).setConstant(0.7);
-  const Mixture mixture = fit(paths, choosing(paths)).mixture;
-  for (const Eigen::MatrixXd& covariance : mixture.covariances()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    EXPECT_GE(solver.eigenvalues().minCoeff(), kFloor * (1 - 1e-9));
-  }
-}
-
 TEST(Prior, FromTenPathsOnTheScoreIsTold) {
   const Paths paths = paths_of(10, 3);
   const FitSummary summary = fit(paths, choosing(paths));
@@ -137,17 +126,6 @@ TEST(Prior, FewPathsChooseWithoutAScore) {
     EXPECT_GT(summary.prior, 0);
     EXPECT_FALSE(summary.held_out_score);
   }
-}
-
-TEST(Prior, RepetitionIsWeightAndChangesNothing) {
-  const Paths once = paths_of(20, 7);
-  Paths thrice = once;
-  thrice.configurations = once.configurations.replicate(1, 3).eval();
-  for (int time = 1; time < 3; ++time)
-    thrice.path_of.insert(thrice.path_of.end(), once.path_of.begin(), once.path_of.end());
-  const FitSummary one = fit(once, choosing(once)), three = fit(thrice, choosing(thrice));
-  EXPECT_EQ(three.prior, one.prior);
-  EXPECT_LT((three.mixture.means() - one.mixture.means()).norm(), 1e-9);
 }
 
 TEST(Prior, SameBytesForAnyNumberOfThreads) {

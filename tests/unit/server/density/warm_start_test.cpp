@@ -105,17 +105,6 @@ TEST(WarmStart, ManyPointsAreSeenAFewTimesAndDescribedAsWell) {
   EXPECT_GT(mean_score(warm.mixture, others), mean_score(cold, others) - 0.02);
 }
 
-TEST(WarmStart, SameBytesWhateverTheThreads) {
-  const Grown grown(clouds({9}, 2));
-  FitOptions options = grown.options();
-  const Mixture one = grown.refit(options);
-  options.computation.threads = 3;
-  const Mixture three = grown.refit(options);
-  EXPECT_EQ(one.weights(), three.weights());
-  EXPECT_EQ(one.means(), three.means());
-  EXPECT_EQ(one.covariances(), three.covariances());
-}
-
 TEST(WarmStart, AChosenNumberOfComponentsStays) {
   const Grown grown(clouds({9}, 2));
   FitOptions options = grown.options();

@@ -55,12 +55,6 @@ class PutBack : public testing::Test {
       uuids.push_back(path->path);
     return uuids;
   }
-  static std::vector<Uuid> uuids(const std::vector<std::uint64_t>& numbers) {
-    std::vector<Uuid> uuids;
-    for (const std::uint64_t number : numbers)
-      uuids.push_back(test::id_from<Uuid>(number));
-    return uuids;
-  }
   std::vector<std::int64_t> ids() const {
     return store_->path_ids(teacher_.digest, "shelf", store_->generation(teacher_.digest, "shelf"));
   }
@@ -76,15 +70,15 @@ TEST_F(PutBack, PathsThatAreGoneAreNotExperienceAnyMore) {
   PosePathMemory memory(*store_, registry);
   const auto read = [&] { return uuids_of(memory.read("shelf", {}, 0, std::stop_token())); };
   report(*store_, {attempt(3), attempt(4)});
-  ASSERT_EQ(read(), uuids({1, 2, 3, 4}));
+  ASSERT_EQ(read(), test::uuids_from({1, 2, 3, 4}));
   const std::vector<std::int64_t> before = ids();
   put_back();
   report(*store_, {attempt(5)});
   ASSERT_EQ(ids().size(), 3U);
   EXPECT_GT(ids().back(), before.back()) << "the number of a path that is gone is another's";
-  EXPECT_EQ(read(), uuids({1, 2, 5}));
+  EXPECT_EQ(read(), test::uuids_from({1, 2, 5}));
   report(*store_, {attempt(4)});  // a client offers it again
-  EXPECT_EQ(read(), uuids({1, 2, 5, 4}));
+  EXPECT_EQ(read(), test::uuids_from({1, 2, 5, 4}));
 }
 
 }  // namespace

@@ -90,15 +90,6 @@ TEST_F(AdministrationChanges, AnExportBeginsWithTheRobotsItNeeds) {
   EXPECT_EQ(export_all("dwarf", "", 100).size(), 0U);
 }
 
-TEST_F(AdministrationChanges, AnExportOfWhatIsNotThereIsNotFoundAndAForeignCursorRefused) {
-  AdminRequest request = fleet::question(AdminVerb::ExportPaths);
-  request.task = "bin";
-  EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
-  request.task.clear();
-  request.cursor = "17";
-  EXPECT_EQ(administer(request).status, AdminStatus::Refused);
-}
-
 TEST_F(AdministrationChanges, ARetiredPathIsNotExported) {
   const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 2, 1);
   report(attempts);
@@ -110,23 +101,6 @@ TEST_F(AdministrationChanges, ARetiredPathIsNotExported) {
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(std::get<Attempt>(rows[1]).report_uuid, attempts[1].report_uuid);
   EXPECT_NE(log().find("task 'shelf': path " + attempts[0].report_uuid.text()), std::string::npos);
-}
-
-TEST_F(AdministrationChanges, RetiringNeedsAReportThatIsThere) {
-  EXPECT_EQ(ask(AdminVerb::RetirePath, Uuid::random().text()).status, AdminStatus::NotFound);
-  EXPECT_EQ(ask(AdminVerb::RetirePath, "17").status, AdminStatus::Refused);
-  EXPECT_EQ(ask(AdminVerb::ResetTask, "bin").status, AdminStatus::NotFound);
-}
-
-TEST_F(AdministrationChanges, ABackupIsAJobThatSaysWhatItWrote) {
-  report(fleet::solved(teacher_, "shelf", 3, 1));
-  const std::string file = (directory_ / "copy.db").string();
-  const Job job = end_of(ask(AdminVerb::Backup, "copy.db"));
-  EXPECT_EQ(job.state, JobState::Done) << job.message;
-  EXPECT_EQ(job.argument, file);
-  EXPECT_NE(job.message.find("copy.db', "), std::string::npos) << job.message;
-  EXPECT_EQ(row<Job>(ask(AdminVerb::ListJobs)).id, job.id);
-  EXPECT_EQ(store::open_sqlite_store(file)->status().paths, 3U);
 }
 
 TEST_F(AdministrationChanges, ABackupNeverTouchesWhatIsThere) {
@@ -299,15 +273,6 @@ TEST_F(AdministrationChanges, AnEvictedDistributionIsFittedAgainWithTheNextRevis
   EXPECT_EQ(second.revision, first.revision + 1);
 }
 
-TEST_F(AdministrationChanges, AfterAResetThereIsNoExperience) {
-  report(fleet::solved(teacher_, "shelf", 6, 1));
-  EXPECT_EQ(fetched().revision, 1U);
-  EXPECT_EQ(row<Retirement>(ask(AdminVerb::ResetTask, "shelf")).paths, 6U);
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
-  start();
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
-}
-
 TEST_F(AdministrationChanges, AnExplanationSaysHowADistributionStands) {
   report(fleet::solved(teacher_, "shelf", 6, 1));
   const std::string id = fetched().id.hex();
@@ -359,14 +324,6 @@ TEST_F(AdministrationChanges, AnExplanationGivesTheAdviceOfNow) {
   EXPECT_EQ(advice_now().guided.value().attempts, 10U);
   start();  // the store has them, too
   EXPECT_EQ(advice_without("attempts are being counted").evidence, advice.evidence);
-}
-
-TEST_F(AdministrationChanges, WhoWaitsForAJobIsToldAtTheDeadlineHowItStands) {
-  AdminRequest request = fleet::question(AdminVerb::ShowJob, "01234567");
-  request.deadline = std::chrono::seconds(5);
-  EXPECT_EQ(administer(request).message, "no job '01234567'");
-  EXPECT_EQ(ask(AdminVerb::CancelJob, "01234567").status, AdminStatus::NotFound);
-  EXPECT_EQ(ask(AdminVerb::JobRows, "01234567").status, AdminStatus::NotFound);
 }
 
 TEST_F(AdministrationChanges, EventsTellWhatHappened) {

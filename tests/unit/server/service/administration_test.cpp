@@ -239,12 +239,6 @@ TEST_F(AdministrationTest, DistributionsAreShownByIdPrefix) {
   EXPECT_EQ(ask(AdminVerb::ShowDistribution, "abab").status, AdminStatus::Refused);
 }
 
-TEST_F(AdministrationTest, AForeignCursorIsRefused) {
-  AdminRequest request = fleet::question(AdminVerb::ListPaths);
-  request.cursor = "not a cursor";
-  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).status, AdminStatus::Refused);
-}
-
 TEST_F(AdministrationTest, ADamagedRobotIsListedWithWhatIsWrong) {
   store::damage_robot(directory_ / "fleet.db", "pupil");
   runtime::RobotRegistry cold(*store_);

@@ -1,7 +1,6 @@
 // What the audit log says of administration, and of what it leaves out.
 
 #include <algorithm>
-#include <latch>
 
 #include "server/service/answered_changes.hpp"
 #include "tests/unit/server/service/access_fixture.hpp"
@@ -22,18 +21,6 @@ class Audit : public AccessFixture {
     return ask_for(caller, read);
   }
 };
-
-TEST_F(Audit, ABackupIsInTheLogAsBegunAndAsItEnded) {
-  const Caller otto = named("otto", AccessRole::Operator);
-  const AdminPage begun = ask(otto, AdminVerb::Backup, "copy.db");
-  ASSERT_EQ(begun.status, AdminStatus::Ok) << begun.message;
-  ASSERT_EQ(end_of(std::get<Job>(begun.rows[0]).id).state, JobState::Done);
-  EXPECT_EQ(ask(otto, AdminVerb::Backup, "copy.db").status, AdminStatus::Refused);
-  EXPECT_EQ(log_entries(), (Lines{"otto backup copy.db begun", "otto backup copy.db done",
-                                  "otto backup copy.db refused"}));
-  const auto copy = store::open_sqlite_store(directory_ / "copy.db");
-  EXPECT_EQ(copy->list_audit("otto", "", 10).rows.size(), 1U) << "a copy has what was before it";
-}
 
 TEST_F(Audit, WhatCannotBeKeptInTheAuditLogIsNotDone) {
   troubled_->on_audit = [](const AuditEntry&) {

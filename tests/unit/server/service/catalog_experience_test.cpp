@@ -61,16 +61,6 @@ TEST_F(CatalogExperienceTest, RetiredExperienceIsNotServedAnyMore) {
   EXPECT_EQ(reply.distribution->sources[0].paths, 5U);
 }
 
-TEST_F(CatalogExperienceTest, RetiredExperienceIsNotServedAfterARestartEither) {
-  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
-  report(paths);
-  fetch(request_for(pupil_));
-  service_.reset();  // it ended between the retirement and all else
-  ASSERT_TRUE(store::open_sqlite_store(directory_ / "fleet.db")->retire_path(paths[2].report_uuid));
-  start();
-  EXPECT_EQ(fetch(request_for(pupil_)).distribution->revision, 2U);
-}
-
 TEST_F(CatalogExperienceTest, AFitOfExperienceThatIsRetiredMeanwhileIsDoneAgain) {
   const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
   report(paths);
@@ -114,14 +104,6 @@ TEST_F(CatalogExperienceTest, DistributionsWithDatesThatNobodyAsksForAnyMoreGo) 
   EXPECT_EQ(count(), 1U + 8U) << "the one without a date, and those of a week";
   FetchRequest undated = request_for(pupil_);
   EXPECT_EQ(fetch(undated).distribution->revision, 1U);
-}
-
-TEST_F(CatalogExperienceTest, AnEvictedDistributionIsFittedAnew) {
-  teach(6);
-  const std::string id = fetch(request_for(pupil_)).distribution->id.hex();
-  EXPECT_EQ(administer(fleet::question(AdminVerb::EvictDistribution, id)).status, AdminStatus::Ok);
-  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
-  EXPECT_EQ(fetch(request_for(pupil_)).distribution->revision, 2U);
 }
 
 TEST_F(CatalogExperienceTest, AFitDuringWhichItIsEvictedAnswersAndIsKept) {

@@ -113,19 +113,6 @@ TEST_F(CatalogTest, EqualValuesAreOneDistributionInTheWordsOfEachWhoAsks) {
   EXPECT_EQ(gate_.calls(), 1);
 }
 
-TEST_F(CatalogTest, DistributionsSurviveARestartWithoutAFit) {
-  teach(6);
-  const FetchReply before = fetch(request_for(pupil_));
-  start();
-  const FetchReply after = fetch(at_once(request_for(pupil_)));
-  ASSERT_EQ(after.status, FetchStatus::Ready);
-  EXPECT_EQ(after.distribution->id, before.distribution->id);
-  EXPECT_EQ(after.distribution->revision, 1U);
-  EXPECT_EQ(after.distribution->mixture->means(), before.distribution->mixture->means());
-  EXPECT_EQ(service_->status().fits, 0U);
-  EXPECT_EQ(gate_.calls(), 1);
-}
-
 TEST_F(CatalogTest, TheStoreHearsOfUsesOncePerHourAlsoOfThoseFromMemory) {
   may_trouble_store_ = true;
   start();

@@ -31,14 +31,6 @@ class ChangesElsewhere : public CatalogTest {
   std::uint64_t fetches_from_memory() const { return service_->status().fetches_from_memory; }
 };
 
-TEST_F(ChangesElsewhere, ARobotThatWasRenamedHasItsNewLabel) {
-  ASSERT_TRUE(real_store_->rename_robot(teacher_.digest, "tutor", nullptr));
-  ASSERT_EQ(register_robot(fleet::teacher()).message, "") << "of memory";
-  service_->take_changes(
-      {.cursor = {}, .experience = {}, .robots = {teacher_.digest}, .evicted = {}});
-  EXPECT_EQ(register_robot(fleet::teacher()).message, "known already, as 'tutor'");
-}
-
 TEST_F(ChangesElsewhere, NothingIsServedForARobotThatWasRemoved) {
   teach(6);
   ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
@@ -71,15 +63,6 @@ TEST_F(ChangesElsewhere, WhoWaitsForAGenerationGetsItAlsoIfAnotherServerWasToldO
   EXPECT_EQ(reply.get().distribution.value().sources[0].generation, 2U);
 }
 
-TEST_F(ChangesElsewhere, NothingIsServedOfPathsThatWereRetired) {
-  teach(6);
-  ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
-  reset_elsewhere();
-  ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready) << "of memory";
-  service_->take_changes(changed_experience());
-  EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::NoExperience);
-}
-
 TEST_F(ChangesElsewhere, WhatIsInMemoryStaysWhenTheSameIsToldAgainOrPathsCame) {
   teach(6);
   reset_elsewhere();
@@ -93,15 +76,6 @@ TEST_F(ChangesElsewhere, WhatIsInMemoryStaysWhenTheSameIsToldAgainOrPathsCame) {
   service_->take_changes(changed_experience());
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
   EXPECT_EQ(fetches_from_memory(), before + 2);
-}
-
-TEST_F(ChangesElsewhere, ADistributionThatWasEvictedIsMadeAnew) {
-  teach(6);
-  const Digest id = fetch(request_for(teacher_)).distribution.value().id;
-  ASSERT_TRUE(real_store_->evict_distribution(id, nullptr));
-  ASSERT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U) << "of memory";
-  service_->take_changes({.cursor = {}, .experience = {}, .robots = {}, .evicted = {id}});
-  EXPECT_EQ(fetch(request_for(teacher_)).distribution.value().revision, 2U);
 }
 
 TEST_F(ChangesElsewhere, WhatAnErrorOfTheStoreCutShortIsTakenWhenItIsToldAgain) {

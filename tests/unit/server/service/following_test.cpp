@@ -153,14 +153,6 @@ TEST_F(Following, ALeaseLapses) {
   EXPECT_FALSE(is_anything_due());
 }
 
-TEST_F(Following, WhoFollowsAtOnceHearsOfTheFirstExperience) {
-  EXPECT_EQ(fetch(following(request_for(pupil_))).status, FetchStatus::NoExperience);
-  EXPECT_FALSE(is_anything_due());
-  teach(6, 1);
-  run_to_next_deadline();
-  EXPECT_EQ(wait_for_announcement(1).revision, 1U);
-}
-
 TEST_F(Following, ReportsThatArriveDuringAFitAreNotForgotten) {
   teach(6, 1);
   gate_.close();

@@ -69,15 +69,6 @@ TEST_F(IngestTest, AnswersABatchOnceInItsOrder) {
   EXPECT_EQ(ingest_.refused(), 1U);
 }
 
-TEST_F(IngestTest, WhatIsAcknowledgedIsInTheStore) {
-  const Attempt attempt = fleet::solved(robot_, "shelf", 1);
-  ASSERT_EQ(submit({attempt}).get()[0].status, ReceiptStatus::Stored);
-  const auto stored = store_->find_attempt(attempt.report_uuid);
-  ASSERT_TRUE(stored && stored->path);
-  EXPECT_EQ(stored->path->waypoints(), attempt.path->waypoints());
-  EXPECT_EQ(submit({attempt}).get()[0].status, ReceiptStatus::Duplicate);
-}
-
 TEST_F(IngestTest, RefusedAttemptsLeaveNothingBehind) {
   Attempt bad = fleet::solved(robot_, "shelf", 1);
   bad.path = fleet::path(4, 1);

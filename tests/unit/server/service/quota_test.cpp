@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <condition_variable>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -41,28 +40,6 @@ class Quota : public CatalogTest {
 
   int number_ = 0;
 };
-
-TEST_F(Quota, LongLeasesOfOneClientEndNobodyElses) {
-  std::mutex mutex;
-  std::vector<Digest> unfollowed;
-  start_with([&](ServiceOptions& options) {
-    options.catalog.max_leases = 8;
-    options.catalog.client_leases = 100;
-    options.on_unfollowed = [&](const Digest& id) {
-      const std::lock_guard lock(mutex);
-      unfollowed.push_back(id);
-    };
-  });
-  for (int i = 0; i < 2; ++i)
-    ask("robot", 0.001 * i, seconds(60));
-  for (int i = 0; i < 50; ++i)
-    ask("greedy", 1 + 0.001 * i, seconds(86'400));
-  EXPECT_EQ(service_->status().followed, 8U);
-  EXPECT_EQ(bound("leases"), 8U);
-  advance(seconds(61));
-  service_->expire(clock_.now());
-  EXPECT_EQ(service_->status().followed, 6U) << "the two short ones were held until their end";
-}
 
 TEST_F(Quota, AClientHasSoManyLeasesAndIsToldWhenItAsksForMore) {
   start_with([](ServiceOptions& options) { options.catalog.client_leases = 2; });

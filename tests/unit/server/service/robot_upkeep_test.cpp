@@ -40,15 +40,6 @@ TEST_F(RobotUpkeep, ARenamedRobotIsFoundByItsNewLabelAlone) {
   EXPECT_TRUE(is_told("robot 'teacher' (" + teacher_.digest.short_hex() + ") is called 'master'"));
 }
 
-TEST_F(RobotUpkeep, WhoRegistersUnderTheOldLabelIsToldTheNewOne) {
-  rename("teacher", "master");
-  const RegisterReply reply = register_robot(fleet::teacher());
-  EXPECT_EQ(reply.status, RegisterStatus::Known);
-  EXPECT_EQ(reply.robot, teacher_.digest);
-  EXPECT_EQ(reply.message, "known already, as 'master'");
-  EXPECT_EQ(administer(fleet::question(AdminVerb::ShowRobot, "master")).status, AdminStatus::Ok);
-}
-
 TEST_F(RobotUpkeep, ARobotWithoutAttemptsIsDeleted) {
   teach(6);
   ASSERT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
@@ -92,19 +83,6 @@ TEST_F(RobotUpkeep, WhatTheStoreMadeRoomOfIsNotServedForARemovedRobotEither) {
   EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::UnknownRobot);
 }
 
-TEST_F(RobotUpkeep, AReportOfARemovedRobotIsOfAnUnknownOneUntilItIsRegisteredAgain) {
-  teach(2);
-  remove("teacher");
-  const std::vector<Attempt> more = fleet::solved(teacher_, "shelf", 3, 100);
-  for (const Receipt& receipt : report(more).receipts)
-    EXPECT_EQ(receipt.status, ReceiptStatus::UnknownRobot) << receipt.message;
-  EXPECT_EQ(register_robot(fleet::teacher()).status, RegisterStatus::Registered);
-  for (const Receipt& receipt : report(more).receipts)
-    EXPECT_EQ(receipt.status, ReceiptStatus::Stored) << receipt.message;
-  const AdminPage page = administer(fleet::question(AdminVerb::ShowRobot, "teacher"));
-  EXPECT_EQ(std::get<RobotSummary>(page.rows.at(0)).paths, 3U);
-}
-
 TEST_F(RobotUpkeep, AFitForARobotThatIsRemovedMeanwhileIsNotServed) {
   teach(6);
   gate_.close();
@@ -142,11 +120,6 @@ TEST_F(RobotUpkeep, ALabelInUseIsRefusedWithWhatToDo) {
       << reply.message;
   rename("teacher", "teacher_old");
   EXPECT_EQ(register_robot(corrected).status, RegisterStatus::Registered);
-}
-
-TEST_F(RobotUpkeep, RemovingNeedsARobotThatIsThere) {
-  EXPECT_EQ(administer(fleet::question(AdminVerb::RemoveRobot, "nobody")).status,
-            AdminStatus::NotFound);
 }
 
 }  // namespace

@@ -58,16 +58,6 @@ TEST_F(RolledBack, IsToldByAGreetingAndBeginsAnEpochOnce) {
   EXPECT_EQ(service_->status().rollbacks, 1U);
 }
 
-TEST_F(RolledBack, ReportThatTellsItIsStoredInTheNewEpoch) {
-  const ReportReply reply = say(lost_, {fleet::solved(teacher_, "shelf", 60)});
-  EXPECT_NE(reply.store_epoch, epoch_);
-  ASSERT_EQ(reply.receipts.size(), 1U);
-  EXPECT_EQ(reply.receipts[0].status, ReceiptStatus::Stored);
-  const ReportReply again = say(reply.history_mark, {fleet::solved(teacher_, "shelf", 50)});
-  EXPECT_EQ(again.receipts.at(0).status, ReceiptStatus::Stored);
-  EXPECT_EQ(service_->status().paths, 8U);
-}
-
 TEST_F(RolledBack, DistributionInMemoryIsOfTheNewEpoch) {
   const FetchReply before = fetch(request_for(pupil_));
   ASSERT_TRUE(before.distribution);

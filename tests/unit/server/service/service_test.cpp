@@ -73,20 +73,6 @@ TEST_F(ServiceTest, TheLogTellsOfRobotsAndFits) {
       << log();
 }
 
-TEST_F(ServiceTest, EverythingAcknowledgedIsThereAfterARestart) {
-  std::vector<Uuid> acknowledged;
-  for (std::uint64_t i = 0; i < 20; ++i)
-    for (const Receipt& receipt : report({fleet::solved(teacher_, "shelf", i)}).receipts)
-      if (receipt.status == ReceiptStatus::Stored)
-        acknowledged.push_back(receipt.report_uuid);
-  EXPECT_EQ(acknowledged.size(), 20U);
-  start();
-  for (const Uuid& uuid : acknowledged)
-    EXPECT_EQ(administer(fleet::question(AdminVerb::ShowPath, uuid.text())).status,
-              AdminStatus::Ok);
-  EXPECT_EQ(service_->status().paths, 20U);
-}
-
 TEST_F(ServiceTest, ShutdownAnswersEveryReportAndRefusesNoneForGood) {
   std::vector<std::future<ReportReply>> replies;
   for (std::uint64_t i = 0; i < 50; ++i) {

@@ -41,14 +41,6 @@ class SitesTest : public ServiceFixture {
   std::atomic<bool> is_cut_ = false;
 };
 
-TEST_F(SitesTest, WhatIsReportedHereGoesUp) {
-  report(fleet::solved(teacher_, "shelf", 3, 1));
-  ASSERT_TRUE(comes_true([&] { return memory_->status().paths == 3; }));
-  ASSERT_TRUE(comes_true([&] { return upstream().sent == 3; }));
-  EXPECT_TRUE(upstream().connected);
-  EXPECT_TRUE(is_told("upstream: connected with postgresql://memory/kinship")) << log();
-}
-
 TEST_F(SitesTest, WhoFetchesIsServedWithWhatOtherSitesDid) {
   report_elsewhere(fleet::solved(teacher_, "shelf", 6, 1));
   fetch(request_for(pupil_));  // it is wanted from now on, and may be here already
@@ -72,17 +64,6 @@ TEST_F(SitesTest, WhatIsRetiredAboveIsNotServedHere) {
     return fetch(request_for(pupil_)).status == FetchStatus::NoExperience;
   })) << log();
   EXPECT_EQ(service_->status().paths, 0U);
-}
-
-TEST_F(SitesTest, TheSiteGoesOnWhileTheLineIsDown) {
-  is_cut_ = true;
-  start();
-  EXPECT_EQ(report(fleet::solved(teacher_, "shelf", 6, 1)).receipts.at(0).status,
-            ReceiptStatus::Stored);
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
-  EXPECT_FALSE(upstream().connected);
-  EXPECT_EQ(upstream().waiting, 6U);
-  EXPECT_TRUE(is_told("no connection with postgresql://memory/kinship: no route to host"));
 }
 
 TEST_F(SitesTest, WhatDoesNotFitItsRobotIsSetAside) {

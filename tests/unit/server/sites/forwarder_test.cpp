@@ -141,21 +141,6 @@ TEST_F(ForwarderTest, GoesOnWhereItWasAfterARestart) {
   ASSERT_TRUE(comes_true([&] { return status(forwarder).sent == 1; })) << "the first is not sent";
 }
 
-TEST_F(ForwarderTest, StopsWhileTheMemoryDoesNotAnswer) {
-  std::atomic<bool> is_asked = false;
-  options_.open = [&]() -> std::unique_ptr<store::Store> {
-    auto connection = std::make_unique<store::TroubledStore>(*memory_);
-    connection->on_commit = [&](const std::vector<store::SharedReport>&,
-                                const store::Store::ReportsDone&) { is_asked = true; };
-    return connection;
-  };
-  test::report(*site_, {solved(1)});
-  Forwarder forwarder(*site_, options_);
-  ASSERT_TRUE(comes_true([&] { return is_asked.load(); }));
-  forwarder.stop();
-  EXPECT_EQ(status(forwarder).waiting, 1U);
-}
-
 TEST_F(ForwarderTest, ReportsOfRobotsComeFirst) {
   std::atomic<int> asked = 0;
   options_.queued_reports = [&] { return ++asked < 4 ? std::size_t{1} : std::size_t{0}; };

@@ -1,8 +1,11 @@
 #include "server/sites/positions.hpp"
 
+#include <gtest/gtest.h>
+
+#include "server/sites/wanted_tasks.hpp"
 #include "tests/unit/server/sites/site_and_memory.hpp"
 
-namespace kinship::sites {
+namespace kinship::sites::positions_test {
 namespace {
 
 using PositionsTest = SiteAndMemory;
@@ -69,5 +72,16 @@ TEST_F(PositionsTest, WhatIsTakenIsNotRefusedAnyMore) {
   EXPECT_TRUE(Positions(*site_).refused().empty());
 }
 
+TEST(WantedTasks, AStarIsAnythingAQuestionMarkOne) {
+  EXPECT_TRUE(matches("*", "shelf"));
+  EXPECT_TRUE(matches("shelf", "shelf"));
+  EXPECT_FALSE(matches("shelf", "shelf_2"));
+  EXPECT_TRUE(matches("shelf*", "shelf_2"));
+  EXPECT_TRUE(matches("*/pick", "hall 3/pick"));
+  EXPECT_FALSE(matches("bin_?", "bin_10"));
+  EXPECT_TRUE(matches_any({"a", "b*"}, "bin"));
+  EXPECT_FALSE(matches_any({}, "bin"));
+}
+
 }  // namespace
-}  // namespace kinship::sites
+}  // namespace kinship::sites::positions_test

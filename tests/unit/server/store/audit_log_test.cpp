@@ -63,15 +63,6 @@ TEST_F(AuditLog, NoStatementChangesOrRemovesAnEntry) {
   EXPECT_EQ(log_of(file_), "act first; act second; ");
 }
 
-TEST_F(AuditLog, ABackupHasItAndARestoreAddsToIt) {
-  backup_store(file_, copy_, ignore);
-  open_sqlite_store(file_)->add_audit(entry("third"));
-  EXPECT_EQ(log_of(copy_), "act first; act second; ");
-  restore_store(copy_, file_, ignore);
-  EXPECT_EQ(log_of(file_), "act first; act second; act third; restore copy.db; ");
-  EXPECT_EQ(check_store(file_, ignore).problems, 0U);
-}
-
 TEST_F(AuditLog, ARestoreOverAStoreOfAnotherLogKeepsBoth) {
   const std::filesystem::path other = directory_ / "other.db";
   open_sqlite_store(other)->add_audit(entry("elsewhere"));

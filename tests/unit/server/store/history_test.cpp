@@ -132,35 +132,6 @@ TEST_F(HistoryTest, ARenamedStoreKeepsItsEpoch) {
   EXPECT_EQ(store_->epoch(), epoch);
 }
 
-TEST_F(HistoryTest, AFileThatWasPutBackOverItselfIsNoticedByItsWitness) {
-  report(1, 3);
-  const std::string before = snapshot();
-  open();
-  const Uuid epoch = store_->epoch();
-  report(10);
-  store_.reset();
-  overwrite(file_, before);
-  open();
-  EXPECT_NE(store_->epoch(), epoch);
-  EXPECT_NE(store_->status().message.find("had 4"), std::string::npos) << store_->status().message;
-  EXPECT_EQ(store_->status().attempts, 3U);
-  const Uuid next = store_->epoch();
-  open();
-  EXPECT_EQ(store_->epoch(), next);
-}
-
-TEST_F(HistoryTest, AKilledServersWitnessIsAsFarAsItsReceipts) {
-  report(1, 3);
-  const std::string before = snapshot();
-  open();
-  report(10);
-  const std::string witness = bytes_of(witness_);
-  const Uuid epoch = store_->epoch();
-  roll_back(before, witness);  // nothing that closing wrote
-  open();
-  EXPECT_NE(store_->epoch(), epoch);
-}
-
 TEST_F(HistoryTest, ADirectoryPutBackFromACopyIsAnotherFile) {
   report(1, 3);
   store_.reset();
@@ -214,15 +185,6 @@ TEST_F(HistoryOfClients, ALaterMarkIsLostAndBeginsOneEpoch) {
   EXPECT_EQ(store_->epoch(), next);
   EXPECT_EQ(store_->point().mark, newest);
   EXPECT_FALSE(store_->has_lost(newest));
-}
-
-TEST_F(HistoryOfClients, ALaterMarkIsLostAlsoWhenTheStoreHasGrownBeyondIt) {
-  report(20, 30);
-  EXPECT_TRUE(store_->has_lost(late_));
-  open();
-  report(60, 3);
-  EXPECT_TRUE(store_->has_lost(late_));
-  EXPECT_FALSE(store_->has_lost(early_));
 }
 
 TEST_F(HistoryOfClients, AMarkThatTheStoreNeverMadeChangesNothing) {

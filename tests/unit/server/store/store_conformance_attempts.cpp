@@ -33,13 +33,6 @@ class Exported {
   std::size_t pages_ = 0;
 };
 
-std::vector<Uuid> numbered(const std::vector<std::uint64_t>& numbers) {
-  std::vector<Uuid> uuids;
-  for (const std::uint64_t number : numbers)
-    uuids.push_back(test::id_from<Uuid>(number));
-  return uuids;
-}
-
 TEST_P(StoreConformance, ExportsAttemptsOldestFirstUnderEveryFilter) {
   report(solved(1));
   report(test::make_attempt(iiwa_.digest, "table", 2));
@@ -48,10 +41,10 @@ TEST_P(StoreConformance, ExportsAttemptsOldestFirstUnderEveryFilter) {
   report(solved(5));
   Exported exported(*store_);
   for (const std::size_t limit : {1U, 2U, 100U}) {
-    EXPECT_EQ(exported.uuids({}, "", limit), numbered({1, 2, 3, 4, 5}));
-    EXPECT_EQ(exported.uuids({}, "shelf", limit), numbered({1, 4, 5}));
-    EXPECT_EQ(exported.uuids(panda_.digest, "", limit), numbered({1, 3, 5}));
-    EXPECT_EQ(exported.uuids(iiwa_.digest, "table", limit), numbered({2}));
+    EXPECT_EQ(exported.uuids({}, "", limit), test::uuids_from({1, 2, 3, 4, 5}));
+    EXPECT_EQ(exported.uuids({}, "shelf", limit), test::uuids_from({1, 4, 5}));
+    EXPECT_EQ(exported.uuids(panda_.digest, "", limit), test::uuids_from({1, 3, 5}));
+    EXPECT_EQ(exported.uuids(iiwa_.digest, "table", limit), test::uuids_from({2}));
     EXPECT_TRUE(exported.uuids({}, "nothing", limit).empty());
   }
 }
@@ -64,8 +57,8 @@ TEST_P(StoreConformance, ExportsManyAttemptsOnceEach) {
     numbers.push_back(i);
   }
   test::report(*store_, std::move(attempts));
-  EXPECT_EQ(Exported(*store_).uuids({}, "shelf", 7), numbered(numbers));
-  EXPECT_EQ(Exported(*store_).uuids({}, "", 1000), numbered(numbers));
+  EXPECT_EQ(Exported(*store_).uuids({}, "shelf", 7), test::uuids_from(numbers));
+  EXPECT_EQ(Exported(*store_).uuids({}, "", 1000), test::uuids_from(numbers));
 }
 
 TEST_P(StoreConformance, ExportsWhatItTookWithItsPath) {
@@ -85,8 +78,8 @@ TEST_P(StoreConformance, ExportsNoRetiredPathAndNoReportOfItsContent) {
   test::report(*store_, {solved(1), same, solved(3)});
   ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
   Exported exported(*store_);
-  EXPECT_EQ(exported.uuids({}, "", 1), numbered({3}));
-  EXPECT_EQ(exported.uuids({}, "shelf", 10), numbered({3}));
+  EXPECT_EQ(exported.uuids({}, "", 1), test::uuids_from({3}));
+  EXPECT_EQ(exported.uuids({}, "shelf", 10), test::uuids_from({3}));
 }
 
 TEST_P(StoreConformance, APageOfAnExportEndsBeforeItsBytesAreExceeded) {

@@ -1,5 +1,4 @@
 #include <fstream>
-#include <thread>
 
 #include "server/store/maintenance.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
@@ -59,17 +58,6 @@ TEST_P(StoreBackup, ABackupIsAStoreWithAllThatWasThere) {
   EXPECT_EQ(copy->robots().size(), 2U);
   EXPECT_TRUE(copy->find_distribution(distribution.id));
   EXPECT_EQ(test::report(*copy, {solved(1)})[0].status, ReceiptStatus::Duplicate);
-}
-
-TEST_P(StoreBackup, ABackupReplacesNoFile) {
-  const test::TemporaryDirectory elsewhere;
-  std::ofstream(copy_in(elsewhere)) << "mine";
-  const Result<bool> refused = store_->backup(copy_in(elsewhere), kGoOn);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::Conflict);
-  EXPECT_NE(refused.error().message.find(copy_in(elsewhere).string()), std::string::npos);
-  EXPECT_EQ(std::filesystem::file_size(copy_in(elsewhere)), 4U);
-  EXPECT_EQ(files_in(elsewhere), 1U);
 }
 
 TEST_P(StoreBackup, AFileThatAppearsDuringABackupStays) {

@@ -19,24 +19,6 @@ TEST_P(StoreConformance, AnswersEachAttemptInOrder) {
   EXPECT_NE(receipts[2].message.find("not registered"), std::string::npos) << receipts[2].message;
 }
 
-TEST_P(StoreConformance, AnEmptyBatchIsAnswered) { EXPECT_TRUE(test::report(*store_, {}).empty()); }
-
-TEST_P(StoreConformance, ARetryIsADuplicateAndChangesNothing) {
-  const std::vector<Attempt> batch = {solved(1), test::make_unsolved(panda_.digest, "shelf", 2)};
-  test::report(*store_, batch);
-  const std::uint64_t generation = store_->generation(panda_.digest, "shelf");
-  EXPECT_EQ(test::statuses(test::report(*store_, batch)),
-            (Statuses{ReceiptStatus::Duplicate, ReceiptStatus::Duplicate}));
-  EXPECT_EQ(store_->status().attempts, 2U);
-  EXPECT_EQ(store_->status().paths, 1U);
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), generation);
-}
-
-TEST_P(StoreConformance, ARetryInTheSameBatchIsADuplicateToo) {
-  EXPECT_EQ(test::statuses(test::report(*store_, {solved(1), solved(1)})),
-            (Statuses{ReceiptStatus::Stored, ReceiptStatus::Duplicate}));
-}
-
 TEST_P(StoreConformance, OneUuidForTwoBodiesIsRefusedWhateverDiffers) {
   const Attempt first = solved(1);
   report(first);
@@ -79,17 +61,6 @@ TEST_P(StoreConformance, TheSameContentAgainIsAnAttemptWithoutASecondPath) {
   EXPECT_EQ(store_->find_attempt(again.report_uuid)->path->waypoints(), again.path->waypoints());
   EXPECT_EQ(report(again), ReceiptStatus::Duplicate);  // its own retry
   EXPECT_EQ(store_->status().attempts, 2U);
-}
-
-TEST_P(StoreConformance, TheSameContentOfAnotherRobotOrTaskIsItsOwnPath) {
-  Attempt other_robot = solved(2);
-  other_robot.robot = iiwa_.digest;
-  Attempt other_task = solved(3);
-  other_task.task = "table";
-  other_robot.path = other_task.path = solved(1).path;
-  EXPECT_EQ(test::statuses(test::report(*store_, {solved(1), other_robot, other_task})),
-            Statuses(3, ReceiptStatus::Stored));
-  EXPECT_EQ(store_->status().paths, 3U);
 }
 
 TEST_P(StoreConformance, TheSameWaypointsAtAnotherPlacementAreTheirOwnPath) {
@@ -176,18 +147,6 @@ TEST_P(StoreConformance, KeepsWhatIsMissingMissing) {
   ASSERT_TRUE(after);
   EXPECT_FALSE(after->T_task_base || after->record.distribution_id || after->path);
   EXPECT_EQ(after->record.outcome, Outcome::Failed);
-}
-
-TEST_P(StoreConformance, RaisesTheGenerationOnceForEachBatchThatBroughtPaths) {
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 0U);
-  test::report(*store_, {solved(1), solved(2), solved(3)});
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 1U);
-  test::report(*store_, {test::make_unsolved(panda_.digest, "shelf", 4)});
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 1U);
-  test::report(*store_, {solved(5)});
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 2U);
-  EXPECT_EQ(store_->generation(panda_.digest, "table"), 0U);
-  EXPECT_EQ(store_->generation(iiwa_.digest, "shelf"), 0U);
 }
 
 TEST_P(StoreConformance, ReadsPathsInTheOrderOfArrivalAndOnFromAnId) {

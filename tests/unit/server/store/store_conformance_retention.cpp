@@ -5,30 +5,6 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::uint64_t kCap = StoreRetention::kCap;
-constexpr std::uint64_t kReports = StoreRetention::kReports;
-
-TEST_P(StoreRetention, KeepsAsManyAsItMayAndTheSameInWhateverOrderTheyCome) {
-  test::report(*store_, reports());
-  EXPECT_EQ(kept().size(), kCap);
-  const test::TemporaryDirectory elsewhere;
-  const std::unique_ptr<Store> other = GetParam().open(elsewhere.path(), {.paths_per_pair = kCap});
-  ASSERT_TRUE(other->register_robot(panda_));
-  std::vector<Attempt> reversed = reports();
-  std::ranges::reverse(reversed);
-  for (const Attempt& attempt : reversed)
-    test::report(*other, {attempt});
-  EXPECT_EQ(kept(*other), kept());
-  // Neither the first nor the last are preferred.
-  std::set<Uuid> first, last;
-  for (std::uint64_t i = 0; i < kCap; ++i) {
-    first.insert(reports()[i].report_uuid);
-    last.insert(reversed[i].report_uuid);
-  }
-  EXPECT_NE(kept(), first);
-  EXPECT_NE(kept(), last);
-}
-
 TEST_P(StoreRetention, NoReportLeavesTheLedger) {
   for (const Attempt& attempt : reports())
     test::report(*store_, {attempt});
@@ -50,16 +26,6 @@ TEST_P(StoreRetention, NoReportLeavesTheLedger) {
     EXPECT_EQ(store_->status().dropped_paths, kReports - kCap);
     EXPECT_EQ(kept(), in_use);
     reopen({.paths_per_pair = kCap});
-  }
-}
-
-TEST_P(StoreRetention, AReceiptSaysWhetherItsPathIsKept) {
-  for (const Attempt& attempt : reports()) {
-    const Receipt receipt = test::report(*store_, {attempt}).at(0);
-    const bool is_kept = kept().contains(attempt.report_uuid);
-    EXPECT_EQ(receipt.status, is_kept ? ReceiptStatus::Stored : ReceiptStatus::Recorded);
-    EXPECT_EQ(receipt.message.find("not kept") != std::string::npos, !is_kept) << receipt.message;
-    EXPECT_EQ(store_->find_attempt(attempt.report_uuid)->path.has_value(), is_kept);
   }
 }
 
@@ -105,42 +71,6 @@ TEST_P(StoreRetention, WhatIsDroppedIsInNoReadingAndRaisesTheGenerationAlone) {
     dropped += path.dropped ? 1 : 0;
   }
   EXPECT_GT(dropped, 0U);
-}
-
-TEST_P(StoreRetention, WhatWasNotKeptChangesNoGeneration) {
-  test::report(*store_, reports());
-  constexpr int kReportsMore = 100;
-  int not_kept = 0;
-  for (int i = 0; i < kReportsMore; ++i) {
-    const std::uint64_t generation = store_->generation(panda_.digest, "shelf");
-    const bool is_kept = report(solved(number_++)) == ReceiptStatus::Stored;
-    EXPECT_EQ(store_->generation(panda_.digest, "shelf"), generation + (is_kept ? 1 : 0));
-    not_kept += is_kept ? 0 : 1;
-  }
-  EXPECT_GT(not_kept, 0);
-}
-
-TEST_P(StoreRetention, ContentThatWasNotKeptIsNotKeptUnderAnotherUuidEither) {
-  test::report(*store_, reports());
-  const std::set<Uuid> in_use = kept();
-  for (const Attempt& attempt : reports()) {
-    Attempt again = attempt;
-    again.report_uuid = test::id_from<Uuid>(++number_);
-    EXPECT_EQ(report(again), in_use.contains(attempt.report_uuid) ? ReceiptStatus::Duplicate
-                                                                  : ReceiptStatus::Recorded);
-  }
-  EXPECT_EQ(kept(), in_use);
-}
-
-TEST_P(StoreRetention, ARetirementMakesRoom) {
-  test::report(*store_, reports());
-  const Uuid retired = *kept().begin();
-  ASSERT_EQ(store_->retire_path(retired)->paths, 1U);
-  EXPECT_EQ(kept().size(), kCap - 1);
-  EXPECT_EQ(report(solved(number_++)), ReceiptStatus::Stored) << "whatever its content";
-  EXPECT_EQ(kept().size(), kCap);
-  EXPECT_EQ(store_->reset_task("shelf")->paths, kCap);
-  EXPECT_EQ(report(solved(number_++)), ReceiptStatus::Stored);
 }
 
 TEST_P(StoreRetention, WhatIsDroppedCannotBeRetired) {

@@ -29,22 +29,6 @@ TEST_P(StoreConformance, ARetiredPathIsInNoFitButOnRecord) {
   EXPECT_EQ(listed[1].report_uuid, solved(2).report_uuid);
 }
 
-TEST_P(StoreConformance, ARetirementRaisesBothGenerationsOfItsRobotAndTask) {
-  report(solved(1));
-  report(solved(2));
-  report(test::make_attempt(iiwa_.digest, "shelf", 3));
-  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
-  for (const ExperienceSummary& summary : store_->experience("shelf")) {
-    const bool touched = summary.robot == panda_.digest;
-    EXPECT_EQ(summary.generation, touched ? 3U : 1U);
-    EXPECT_EQ(summary.retired_generation, touched ? 3U : 0U);
-    EXPECT_EQ(summary.paths, 1U);
-  }
-  report(solved(4));
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 4U);
-  EXPECT_EQ(store_->generation(panda_.digest, "table"), 0U);
-}
-
 TEST_P(StoreConformance, TheLastRetirementOfARobotStaysToBeSeen) {
   report(solved(1));
   ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
@@ -53,17 +37,6 @@ TEST_P(StoreConformance, TheLastRetirementOfARobotStaysToBeSeen) {
   EXPECT_EQ(experience[0].paths, 0U);
   EXPECT_EQ(experience[0].generation, 2U);
   EXPECT_EQ(experience[0].retired_generation, 2U);
-}
-
-TEST_P(StoreConformance, RetiringTwiceChangesNothing) {
-  report(solved(1));
-  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
-  const Result<Retirement> again = store_->retire_path(solved(1).report_uuid);
-  ASSERT_TRUE(again);
-  EXPECT_EQ(again->paths, 0U);
-  EXPECT_TRUE(again->robots.empty());
-  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 2U);
-  EXPECT_EQ(store_->status().paths, 0U);
 }
 
 TEST_P(StoreConformance, OnlyAPathCanBeRetired) {
@@ -75,29 +48,6 @@ TEST_P(StoreConformance, OnlyAPathCanBeRetired) {
   const Result<Retirement> unknown = store_->retire_path(test::id_from<Uuid>(2));
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().code, ErrorCode::NotFound);
-}
-
-TEST_P(StoreConformance, AReportOfTheSameContentRetiresThePathItFound) {
-  Attempt same = solved(2);
-  same.path = solved(1).path;
-  test::report(*store_, {solved(1), same});
-  ASSERT_TRUE(store_->retire_path(same.report_uuid));
-  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
-}
-
-TEST_P(StoreConformance, TheUuidOfARetiredReportStaysKnownButItsContentMayComeAnew) {
-  report(solved(1));
-  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
-  EXPECT_EQ(report(solved(1)), ReceiptStatus::Duplicate);
-  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
-  Attempt anew = solved(2);
-  anew.path = solved(1).path;
-  EXPECT_EQ(report(anew), ReceiptStatus::Stored);
-  const std::vector<StoredPath> paths = store_->read_paths(panda_.digest, "shelf", kAll);
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(paths[0].report_uuid, anew.report_uuid);
-  ASSERT_TRUE(store_->retire_path(anew.report_uuid));  // the same content is retired twice
-  EXPECT_EQ(store_->list_paths({}, "", "", 10).rows.size(), 2U);
 }
 
 TEST_P(StoreConformance, AResetTaskLosesAllItsPathsAndNoOtherDoes) {

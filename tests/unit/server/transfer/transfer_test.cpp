@@ -53,40 +53,6 @@ double largest_error(const TransferredPath& transferred, const kinematics::Chain
   return worst;
 }
 
-TEST(Transfer, EveryConfigurationPutsTheTransferFrameWhereTheSourceHadIt) {
-  const auto source = source_arm();
-  const auto target = target_arm();
-  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
-  const auto transferred = transfer_path(source_path(), {source, target}, same, {}, kSeed);
-  EXPECT_GT(transferred.configurations.cols(), 20);
-  EXPECT_EQ(transferred.configurations.rows(), 7);
-  EXPECT_LT(largest_error(transferred, source, target, same, resample(source_path(), {})), 2e-6);
-}
-
-TEST(Transfer, RespectsWhereTheRobotsStand) {
-  const auto source = source_arm();
-  const auto target = target_arm();
-  const Eigen::Isometry3d T_target_source = planar_pose(0.1, -0.15, 0.6);
-  const auto transferred =
-      transfer_path(source_path(), {source, target}, T_target_source, {}, kSeed);
-  EXPECT_GT(transferred.configurations.cols(), 20);
-  EXPECT_LT(
-      largest_error(transferred, source, target, T_target_source, resample(source_path(), {})),
-      2e-6);
-}
-
-TEST(Transfer, RespectsTheTransferFrameOfTheTarget) {
-  const auto source = source_arm();
-  const auto target = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1},
-                                .limit = 2.8,
-                                .T_tip_transfer = planar_pose(0.05, 0.02, -0.4)}
-                          .chain();
-  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
-  const auto transferred = transfer_path(source_path(), {source, target}, same, {}, kSeed);
-  EXPECT_GT(transferred.configurations.cols(), 20);
-  EXPECT_LT(largest_error(transferred, source, target, same, resample(source_path(), {})), 2e-6);
-}
-
 TEST(Transfer, TheSameRobotAtTheSamePlaceTakesItsWaypointsOver) {
   const auto arm = source_arm();
   const Path path = source_path();

@@ -99,12 +99,6 @@ class PostgresReplicas : public testing::Test {
       reports.push_back(path.report_uuid);
     return reports;
   }
-  static std::vector<Uuid> reports(const std::vector<std::uint64_t>& numbers) {
-    std::vector<Uuid> uuids;
-    for (const std::uint64_t number : numbers)
-      uuids.push_back(test::id_from<Uuid>(number));
-    return uuids;
-  }
   ReplicaUse use_of(const Store& store, const test::PostgresCluster& cluster) const {
     for (const ReplicaUse& use : store.status().replicas)
       if (use.host.find(cluster.folder()) != std::string::npos)
@@ -164,7 +158,7 @@ TEST_F(PostgresReplicas, AStandbyThatIsBehindIsNotReadForWhatItDoesNotHave) {
   report(*store_, 6, 6);
   const auto retired = store_->retire_path(test::id_from<Uuid>(2));
   ASSERT_TRUE(retired) << retired.error().message;
-  EXPECT_EQ(reports_read(*store_, generation()), reports({1, 3, 4, 5, 6}))
+  EXPECT_EQ(reports_read(*store_, generation()), test::uuids_from({1, 3, 4, 5, 6}))
       << "what is retired is in no fit of that generation";
   EXPECT_EQ(store_->path_ids(robot_.digest, "shelf", generation()).size(), 5U);
   EXPECT_EQ(use_of(*store_, *b_).behind, 2U);
@@ -176,16 +170,17 @@ TEST_F(PostgresReplicas, AStandbyThatIsBehindIsNotReadForWhatItDoesNotHave) {
   test::wait_until_replayed(*a_, *b_);  // the beginning of its run
   pause(true);
   report(*store_, 7, 7);
-  EXPECT_EQ(reports_read(*other, before), reports({1, 3, 4, 5, 6})) << "new enough for that";
+  EXPECT_EQ(reports_read(*other, before), test::uuids_from({1, 3, 4, 5, 6}))
+      << "new enough for that";
   EXPECT_EQ(use_of(*other, *b_).readings, 1U);
-  EXPECT_EQ(reports_read(*other, generation()), reports({1, 3, 4, 5, 6, 7}));
-  EXPECT_EQ(reports_read(*other, before), reports({1, 3, 4, 5, 6, 7}))
+  EXPECT_EQ(reports_read(*other, generation()), test::uuids_from({1, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(reports_read(*other, before), test::uuids_from({1, 3, 4, 5, 6, 7}))
       << "never from before what was read last";
   EXPECT_EQ(use_of(*other, *b_).readings, 1U);
 
   pause(false);
   test::wait_until_replayed(*a_, *b_);
-  EXPECT_EQ(reports_read(*other, generation()), reports({1, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(reports_read(*other, generation()), test::uuids_from({1, 3, 4, 5, 6, 7}));
   EXPECT_EQ(use_of(*other, *b_).readings, 2U);
   EXPECT_EQ(use_of(*other, *b_).message, "");
 }
@@ -292,12 +287,12 @@ TEST_F(PostgresReplicas, AStandbyOfAnotherHistoryIsNotRead) {
   }));
   EXPECT_EQ(c->query("SELECT generation FROM experience", kDatabase), "6");
   EXPECT_TRUE(comes_true([&] {
-    EXPECT_EQ(reports_read(*store_, generation()), reports({1, 2, 3, 4, 5}));
+    EXPECT_EQ(reports_read(*store_, generation()), test::uuids_from({1, 2, 3, 4, 5}));
     return use_of(*store_, *c).behind > 0;
   })) << use_of(*store_, *c).message;
   EXPECT_EQ(use_of(*store_, *c).readings, 0U);
   report(*store_, 7, 7);
-  EXPECT_EQ(reports_read(*store_, generation()), reports({1, 2, 3, 4, 5, 7}));
+  EXPECT_EQ(reports_read(*store_, generation()), test::uuids_from({1, 2, 3, 4, 5, 7}));
 }
 
 }  // namespace

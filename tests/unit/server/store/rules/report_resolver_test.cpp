@@ -41,25 +41,6 @@ class ReportResolverTest : public testing::Test {
   BatchState state_;
 };
 
-TEST_F(ReportResolverTest, EachAttemptSeesThoseBeforeIt) {
-  add(1, 1);
-  add(1, 1);  // the same again
-  add(2, 1);  // the same content
-  add(1, 3);  // another body under a known UUID
-  const BatchChanges made = resolve();
-  EXPECT_EQ(test::statuses(made.receipts),
-            (std::vector{ReceiptStatus::Stored, ReceiptStatus::Duplicate, ReceiptStatus::Duplicate,
-                         ReceiptStatus::Refused}));
-  ASSERT_EQ(made.paths.size(), 1U);
-  ASSERT_EQ(made.attempts.size(), 2U);
-  EXPECT_EQ(made.attempts[1].status, AttemptStatus::DuplicateContent);
-  EXPECT_EQ(made.attempts[1].path_id, made.paths[0].id);
-  const PairChange& change = made.pairs.at({.task_id = 2, .robot_id = 1});
-  EXPECT_EQ(change.paths, 1);
-  EXPECT_EQ(change.attempts, 2);
-  EXPECT_EQ(made.resent.size(), 1U);
-}
-
 TEST_F(ReportResolverTest, AResendWritesThatItCameAndNothingElse) {
   const PreparedAttempt& again = add(1, 1);
   state_.reports[again.attempt.report_uuid] = came_before(again);
@@ -67,25 +48,6 @@ TEST_F(ReportResolverTest, AResendWritesThatItCameAndNothingElse) {
   EXPECT_EQ(made.receipts[0].status, ReceiptStatus::Duplicate);
   EXPECT_FALSE(made.is_empty()) << "its answer has to wait for the standby";
   EXPECT_TRUE(made.paths.empty() && made.attempts.empty() && made.pairs.empty());
-}
-
-TEST_F(ReportResolverTest, APathOverTheCapMakesTheOneWithTheLargestDigestGo) {
-  for (std::uint64_t i = 1; i <= 6; ++i)
-    add(i, i);
-  std::set<Digest> smallest;
-  for (const PreparedAttempt& each : prepared_)
-    smallest.insert(each.path->content);
-  smallest.erase(std::next(smallest.begin(), 2), smallest.end());
-  const BatchChanges made = resolve(2);
-  std::set<Digest> kept;
-  for (const NewPath& path : made.paths)
-    if (!path.is_dropped)
-      kept.insert(path.from->path->content);
-  EXPECT_EQ(kept, smallest);
-  const PairChange& change = made.pairs.at({.task_id = 2, .robot_id = 1});
-  EXPECT_EQ(change.paths, 2);
-  EXPECT_EQ(change.dropped, 4);
-  EXPECT_EQ(change.attempts, 6);
 }
 
 TEST_F(ReportResolverTest, AStoredPathGoesForASmallerOne) {
@@ -99,18 +61,6 @@ TEST_F(ReportResolverTest, AStoredPathGoesForASmallerOne) {
   ASSERT_EQ(made.dropped.size(), 1U);
   EXPECT_EQ(made.dropped[0].id, 7);
   EXPECT_EQ(made.dropped[0].crc_when_dropped, 99U);
-}
-
-TEST_F(ReportResolverTest, APathThatWasRetiredBeforeItCameIsNotInUse) {
-  const PreparedAttempt& only = add(1, 1);
-  state_.retired.insert(only.attempt.report_uuid);
-  const BatchChanges made = resolve(1);
-  EXPECT_EQ(made.receipts[0].status, ReceiptStatus::Recorded);
-  ASSERT_EQ(made.paths.size(), 1U);
-  EXPECT_TRUE(made.paths[0].is_retired);
-  const PairChange& change = made.pairs.at({.task_id = 2, .robot_id = 1});
-  EXPECT_EQ(change.paths, 0);
-  EXPECT_FALSE(change.is_changed);
 }
 
 TEST_F(ReportResolverTest, ADamagedPathIsReplacedByTheReportThatBringsItsContent) {
@@ -202,20 +152,6 @@ TEST_F(ReportResolverTest, UnderALoweredCapAReportDropsNoMoreThanMayBeDroppedAtO
   EXPECT_EQ(made.dropped.size(), kMaxDroppedAtOnce);
   EXPECT_EQ(made.pairs.at(pair().key).dropped, 64);
   EXPECT_EQ(made.pairs.at(pair().key).paths, 1 - 64);
-}
-
-TEST_F(ReportResolverTest, AnUnknownRobotAndAWrongNumberOfJointsAreAnsweredAlone) {
-  add(1, 1);
-  Attempt wide = test::make_attempt(robot_.digest, "shelf", 2);
-  wide.path = test::make_path(2, test::kDof + 1);
-  prepared_.push_back(prepare(std::move(wide)).value_or_throw());
-  batch_.push_back(&prepared_.back());
-  prepared_.push_back(
-      prepare(test::make_attempt(test::id_from<Digest>(99), "shelf", 3)).value_or_throw());
-  batch_.push_back(&prepared_.back());
-  EXPECT_EQ(
-      test::statuses(resolve().receipts),
-      (std::vector{ReceiptStatus::Stored, ReceiptStatus::Refused, ReceiptStatus::UnknownRobot}));
 }
 
 }  // namespace

@@ -13,33 +13,6 @@ namespace {
 
 Distribution example() { return test::make_distribution(test::id_from<Digest>(1), "shelf", 2); }
 
-TEST(DistributionBlob, ComesBackAsItWas) {
-  const Distribution before = example();
-  const std::optional<Distribution> after = decode_distribution(encode_distribution(before));
-  ASSERT_TRUE(after);
-  EXPECT_EQ(after->id, before.id);
-  EXPECT_EQ(after->robot, before.robot);
-  EXPECT_TRUE(after->T_task_base->isApprox(*before.T_task_base, 1e-15));
-  EXPECT_EQ(after->engines, before.engines);
-  EXPECT_EQ(after->reason, before.reason);
-  ASSERT_EQ(after->sources.size(), 1U);
-  EXPECT_EQ(after->sources[0].label, "panda");
-  EXPECT_EQ(after->sources[0].poses_solved, 600U);
-  EXPECT_EQ(after->mixture->means(), before.mixture->means());
-  EXPECT_EQ(after->mixture->weights(), before.mixture->weights());
-  EXPECT_EQ(after->mixture->covariances(), before.mixture->covariances());
-  EXPECT_EQ(after->limits, before.limits);
-  EXPECT_EQ(after->held_out_score, before.held_out_score);
-  EXPECT_EQ(after->component_scores, before.component_scores);
-  EXPECT_EQ(after->cuts, before.cuts);
-  EXPECT_EQ(after->fit, before.fit);
-  EXPECT_EQ(after->fitted_ms, before.fitted_ms);
-  // and everything else, because it is written in the same bytes again
-  Distribution exact_pose = *after;
-  exact_pose.T_task_base = before.T_task_base;
-  EXPECT_EQ(encode_distribution(exact_pose), encode_distribution(before));
-}
-
 /// With `count` components of three joints that share a covariance.
 Distribution example_of_kernels(Eigen::Index count) {
   Distribution kernels = example();

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "proto/types/pose.hpp"
 #include "server/store/values/compression.hpp"
 #include "tests/support/random_values.hpp"
@@ -53,26 +51,6 @@ TEST(SceneBlob, ASceneOfEqualThingsIsCompressed) {
   EXPECT_EQ(blob.encoding, SceneEncoding::Zstd);
   EXPECT_LT(blob.bytes.size(), 400U);
   EXPECT_EQ(decode(blob)->objects.size(), 30U);
-}
-
-TEST(SceneBlob, AConstraintComesBackWithItsInfiniteBounds) {
-  RecordedScene scene;
-  const SceneBlob without = encode_scene(scene);
-  scene.constraint.emplace();
-  scene.constraint->bounds.row(0).setConstant(-std::numeric_limits<double>::infinity());
-  scene.constraint->bounds.row(1).setConstant(std::numeric_limits<double>::infinity());
-  scene.constraint->bounds.col(4) << -0.25, 0.125;
-  const SceneBlob with = encode_scene(scene);
-  EXPECT_EQ(plain(without), (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0,  //
-                                                       0, 0, 0, 0, 0, 0, 0, 0,  //
-                                                       0, 0, 0, 0, 0, 0, 0, 0,  //
-                                                       0, 0, 0, 0, 0, 0, 0, 0,  //
-                                                       0, 0, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(with.size, without.size + 2 * 56 + 12 * 8);
-  EXPECT_FALSE(decode(without)->constraint);
-  const auto read = decode(with);
-  ASSERT_TRUE(read && read->constraint);
-  EXPECT_EQ(read->constraint->bounds, scene.constraint->bounds);
 }
 
 TEST(SceneBlob, OfAnotherFormatIsNothing) {

@@ -1,14 +1,92 @@
-#include "client/arguments/command_options.hpp"
+#include "client/arguments/number_range.hpp"
 
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <sstream>
 
+#include "client/arguments/command_options.hpp"
 #include "proto/types/limits.hpp"
 
-namespace kinship::arguments::selection_options_test {
+namespace kinship::arguments::arguments_test {
 namespace {
+
+std::string complaint(const CLI::Validator& check, const std::string& given) {
+  std::string text = given;
+  return check(text);
+}
+
+TEST(Between, TakesItsEnds) {
+  for (const char* given : {"0.01", "86400", "5", "1e3"})
+    EXPECT_EQ(complaint(between(0.01, 86'400.0), given), "") << given;
+  EXPECT_EQ(complaint(between<std::uint32_t>(0, 230), "230"), "");
+}
+
+TEST(Between, NamesTheValueAndTheRange) {
+  EXPECT_EQ(complaint(between<std::uint32_t>(0, 230), "231"),
+            "'231' is not a number from 0 to 230");
+  EXPECT_EQ(complaint(between(0.0, 2'592'000.0), "1e9"), "'1e9' is not a number from 0 to 2592000");
+}
+
+TEST(Between, RefusesWhatIsNoNumber) {
+  for (const char* given : {"nan", "-nan", "inf", "-1", "", "five", "5s"})
+    EXPECT_NE(complaint(between(0.0, 100.0), given), "") << given;
+}
+
+std::string profile_of(const std::string& line) {
+  std::string profile = "default";
+  CLI::App app;
+  add_profile_options(app, profile);
+  app.parse(line);
+  return profile;
+}
+
+TEST(ProfileOptions, TheEstimatorIsAppendedWhereverItStands) {
+  EXPECT_EQ(profile_of(""), "default");
+  EXPECT_EQ(profile_of("--estimator kde"), "default,estimator=kde");
+  EXPECT_EQ(profile_of("--profile paper --estimator gmm"), "paper,estimator=gmm");
+  EXPECT_EQ(profile_of("--estimator kde --profile paper,tracks=2"), "paper,tracks=2,estimator=kde");
+}
+
+TEST(ProfileOptions, AnotherEstimatorIsRefused) {
+  EXPECT_THROW(profile_of("--estimator knn"), CLI::ValidationError);
+}
+
+using Words = std::vector<std::string>;
+
+TEST(RobotOptions, FillTheArguments) {
+  models::RobotArguments robot;
+  std::string rest;
+  CLI::App app;
+  add_robot_options(app, robot);
+  app.add_option("rest", rest);
+  app.parse(
+      "--base b --tip t --label l --transfer \"0 0 1 0 0 0 1\" --axes x,y --hold a=1 --hold b=2 "
+      "--srdf s.srdf --package p=/p --package q=/q "
+      "--collision-from-visual --without-collision c --without-collision d more");
+  EXPECT_EQ(robot.base_link, "b");
+  EXPECT_EQ(robot.tip_link, "t");
+  EXPECT_EQ(robot.label, "l");
+  EXPECT_EQ(robot.transfer, "0 0 1 0 0 0 1");
+  EXPECT_EQ(robot.axes, "x,y");
+  EXPECT_EQ(robot.held, (Words{"a=1", "b=2"}));
+  EXPECT_EQ(robot.srdf, "s.srdf");
+  EXPECT_EQ(robot.packages, (Words{"p=/p", "q=/q"}));
+  EXPECT_TRUE(robot.collision_from_visual);
+  EXPECT_EQ(robot.without_collision, (Words{"c", "d"}));
+  EXPECT_EQ(robot.source, "");
+  EXPECT_EQ(rest, "more");  // a repeatable option takes one word at a time
+}
+
+TEST(RobotOptions, AreAllOptional) {
+  models::RobotArguments robot;
+  CLI::App app;
+  add_robot_options(app, robot);
+  app.parse("");
+  EXPECT_TRUE(robot.held.empty());
+  EXPECT_TRUE(robot.srdf.empty());
+}
 
 using Time = std::chrono::system_clock::time_point;
 
@@ -114,4 +192,4 @@ TEST(SelectionOptions, RefuseWhileTheCommandLineIsParsed) {
 }
 
 }  // namespace
-}  // namespace kinship::arguments::selection_options_test
+}  // namespace kinship::arguments::arguments_test

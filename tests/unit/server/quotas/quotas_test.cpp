@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <string>
 
-namespace kinship::quotas::client_quotas_test {
+#include "server/quotas/known_tasks.hpp"
+#include "server/quotas/token_bucket.hpp"
+
+namespace kinship::quotas::quotas_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -149,5 +152,60 @@ TEST_F(Book, ZeroIsNoLimitAndNobodyInParticularHasNone) {
   EXPECT_EQ(limited.size(), 0U);
 }
 
+class Bucket : public testing::Test {
+ protected:
+  double time_until(double amount) { return bucket_.time_until(rate_, amount, now_).count(); }
+  void take(double amount) { bucket_.take(rate_, amount, now_); }
+
+  Rate rate_{.per_s = 2, .burst = 10};
+  TokenBucket::TimePoint now_{seconds(1000)};
+  TokenBucket bucket_{rate_, now_};
+};
+
+TEST_F(Bucket, GivesABurstAndThenAsMuchAsComesIn) {
+  EXPECT_EQ(time_until(10), 0);
+  take(10);
+  EXPECT_DOUBLE_EQ(time_until(1), 0.5);
+  now_ += seconds(3);
+  EXPECT_EQ(time_until(6), 0);
+  EXPECT_DOUBLE_EQ(time_until(8), 1);
+  now_ += seconds(1000);
+  EXPECT_EQ(time_until(10), 0);
+  take(10);
+  EXPECT_GT(time_until(1), 0) << "it holds no more than a burst, however long nothing was taken";
+}
+
+TEST_F(Bucket, MoreThanItHoldsIsTakenWhenItIsFullAndOwedThen) {
+  EXPECT_EQ(time_until(30), 0);
+  take(30);
+  EXPECT_DOUBLE_EQ(time_until(10), 15) << "20 owed and 10 missing, 2 a second";
+  now_ += seconds(15);
+  EXPECT_TRUE(bucket_.is_full(rate_, now_));
+}
+
+TEST_F(Bucket, AClockThatGoesBackGivesNothing) {
+  take(10);
+  now_ -= seconds(100);
+  EXPECT_DOUBLE_EQ(time_until(1), 0.5);
+}
+
+TEST_F(Bucket, WithoutABurstThereIsNoLimit) {
+  rate_ = {};
+  take(1e12);
+  EXPECT_EQ(time_until(1e12), 0);
+  EXPECT_TRUE(bucket_.is_full(rate_, now_)) << "a client without limits may be forgotten";
+}
+
+TEST(KnownTasks, TellsWhatIsNewAndIsBounded) {
+  KnownTasks tasks(2);
+  EXPECT_TRUE(tasks.add("shelf"));
+  EXPECT_FALSE(tasks.add("shelf"));
+  EXPECT_TRUE(tasks.add("bin"));
+  EXPECT_TRUE(tasks.has("shelf") && tasks.has("bin"));
+  EXPECT_TRUE(tasks.add("table"));
+  EXPECT_TRUE(tasks.has("table"));
+  EXPECT_FALSE(tasks.has("shelf")) << "the store is asked again";
+}
+
 }  // namespace
-}  // namespace kinship::quotas::client_quotas_test
+}  // namespace kinship::quotas::quotas_test
