@@ -16,8 +16,8 @@ namespace kinship::store {
 
 using Progress = std::function<void(double)>;  ///< called now and then with 0 to 1
 
-/// Reads every row and every blob, SQLite's own structure, and compares the counts; writes nothing (but rolls
-/// back a migration that was killed halfway).
+/// Reads SQLite's structure, every row and every blob, and compares the counts; writes nothing (but
+/// rolls back a migration that was killed halfway).
 /// \throws Failure(Storage) if the file is no store that this binary knows; the result reports
 ///         damage.
 StoreCheck check_store(const std::filesystem::path& file, const Progress& progress);
