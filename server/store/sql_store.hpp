@@ -79,16 +79,16 @@ class SqlStore : public Store {
                                  const FitRight& /*right*/) {}
 
   template <typename Read>
-  std::invoke_result_t<Read, Session&> read(View view, Read read) const {
+  std::invoke_result_t<Read, Session&> read(View view, Read reading) const {
     std::optional<std::invoke_result_t<Read, Session&>> value;
-    run_reading(view, [&](Session& session) { value.emplace(read(session)); });
+    run_reading(view, [&](Session& session) { value.emplace(reading(session)); });
     return std::move(value).value();
   }
   template <typename Write>
-  std::invoke_result_t<Write, Session&, const RetireSome&> write(Write write) {
+  std::invoke_result_t<Write, Session&, const RetireSome&> write(Write writing) {
     std::optional<std::invoke_result_t<Write, Session&, const RetireSome&>> value;
     run_writing([&](Session& session, const RetireSome& retire_some) {
-      value.emplace(write(session, retire_some));
+      value.emplace(writing(session, retire_some));
     });
     return std::move(value).value();
   }
