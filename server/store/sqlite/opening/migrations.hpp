@@ -22,8 +22,8 @@ std::span<const Migration> embedded_migrations();
 
 /// The schema of a file that this binary can read or migrate; 0 if the file is empty.
 /// \throws Failure(Storage) if the file is no Kinship store, is newer than
-///         `migrations`, or was made by a migration of another text; SqliteError::is_damage() if its
-///         schema is not as the migrations make it.
+///         `migrations`, or was made by a migration of another text; SqliteError::is_damage() if
+///         its schema is not as the migrations make it.
 std::int64_t known_schema(Database& database, const std::filesystem::path& file,
                           std::span<const Migration> migrations);
 
