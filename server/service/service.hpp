@@ -190,7 +190,7 @@ class Service {
   void start_forwarder();
   void stop_forwarder();
   void tell_line(std::string_view line);
-  void commit_from_upstream(std::vector<store::SharedReport> reports,
+  void commit_from_upstream(std::vector<store::ReplicatedReport> reports,
                             store::Store::ReportsDone done);
   void note_from_upstream(std::span<const catalog::AttemptCost> costs,
                           std::span<const Receipt> receipts);

@@ -28,7 +28,7 @@ void Service::start_forwarder() {
     const Result<runtime::RobotRegistry::RobotPointer> robot = robots_.find(attempt.robot);
     return robot ? check_attempt(attempt, *robot.value()) : robot.error();
   };
-  forwarder.hooks.commit = [this](std::vector<store::SharedReport> reports,
+  forwarder.hooks.commit = [this](std::vector<store::ReplicatedReport> reports,
                                   store::Store::ReportsDone done) {
     commit_from_upstream(std::move(reports), std::move(done));
   };
@@ -53,18 +53,18 @@ void Service::tell_line(std::string_view line) {
                [line] { return "upstream: " + std::string(line); });
 }
 
-void Service::commit_from_upstream(std::vector<store::SharedReport> reports,
+void Service::commit_from_upstream(std::vector<store::ReplicatedReport> reports,
                                    store::Store::ReportsDone done) {
   std::vector<catalog::AttemptCost> costs;
   costs.reserve(reports.size());
-  for (const store::SharedReport& report : reports)
+  for (const store::ReplicatedReport& report : reports)
     costs.push_back(catalog::cost_of(report.attempt));
-  store_->commit_shared(std::move(reports),
-                        [this, costs = std::move(costs),
-                         done = std::move(done)](const std::vector<Receipt>& receipts) {
-                          note_from_upstream(costs, receipts);
-                          done(receipts);
-                        });
+  store_->commit_replicated(std::move(reports),
+                            [this, costs = std::move(costs),
+                             done = std::move(done)](const std::vector<Receipt>& receipts) {
+                              note_from_upstream(costs, receipts);
+                              done(receipts);
+                            });
 }
 
 /// As reports of this site's robots, but without an event for each of them.
@@ -93,7 +93,7 @@ void Service::stop_forwarder() {
   forwarder_->stop();
   // Its commits are answered when this one is: items are committed in turn.
   std::promise<void> answered;
-  store_->commit_shared({}, [&answered](const std::vector<Receipt>&) { answered.set_value(); });
+  store_->commit_replicated({}, [&answered](const std::vector<Receipt>&) { answered.set_value(); });
   answered.get_future().wait();
 }
 

@@ -11,7 +11,7 @@
 namespace kinship::sites {
 namespace {
 
-using store::SharedReport;
+using store::ReplicatedReport;
 
 void throw_if_stopped(const Way& way) {
   if (way.stop.stop_requested())
@@ -19,7 +19,7 @@ void throw_if_stopped(const Way& way) {
 }
 
 /// The receipts of a commit. A store may take as long as it likes: a stop does not wait.
-std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
+std::vector<Receipt> commit(const Way& way, std::vector<ReplicatedReport> reports) {
   if (reports.empty())
     return {};
   way.before_write();
@@ -33,7 +33,7 @@ std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
   if (way.commit)
     way.commit(std::move(reports), done);
   else
-    way.to.commit_shared(std::move(reports), done);
+    way.to.commit_replicated(std::move(reports), done);
   constexpr std::chrono::milliseconds kLook{50};
   while (receipts.wait_for(kLook) != std::future_status::ready)
     throw_if_stopped(way);
@@ -41,11 +41,11 @@ std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
 }
 
 /// The reports whose robots are at the other store by now; the others are refused.
-std::vector<SharedReport> with_robots(const Way& way, std::vector<SharedReport> reports,
-                                      CarriedReports& carried) {
+std::vector<ReplicatedReport> with_robots(const Way& way, std::vector<ReplicatedReport> reports,
+                                          CarriedReports& carried) {
   std::map<Digest, std::optional<Error>> robots;
-  std::vector<SharedReport> good;
-  for (SharedReport& report : reports) {
+  std::vector<ReplicatedReport> good;
+  for (ReplicatedReport& report : reports) {
     const auto [robot, is_new] = robots.try_emplace(report.attempt.robot);
     if (is_new)
       robot->second = way.bring_robot ? way.bring_robot(report.attempt.robot)
@@ -109,7 +109,7 @@ CarriedReports carry_reports(const Way& way, std::span<const Uuid> reports, std:
   CarriedReports carried;
   while (!reports.empty()) {
     throw_if_stopped(way);
-    store::SharedReports read =
+    store::ReplicatedReports read =
         way.from.read_reports(reports.first(std::min(reports.size(), piece.commit)), piece.bytes);
     // Only now: this includes all retirements from before any of these was listed.
     carry_retirements(way, retired, piece);

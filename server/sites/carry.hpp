@@ -25,8 +25,8 @@ struct Way {
   store::Store& to;
   /// Registers a robot at `to` unless it is there; empty: carry_robot().
   std::function<std::optional<Error>(const Digest&)> bring_robot = {};
-  /// Commits at `to`; empty: `to.commit_shared`.
-  std::function<void(std::vector<store::SharedReport>, store::Store::ReportsDone)> commit = {};
+  /// Commits at `to`; empty: `to.commit_replicated`.
+  std::function<void(std::vector<store::ReplicatedReport>, store::Store::ReportsDone)> commit = {};
   /// Retires at `to`; empty: `to.retire_reports`.
   std::function<std::vector<Retirement>(std::span<const Uuid>)> retire = {};
   /// The fault of an attempt before it is committed at `to`; empty: no check.

@@ -112,7 +112,7 @@ Way Exchange::way_down(const std::stop_token& stop) {
           .to = site_,
           .bring_robot = [this](const Digest& robot) { return bring_robot(memory_, site_, robot); },
           .commit =
-              [this](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+              [this](std::vector<store::ReplicatedReport> reports, store::Store::ReportsDone done) {
                 commit_here(std::move(reports), std::move(done));
               },
           .retire = [this](std::span<const Uuid> reports) { return retire_here(reports); },
@@ -126,7 +126,7 @@ Way Exchange::way_down(const std::stop_token& stop) {
           .stop = stop};
 }
 
-void Exchange::commit_here(std::vector<store::SharedReport> reports,
+void Exchange::commit_here(std::vector<store::ReplicatedReport> reports,
                            store::Store::ReportsDone done) {
   const auto timed = [total = commits_ns_, began = std::chrono::steady_clock::now(),
                       done = std::move(done)](const std::vector<Receipt>& receipts) {
@@ -136,7 +136,7 @@ void Exchange::commit_here(std::vector<store::SharedReport> reports,
   if (hooks_.commit)
     hooks_.commit(std::move(reports), timed);
   else
-    site_.commit_shared(std::move(reports), timed);
+    site_.commit_replicated(std::move(reports), timed);
 }
 
 std::vector<Retirement> Exchange::retire_here(std::span<const Uuid> reports) {

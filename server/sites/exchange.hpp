@@ -25,7 +25,7 @@ namespace kinship::sites {
 /// Hooks of the site's own server for data that comes down, and the tasks it wants.
 struct SiteHooks {
   /// Commits reports that came down; empty: directly into the store.
-  std::function<void(std::vector<store::SharedReport>, store::Store::ReportsDone)> commit = {};
+  std::function<void(std::vector<store::ReplicatedReport>, store::Store::ReportsDone)> commit = {};
   /// The fault of an attempt that came down.
   std::function<std::optional<Error>(const Attempt&)> check = {};
   std::function<void(const Retirement&)> on_retired = [](const Retirement&) {};
@@ -105,7 +105,7 @@ class Exchange {
   std::optional<Error> bring_robot(store::Store& from, store::Store& to, const Digest& robot);
   Way way_up(const std::stop_token& stop);
   Way way_down(const std::stop_token& stop);
-  void commit_here(std::vector<store::SharedReport> reports, store::Store::ReportsDone done);
+  void commit_here(std::vector<store::ReplicatedReport> reports, store::Store::ReportsDone done);
   std::vector<Retirement> retire_here(std::span<const Uuid> reports);
   TimePoint look_again() const { return options_.clock.now() + options_.look_every; }
 

@@ -213,7 +213,7 @@ void Forwarder::note_oldest(const Positions& positions) {
   std::int64_t oldest_ms = 0;
   if (!first.empty()) {
     const Uuid report = first.front().report_uuid;
-    const store::SharedReports read = site_.read_reports(std::span(&report, 1), 1);
+    const store::ReplicatedReports read = site_.read_reports(std::span(&report, 1), 1);
     if (!read.reports.empty())
       oldest_ms = read.reports.front().received_ms;
   }

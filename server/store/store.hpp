@@ -19,7 +19,7 @@
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/summaries.hpp"
-#include "server/store/shared_report.hpp"
+#include "server/store/replicated_report.hpp"
 
 namespace kinship::store {
 
@@ -348,8 +348,8 @@ class Store {
   virtual Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
                                       std::size_t limit) const = 0;
 
-  /// Feeds for another store (shared_report.hpp). A feed is in the order of arrival; its cursor is
-  /// opaque text, empty for the beginning, and holds for one epoch. With any number of writers,
+  /// Feeds for another store (replicated_report.hpp). A feed is in the order of arrival; its cursor
+  /// is opaque text, empty for the beginning, and holds for one epoch. With any number of writers,
   /// rows committed before a reading begins and behind its cursor are in it, or in one from the
   /// cursor that it returns; no row is skipped because another transaction committed sooner.
   /// \throws Failure(InvalidInput) for a cursor of another list.
@@ -367,13 +367,13 @@ class Store {
   /// reports that are missing or unreadable, solved ones that lost their path (dropped, damaged),
   /// and those of a removed robot. Ends early once waypoints and scenes exceed `max_bytes`, but
   /// looks at one at least.
-  virtual SharedReports read_reports(std::span<const Uuid> reports,
-                                     std::size_t max_bytes) const = 0;
+  virtual ReplicatedReports read_reports(std::span<const Uuid> reports,
+                                         std::size_t max_bytes) const = 0;
   /// commit_reports() for reports from another store: body and time are kept, and a path that is
   /// retired, or whose report is among the retired ones, is stored as retired and answered
   /// Recorded. The same then holds for such a path from a robot. A known report that is retired
   /// there is retired here.
-  virtual void commit_shared(std::vector<SharedReport> reports, ReportsDone done) = 0;
+  virtual void commit_replicated(std::vector<ReplicatedReport> reports, ReportsDone done) = 0;
   /// Retires the paths of reports that another store retired, durable on return, in one
   /// transaction. The UUID of an unknown report is kept, so that its path is retired on arrival.
   /// \return the newly retired paths, by task.

@@ -41,7 +41,7 @@ class StoreFile {
   }
   void remove() const {
     std::error_code ignored;
-    for (const char* suffix : {"", "-wal", "-shm", ".lock", ".witness"})
+    for (const char* suffix : {"", "-wal", "-shm", ".lock", ".high-water-mark"})
       std::filesystem::remove(path_.string() + suffix, ignored);
   }
 

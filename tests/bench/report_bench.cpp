@@ -69,7 +69,7 @@ int run() {
   }
   print("durable reports, 1 client", one, {"append 8 KB + fdatasync", raw.per_s()}, 0.8);
   print("durable reports, 16 clients", sixteen, {"1 client", one.per_s()}, 2.5);
-  for (const char* const suffix : {"", ".raw", ".lock", ".witness"})
+  for (const char* const suffix : {"", ".raw", ".lock", ".high-water-mark"})
     std::filesystem::remove(file.string() + suffix);
   return 0;
 }

@@ -32,7 +32,7 @@ class Rollback : public test::ReportingFleet {
     EXPECT_EQ(server_->terminate(), 0);
     server_.reset();
     std::map<std::string, std::string> files;
-    for (const char* const suffix : {"", ".witness"})
+    for (const char* const suffix : {"", ".high-water-mark"})
       files[suffix] = test::read_text(store_.string() + suffix);
     return files;
   }

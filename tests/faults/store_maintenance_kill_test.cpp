@@ -82,7 +82,7 @@ class StoreMaintenanceKill : public testing::Test {
   }
   bool has_old(const std::vector<fs::path>& files) const {
     return std::ranges::any_of(files, [this](const fs::path& file) {
-      return file.extension() != ".lock" && file.extension() != ".witness" && is_old(file);
+      return file.extension() != ".lock" && file.extension() != ".high-water-mark" && is_old(file);
     });
   }
 

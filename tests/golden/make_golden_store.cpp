@@ -46,7 +46,7 @@ int make(const std::filesystem::path& file) {
     test::report(*store, test::golden_capped_attempts());
   }
   store::Database(file, store::Access::ReadWrite).execute("PRAGMA journal_mode = DELETE; VACUUM");
-  for (const char* const suffix : {".lock", ".witness"})
+  for (const char* const suffix : {".lock", ".high-water-mark"})
     std::filesystem::remove(file.string() + suffix);
   std::cout << file.string() << ": " << std::filesystem::file_size(file) << " bytes\n";
   return 0;

@@ -19,11 +19,11 @@ struct DifferingIds {
   std::vector<std::int64_t> changed, missing, extra;
 };
 
-DifferingIds compare_ids(const std::vector<LightRow>& wanted,
-                         const std::vector<LightRow>& present) {
+DifferingIds compare_ids(const std::vector<RowFingerprint>& wanted,
+                         const std::vector<RowFingerprint>& present) {
   DifferingIds differing;
   auto have = present.begin();
-  for (const LightRow& row : wanted) {
+  for (const RowFingerprint& row : wanted) {
     for (; have != present.end() && (*have)[0] < row[0]; ++have)
       differing.extra.push_back((*have)[0]);
     if (have == present.end() || (*have)[0] != row[0])
@@ -89,7 +89,7 @@ Copying::Copying(Side& source, Side& target, RowsDone rows_done)
     : source_(source), target_(target), rows_done_(std::move(rows_done)) {}
 
 void Copying::run() {
-  for (const LightRow& scene : target_.light(moved_table("scene")))
+  for (const RowFingerprint& scene : target_.light(moved_table("scene")))
     scenes_.insert(scene[0]);
   copy_names();
   copy_pairs();
@@ -183,11 +183,11 @@ void Copying::copy_pair(const Pair& pair) {
   target_.in_transaction([&] { target_.write(experience, std::vector<MovedRow>{begun}); });
 
   paths_.clear();
-  for (const LightRow& row : state.paths)
+  for (const RowFingerprint& row : state.paths)
     paths_.insert(row[0]);
   for (const auto& [name, wanted] :
-       {std::pair<const char*, const std::vector<LightRow>&>("path", state.paths),
-        std::pair<const char*, const std::vector<LightRow>&>("attempt", state.attempts)}) {
+       {std::pair<const char*, const std::vector<RowFingerprint>&>("path", state.paths),
+        std::pair<const char*, const std::vector<RowFingerprint>&>("attempt", state.attempts)}) {
     const MovedTable& table = moved_table(name);
     const DifferingIds differing = compare_ids(wanted, target_.light(table, pair));
     copy_ids(table, differing.changed);

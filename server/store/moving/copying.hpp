@@ -32,7 +32,7 @@ class Copying {
   /// The state of a robot and task to be copied.
   struct PairState {
     MovedRow experience;
-    std::vector<LightRow> attempts, paths;
+    std::vector<RowFingerprint> attempts, paths;
   };
 
   void copy_names();

@@ -18,7 +18,7 @@ using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 using MovedRow = std::vector<Cell>;
 
 /// Tells a change of a row with an id, without its blobs: the id and the columns that may change.
-using LightRow = std::array<std::int64_t, 4>;
+using RowFingerprint = std::array<std::int64_t, 4>;
 
 /// The experience of a robot with a task.
 struct Pair {

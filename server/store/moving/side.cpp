@@ -26,14 +26,14 @@ MovedRow Side::experience_of(const Pair& pair) {
   });
 }
 
-std::vector<LightRow> Side::light(const MovedTable& table, const Pair& pair) {
+std::vector<RowFingerprint> Side::light(const MovedTable& table, const Pair& pair) {
   std::vector<Parameter> parameters;
   if (table.reading == Reading::ByPair)
     parameters = {Parameter(pair.task_id), Parameter(pair.robot_id)};
   return named([&] {
-    std::vector<LightRow> rows;
+    std::vector<RowFingerprint> rows;
     for (const Row& row : session().query_with(selection_of(table).light, parameters)) {
-      LightRow& light = rows.emplace_back();
+      RowFingerprint& light = rows.emplace_back();
       for (int column = 0; column < row.columns(); ++column)
         light.at(static_cast<std::size_t>(column)) = row.column_integer(column);
     }

@@ -45,8 +45,8 @@ class Side {
   virtual std::vector<MovedRow> of_ids(const MovedTable& table,
                                        std::span<const std::int64_t> ids) = 0;
   /// In order of ids. \param pair  for a table that is read by pairs.
-  virtual std::vector<LightRow> light(const MovedTable& table, const Pair& pair);
-  std::vector<LightRow> light(const MovedTable& table) { return light(table, {}); }
+  virtual std::vector<RowFingerprint> light(const MovedTable& table, const Pair& pair);
+  std::vector<RowFingerprint> light(const MovedTable& table) { return light(table, {}); }
 
   std::string setting(std::string_view key);  ///< empty: none
   void put_setting(std::string_view key, const std::optional<std::string>& value);

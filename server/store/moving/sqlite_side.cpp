@@ -171,11 +171,11 @@ class SqliteSide : public Side {
     return rows;
   }
 
-  std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
-    std::vector<LightRow> rows = Side::light(table, pair);
+  std::vector<RowFingerprint> light(const MovedTable& table, const Pair& pair) override {
+    std::vector<RowFingerprint> rows = Side::light(table, pair);
     if (table.name == "scene") {
       const SqliteScenes scenes(*database_);
-      for (LightRow& row : rows)
+      for (RowFingerprint& row : rows)
         row[0] = scenes.first_of(row[0]);
     }
     std::ranges::sort(rows);
@@ -276,9 +276,9 @@ class SqliteSide : public Side {
 
   void remove_all() override {
     database_.reset();
-    for (const char* const companion : kCompanions)
-      unlink((name_ + companion).c_str());
-    unlink((name_ + ".witness").c_str());
+    for (const char* const sidecar : kSidecars)
+      unlink((name_ + sidecar).c_str());
+    unlink((name_ + ".high-water-mark").c_str());
     if (unlink(name_.c_str()) != 0)
       refuse_store(file_, "cannot be removed");
     files::sync_folder_of(file_);

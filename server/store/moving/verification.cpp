@@ -125,7 +125,8 @@ class Comparison {
   }
 
   /// Rows of which ids and states alone are compared.
-  void add_light(const std::vector<LightRow>& source, const std::vector<LightRow>& target) {
+  void add_light(const std::vector<RowFingerprint>& source,
+                 const std::vector<RowFingerprint>& target) {
     if (source == target)
       return;
     differ(table_.name + ": of " + std::to_string(source.size()) +
@@ -167,11 +168,11 @@ class Comparison {
 };
 
 /// Ids of both, ascending.
-std::vector<std::int64_t> ids_of_either(const std::vector<LightRow>& one,
-                                        const std::vector<LightRow>& other) {
+std::vector<std::int64_t> ids_of_either(const std::vector<RowFingerprint>& one,
+                                        const std::vector<RowFingerprint>& other) {
   std::vector<std::int64_t> ids;
-  for (const std::vector<LightRow>* const rows : {&one, &other})
-    for (const LightRow& row : *rows)
+  for (const std::vector<RowFingerprint>* const rows : {&one, &other})
+    for (const RowFingerprint& row : *rows)
       ids.push_back(row[0]);
   std::ranges::sort(ids);
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());

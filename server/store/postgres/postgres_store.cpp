@@ -54,19 +54,19 @@ class PostgresStore : public SqlStore {
   StorePoint point() const override { return history_.point(); }
 
   bool has_lost(const HistoryMark& mark) const override {
-    const std::optional<HistoryPoint> doubtful = history_.find_doubtful(mark);
-    if (!doubtful)
+    const std::optional<LogPosition> unconfirmed = history_.find_unconfirmed(mark);
+    if (!unconfirmed)
       return false;
     try {
       return readers_.read(
-          [&](Connection& connection) { return history_.is_gone(connection, *doubtful); });
+          [&](Connection& connection) { return history_.is_gone(connection, *unconfirmed); });
     } catch (const PostgresError&) {
       return false;  // the database's answer is not known now
     }
   }
 
   bool may_have_lost(const HistoryMark& mark) const override {
-    return history_.find_doubtful(mark).has_value();
+    return history_.find_unconfirmed(mark).has_value();
   }
 
   bool begin_epoch_if_lost(const HistoryMark& mark) override {
@@ -125,14 +125,15 @@ class PostgresStore : public SqlStore {
     return readers_.read([&](Connection& connection) { return select_known(connection, reports); });
   }
 
-  SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
-    SharedRead read = readers_.read_snapshot(
-        [&](Connection& connection) { return select_shared(connection, reports, max_bytes); });
+  ReplicatedReports read_reports(std::span<const Uuid> reports,
+                                 std::size_t max_bytes) const override {
+    ReplicatedRead read = readers_.read_snapshot(
+        [&](Connection& connection) { return select_replicated(connection, reports, max_bytes); });
     set_aside_later(std::move(read.damaged));
     return std::move(read.found);
   }
 
-  void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
+  void commit_replicated(std::vector<ReplicatedReport> reports, ReportsDone done) override {
     commit(std::move(reports), std::move(done));
   }
 

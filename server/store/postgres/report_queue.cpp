@@ -31,10 +31,10 @@ QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done) 
   return item;
 }
 
-QueuedItem prepare_item(std::vector<SharedReport> reports, Store::ReportsDone done) {
+QueuedItem prepare_item(std::vector<ReplicatedReport> reports, Store::ReportsDone done) {
   QueuedItem item;
   item.done = std::move(done);
-  for (SharedReport& report : reports) {
+  for (ReplicatedReport& report : reports) {
     const Uuid uuid = report.attempt.report_uuid;
     add_prepared(uuid, prepare(std::move(report)), item);
   }

@@ -32,7 +32,7 @@ struct QueuedItem {
 QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done);
 
 /// The same for reports from another store.
-QueuedItem prepare_item(std::vector<SharedReport> reports, Store::ReportsDone done);
+QueuedItem prepare_item(std::vector<ReplicatedReport> reports, Store::ReportsDone done);
 
 /// For reports that the queue has no room for: each is answered TryAgain, in order.
 QueuedItem declined_item(const std::vector<Uuid>& reports, Store::ReportsDone done,

@@ -30,7 +30,7 @@ struct EarlierReport {
   std::int64_t received_ms = 0;
   std::optional<std::int64_t> path_id = {};
   /// True if the path can be read, or need not be: there is none, or it is retired.
-  bool is_path_vouched_for = true;
+  bool is_path_backed = true;
   bool is_scene_readable = true;  ///< or there is none
 };
 

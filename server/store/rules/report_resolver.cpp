@@ -115,7 +115,7 @@ Receipt ReportResolver::resolve_again(const PreparedAttempt& prepared, Pair& pai
   if (!has_scene)
     need_scene(prepared);
   earlier.is_scene_readable = true;
-  if (!prepared.path || earlier.is_path_vouched_for)
+  if (!prepared.path || earlier.is_path_backed)
     return {uuid,
             has_scene       ? ReceiptStatus::Duplicate
             : prepared.path ? ReceiptStatus::Stored
@@ -128,7 +128,7 @@ Receipt ReportResolver::resolve_again(const PreparedAttempt& prepared, Pair& pai
   note_damaged(damaged, path.id);
   changes_.restored.push_back({uuid, path.status, path.id});
   earlier.path_id = path.id;
-  earlier.is_path_vouched_for = true;
+  earlier.is_path_backed = true;
   if (path.is_in_use())
     drop_excess(pair);
   if (path.is_beyond_cap())

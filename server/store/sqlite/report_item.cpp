@@ -70,10 +70,11 @@ ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<At
   }
 }
 
-ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<SharedReport> reports,
-                       Store::ReportsDone done, std::uint64_t max_paths)
+ReportItem::ReportItem(History& history, DamagedReports& damaged,
+                       std::vector<ReplicatedReport> reports, Store::ReportsDone done,
+                       std::uint64_t max_paths)
     : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {
-  for (SharedReport& report : reports) {
+  for (ReplicatedReport& report : reports) {
     const Uuid uuid = report.attempt.report_uuid;
     take(uuid, std::move(report));
   }

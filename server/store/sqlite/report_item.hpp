@@ -55,7 +55,7 @@ class ReportItem : public WriteItem {
              Store::ReportsDone done, std::uint64_t max_paths = 0);
 
   /// For reports from another store.
-  ReportItem(History& history, DamagedReports& damaged, std::vector<SharedReport> reports,
+  ReportItem(History& history, DamagedReports& damaged, std::vector<ReplicatedReport> reports,
              Store::ReportsDone done, std::uint64_t max_paths);
 
   /// For attempts that the queue has no room for: each is answered TryAgain, in order.

@@ -13,13 +13,13 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/disk_budget.hpp"
 #include "server/store/sqlite/files/disk_space.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
-#include "server/store/sqlite/report_room.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
@@ -83,7 +83,7 @@ class SqliteStore : public SqlStore {
     status.wal_bytes = writer_->wal_bytes();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
-    describe_disk(status, space_, *writer_, lack_of_room());
+    describe_disk(status, space_, *writer_, out_of_space_reason());
     if (status.rollbacks > 0)
       status.message +=
           "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
@@ -119,14 +119,15 @@ class SqliteStore : public SqlStore {
     return select_known(*reader, reports);
   }
 
-  SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
+  ReplicatedReports read_reports(std::span<const Uuid> reports,
+                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    SharedRead read = select_shared(*reader, reports, max_bytes);
+    ReplicatedRead read = select_replicated(*reader, reports, max_bytes);
     set_aside_later(std::move(read.damaged));
     return std::move(read.found);
   }
 
-  void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
+  void commit_replicated(std::vector<ReplicatedReport> reports, ReportsDone done) override {
     commit(std::move(reports), std::move(done));
   }
 
@@ -222,7 +223,7 @@ class SqliteStore : public SqlStore {
 
   template <typename Reported>
   void commit(std::vector<Reported> reported, ReportsDone done) {
-    std::string why = lack_of_room();
+    std::string why = out_of_space_reason();
     if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
       why = "the queue of reports is full, try again";
     if (!why.empty())
@@ -243,8 +244,8 @@ class SqliteStore : public SqlStore {
   }
 
   /// Empty if reports are taken; else why not.
-  std::string lack_of_room() const {
-    return store::lack_of_room(space_, *writer_, readers_, options_.max_wal_bytes);
+  std::string out_of_space_reason() const {
+    return store::out_of_space_reason(space_, *writer_, readers_, options_.max_wal_bytes);
   }
 
   void take_ballast_later() const {

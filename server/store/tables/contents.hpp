@@ -53,8 +53,8 @@ struct SceneRead {
 SceneRead select_scene(Session& session, std::int64_t id);
 
 /// Reports for another store, and the damaged rows found.
-struct SharedRead {
-  SharedReports found;
+struct ReplicatedRead {
+  ReplicatedReports found;
   DamagedRows damaged;
 };
 

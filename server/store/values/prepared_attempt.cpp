@@ -71,8 +71,8 @@ std::vector<Uuid> report_uuids(const std::vector<Attempt>& attempts) {
   return uuids(attempts, [](const Attempt& attempt) { return attempt.report_uuid; });
 }
 
-std::vector<Uuid> report_uuids(const std::vector<SharedReport>& reports) {
-  return uuids(reports, [](const SharedReport& report) { return report.attempt.report_uuid; });
+std::vector<Uuid> report_uuids(const std::vector<ReplicatedReport>& reports) {
+  return uuids(reports, [](const ReplicatedReport& report) { return report.attempt.report_uuid; });
 }
 
 Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine) {
@@ -101,7 +101,7 @@ Result<PreparedAttempt> prepare(Attempt attempt) {
   return PreparedAttempt{std::move(attempt), body, std::move(path), std::move(scene), {}, false};
 }
 
-Result<PreparedAttempt> prepare(SharedReport report) {
+Result<PreparedAttempt> prepare(ReplicatedReport report) {
   Result<PreparedAttempt> result = prepare(std::move(report.attempt));
   if (!result)
     return result;

@@ -49,16 +49,16 @@ class TroubledStore final : public store::Store {
   std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
     return exchange([&] { return store_.known_reports(reports); });
   }
-  store::SharedReports read_reports(std::span<const Uuid> reports,
-                                    std::size_t max_bytes) const override {
+  store::ReplicatedReports read_reports(std::span<const Uuid> reports,
+                                        std::size_t max_bytes) const override {
     return exchange([&] { return store_.read_reports(reports, max_bytes); });
   }
   /// What commits what comes from another store; may never answer.
-  std::function<void(std::vector<store::SharedReport>, ReportsDone)> on_commit =
-      [this](std::vector<store::SharedReport> reports, ReportsDone done) {
-        store_.commit_shared(std::move(reports), std::move(done));
+  std::function<void(std::vector<store::ReplicatedReport>, ReportsDone)> on_commit =
+      [this](std::vector<store::ReplicatedReport> reports, ReportsDone done) {
+        store_.commit_replicated(std::move(reports), std::move(done));
       };
-  void commit_shared(std::vector<store::SharedReport> reports, ReportsDone done) override {
+  void commit_replicated(std::vector<store::ReplicatedReport> reports, ReportsDone done) override {
     exchange([&] {
       on_commit(std::move(reports), std::move(done));
       return true;

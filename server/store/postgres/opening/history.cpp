@@ -9,7 +9,7 @@
 #include "server/store/tables/settings.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/history_seal.hpp"
+#include "server/store/values/consistency_token.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -221,21 +221,21 @@ Uuid History::run() const {
 StorePoint History::point() const {
   Digest key;
   Uuid epoch;
-  HistoryPoint point;
+  LogPosition point;
   {
     const std::lock_guard lock(mutex_);
     key = state_.key;
     epoch = state_.epoch;
     point = {state_.run, state_.position};
   }
-  return {epoch, seal(key, epoch, point)};
+  return {epoch, sign(key, epoch, point)};
 }
 
-std::optional<HistoryPoint> History::find_doubtful(const HistoryMark& mark) const {
+std::optional<LogPosition> History::find_unconfirmed(const HistoryMark& mark) const {
   if (mark.empty())
     return std::nullopt;
   const std::lock_guard lock(mutex_);
-  const std::optional<HistoryPoint> point = open_seal(state_.key, state_.epoch, mark);
+  const std::optional<LogPosition> point = verify(state_.key, state_.epoch, mark);
   if (!point || (point->run == state_.run && point->position <= state_.position))
     return std::nullopt;
   const auto seen = seen_runs_.find(point->run);
@@ -244,7 +244,7 @@ std::optional<HistoryPoint> History::find_doubtful(const HistoryMark& mark) cons
   return point;
 }
 
-bool History::is_gone(Connection& connection, const HistoryPoint& point) const {
+bool History::is_gone(Connection& connection, const LogPosition& point) const {
   const std::optional<std::uint64_t> position = position_of(connection, point.run);
   if (!position) {
     const std::optional<Uuid> forgotten = Uuid::parse(read_setting(connection, kForgottenRun));
@@ -266,7 +266,7 @@ std::optional<History::Begun> History::begin_epoch_if_lost(Connection& connectio
     const std::lock_guard lock(mutex_);
     key = state_.key;
   }
-  const std::optional<HistoryPoint> point = open_seal(key, newest_epoch(connection).epoch, mark);
+  const std::optional<LogPosition> point = verify(key, newest_epoch(connection).epoch, mark);
   if (!point || !is_gone(connection, *point))
     return std::nullopt;
   const std::string why =

@@ -8,7 +8,7 @@
 
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
-#include "server/store/values/history_seal.hpp"
+#include "server/store/values/consistency_token.hpp"
 
 namespace kinship::store::postgres {
 
@@ -48,9 +48,9 @@ class History {
   StorePoint point() const;
 
   /// The point of a mark, if it is of this epoch and not known to be in the database.
-  std::optional<HistoryPoint> find_doubtful(const HistoryMark& mark) const;
-  /// Whether a doubtful point is lost. Remembers how far its run is known.
-  bool is_gone(Connection& connection, const HistoryPoint& point) const;
+  std::optional<LogPosition> find_unconfirmed(const HistoryMark& mark) const;
+  /// Whether a unconfirmed point is lost. Remembers how far its run is known.
+  bool is_gone(Connection& connection, const LogPosition& point) const;
 
   /// Begins a new epoch if a mark is lost, in a writing transaction. \return the epoch, for
   /// adopt().

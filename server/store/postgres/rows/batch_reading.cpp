@@ -175,9 +175,9 @@ void take_pairs(const Rows& rows, BatchState& state) {
 
 void take_reports(const Rows& rows, const Rows& paths, BatchState& state) {
   constexpr int kIsRetired = 8, kIsDamaged = 9;
-  std::map<std::int64_t, bool> vouched_for;
+  std::map<std::int64_t, bool> is_backed;
   for (const Row row : paths)
-    vouched_for[row.column_integer(0)] =
+    is_backed[row.column_integer(0)] =
         row.column_integer(kIsRetired) != 0 ||
         (row.column_integer(kIsDamaged) == 0 && has_right_path_crc(row));
   state.reports.clear();
@@ -188,7 +188,7 @@ void take_reports(const Rows& rows, const Rows& paths, BatchState& state) {
                          .path_id = optional_integer_of(row, 4),
                          .is_scene_readable = row.column_integer(5) == 0};
     if (report.path_id)
-      report.is_path_vouched_for = vouched_for[*report.path_id];
+      report.is_path_backed = is_backed[*report.path_id];
     state.reports.emplace(id_of<Uuid>(row.column_blob(0)), std::move(report));
   }
 }

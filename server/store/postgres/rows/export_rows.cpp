@@ -186,13 +186,13 @@ Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std:
   }
 }
 
-SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
-                         std::size_t max_bytes) {
+ReplicatedRead select_replicated(Connection& connection, std::span<const Uuid> reports,
+                                 std::size_t max_bytes) {
   std::map<Uuid, ArrivedAttempt> known;
   for (ArrivedAttempt& arrived : select_arrived(connection, reports))
     if (!arrived.is_robot_removed)
       known.emplace(arrived.attempt.report_uuid, std::move(arrived));
-  SharedRead read;
+  ReplicatedRead read;
   std::vector<ArrivedAttempt> taken;
   std::size_t bytes = 0;
   for (const Uuid& report : reports) {
@@ -208,8 +208,8 @@ SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
   Contents contents(connection, read.damaged);
   contents.read(taken);
   for (const ArrivedAttempt& arrived : taken) {
-    SharedReport shared{contents.whole(arrived), arrived.body, arrived.received_ms,
-                        arrived.is_retired};
+    ReplicatedReport shared{contents.whole(arrived), arrived.body, arrived.received_ms,
+                            arrived.is_retired};
     if (shared.attempt.path.has_value() == (shared.attempt.record.outcome == Outcome::Solved))
       read.found.reports.push_back(std::move(shared));
   }

@@ -28,7 +28,7 @@ Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std:
                           std::size_t limit, std::size_t max_bytes, DamagedRows& noticed);
 
 /// As Store::read_reports() says.
-SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
-                         std::size_t max_bytes);
+ReplicatedRead select_replicated(Connection& connection, std::span<const Uuid> reports,
+                                 std::size_t max_bytes);
 
 }  // namespace kinship::store::postgres

@@ -9,7 +9,7 @@ namespace kinship::store {
 namespace {
 
 /// SQLite reports "disk is full" for its databases only, for files beside them "disk I/O error".
-std::string lack_of_room(sqlite3& connection) {
+std::string out_of_space_reason(sqlite3& connection) {
   const int reason = sqlite3_system_errno(&connection);
   const bool is_io_error = (sqlite3_extended_errcode(&connection) & 0xFF) == SQLITE_IOERR;
   if (!is_io_error || (reason != ENOSPC && reason != EDQUOT && reason != EFBIG))
@@ -42,7 +42,7 @@ void throw_sqlite_error(sqlite3& connection, std::string_view doing) {
   std::string message = "SQLite: ";
   message += sqlite3_errmsg(&connection);
   message += " (code " + std::to_string(sqlite3_extended_errcode(&connection));
-  message += lack_of_room(connection) + ") in '";
+  message += out_of_space_reason(connection) + ") in '";
   message += doing.substr(0, kMaxShown);
   message += "'";
   const bool is_of_row = std::string_view(sqlite3_errmsg(&connection)).ends_with(kRowIsDamaged);

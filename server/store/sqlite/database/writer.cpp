@@ -96,7 +96,7 @@ WriterFailures Writer::failures() const {
 void Writer::run() {
   while (true) {
     Items items = take_batch();
-    if (!database_ && !recover_if_due()) {
+    if (!database_ && !reopen_if_due()) {
       const Error error{ErrorCode::Storage, trouble()};
       finish_all(items, &error);
       const std::lock_guard lock(mutex_);
@@ -111,7 +111,7 @@ void Writer::run() {
       if (stopping_ && queue_.empty())
         break;
     }
-    tend_wal();
+    checkpoint_if_needed();
   }
   close();
 }
@@ -160,7 +160,7 @@ void Writer::write(Items& items) {
     fail(failure);
     const Error error = failure.error();
     finish_all(items, &error);
-    recover_if_due();
+    reopen_if_due();
     return;
   }
   for (std::size_t i = 0; i < items.size(); ++i)
@@ -200,7 +200,7 @@ void Writer::write_apart(Items& items) {
     item->finish(error ? &*error : nullptr);
   }
   if (!database_)
-    recover_if_due();
+    reopen_if_due();
 }
 
 std::optional<Error> Writer::write_alone(WriteItem& item) {
@@ -236,7 +236,7 @@ void Writer::fail(const Failure& failure) {
 }
 
 /// A try closes all readers and reads the file, so a stream of items must not bring one each.
-bool Writer::recover_if_due() {
+bool Writer::reopen_if_due() {
   if (std::chrono::steady_clock::now() < next_try_)
     return false;
   try {
@@ -267,7 +267,7 @@ void Writer::watch_wal() {
 }
 
 /// Readers that are younger than the last frame keep it in the WAL, so a checkpoint may leave some.
-void Writer::tend_wal() {
+void Writer::checkpoint_if_needed() {
   if (!database_)
     return;
   try {
@@ -282,7 +282,7 @@ void Writer::tend_wal() {
     wal_bytes_ = static_cast<std::uint64_t>(wal_pages_) * frame_bytes_;
   } catch (const Failure& failure) {
     fail(failure);
-    recover_if_due();
+    reopen_if_due();
   }
 }
 

@@ -127,9 +127,9 @@ class Writer {
   std::optional<Error> write_alone(WriteItem& item);
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
-  bool recover_if_due();
+  bool reopen_if_due();
   void watch_wal();
-  void tend_wal();
+  void checkpoint_if_needed();
   void close();
 
   const Reopen reopen_;

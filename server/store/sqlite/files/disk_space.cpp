@@ -74,7 +74,7 @@ std::string DiskSpace::shortage() const {
          " no report is taken";
 }
 
-std::string DiskSpace::lack_of_ballast() const {
+std::string DiskSpace::missing_ballast() const {
   if (ballast_bytes_ == 0 || has_ballast_)
     return "";
   return "the ballast of " + megabytes(ballast_bytes_) + " is given up until the file system at '" +

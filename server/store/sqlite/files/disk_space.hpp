@@ -23,7 +23,7 @@ class DiskSpace {
   /// and the limit.
   std::string shortage() const;
   /// Empty while the ballast exists, or none is wanted; else a sentence.
-  std::string lack_of_ballast() const;
+  std::string missing_ballast() const;
 
   /// Whether the ballast is missing and twice its size is free beside the watermark.
   bool may_take_ballast() const;

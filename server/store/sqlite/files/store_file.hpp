@@ -9,11 +9,11 @@
 namespace kinship::store {
 
 /// The files that SQLite keeps beside a database.
-inline constexpr const char* kCompanions[] = {"-wal", "-shm", "-journal"};
+inline constexpr const char* kSidecars[] = {"-wal", "-shm", "-journal"};
 
 /// A new database, written under another name until it is complete, readable by its owner alone.
 inline constexpr files::NewFileOptions kNewDatabase{
-    .magic = std::string_view("SQLite format 3\0", 16), .sidecars = kCompanions};
+    .magic = std::string_view("SQLite format 3\0", 16), .sidecars = kSidecars};
 
 /// The absolute name of the store: links are followed, so that one file has one lock. Parents are
 /// made for the owner alone; nothing else is written.

@@ -39,7 +39,7 @@ Uuid write_new_epoch(Database& database, const std::filesystem::path& file) {
   const Uuid epoch = Uuid::random();
   write_setting(database, kEpoch, epoch.text());
   write_setting(database, kIdentity, identity_of(file));
-  write_setting(database, kRuns, RunLog(epoch).text());
+  write_setting(database, kRuns, TimelineHistory(epoch).text());
   return epoch;
 }
 
@@ -48,20 +48,21 @@ std::uint64_t position_of(Database& database) {
   return query->step() ? static_cast<std::uint64_t>(query->column_integer(0)) : 0;
 }
 
-History::History(const std::filesystem::path& file) : file_(file), witness_(file) {}
+History::History(const std::filesystem::path& file) : file_(file), high_water_mark_(file) {}
 
 /// \return why the file cannot be as it was last written; empty: it can.
-std::string History::find_rollback(const State& before, const RunLog& log, std::uint64_t position,
+std::string History::find_rollback(const State& before, const TimelineHistory& log,
+                                   std::uint64_t position,
                                    const std::string& stored_identity) const {
   const std::string identity = identity_of(file_);
   if (!may_be_same_file(stored_identity, identity))
     return "the file is a copy (inode and birth " + identity + ", was " + stored_identity + ")";
   const bool is_first_run = before.log.epoch() == Uuid{};
-  std::optional<WitnessFile::Testimony> known;
+  std::optional<HighWaterMarkFile::Mark> known;
   if (!is_first_run)
     known = {before.log.epoch(), before.log.at(before.position)};
   else
-    known = witness_.read();
+    known = high_water_mark_.read();
   if (!known)
     return "";
   if (known->epoch != log.epoch())
@@ -82,14 +83,14 @@ void History::begin_run(Database& database) {
   const bool is_new = read_setting(database, kEpoch).empty();
   const Uuid epoch = ensure_epoch(database, file_);
   next.key = ensure_key(database);
-  std::optional<RunLog> log = RunLog::parse(read_setting(database, kRuns));
+  std::optional<TimelineHistory> log = TimelineHistory::parse(read_setting(database, kRuns));
   if (!log || log->epoch() != epoch)
-    log = RunLog(epoch);
+    log = TimelineHistory(epoch);
   const std::string stored_identity = read_setting(database, kIdentity);
   const std::uint64_t position = position_of(database);
   const std::string trouble = is_new ? "" : find_rollback(next, *log, position, stored_identity);
   if (!trouble.empty()) {
-    log = RunLog(write_new_epoch(database, file_));
+    log = TimelineHistory(write_new_epoch(database, file_));
     ++next.rollbacks;
     next.trouble = trouble;
   }
@@ -104,7 +105,7 @@ void History::begin_run(Database& database) {
     const std::lock_guard lock(mutex_);
     state_ = std::move(next);
   }
-  testify();
+  write_high_water_mark();
 }
 
 void History::write_run(Database& database) {
@@ -126,17 +127,17 @@ void History::committed(std::uint64_t position) {
       return;
     state_.position = position;
   }
-  testify();
+  write_high_water_mark();
 }
 
-/// On the thread that writes to the store, so that a later testimony is never overtaken.
-void History::testify() const {
-  WitnessFile::Testimony testimony;
+/// On the thread that writes to the store, so that a later mark is never overtaken.
+void History::write_high_water_mark() const {
+  HighWaterMarkFile::Mark mark;
   {
     const std::lock_guard lock(mutex_);
-    testimony = {state_.log.epoch(), state_.log.at(state_.position)};
+    mark = {state_.log.epoch(), state_.log.at(state_.position)};
   }
-  witness_.write(testimony);
+  high_water_mark_.write(mark);
 }
 
 Uuid History::epoch() const {
@@ -147,21 +148,21 @@ Uuid History::epoch() const {
 StorePoint History::point() const {
   Digest key;
   Uuid epoch;
-  HistoryPoint point;
+  LogPosition point;
   {
     const std::lock_guard lock(mutex_);
     key = state_.key;
     epoch = state_.log.epoch();
     point = state_.log.at(state_.position);
   }
-  return {epoch, seal(key, epoch, point)};
+  return {epoch, sign(key, epoch, point)};
 }
 
 bool History::has_lost(const HistoryMark& mark) const {
   if (mark.empty())
     return false;
   const std::lock_guard lock(mutex_);
-  const std::optional<HistoryPoint> point = open_seal(state_.key, state_.log.epoch(), mark);
+  const std::optional<LogPosition> point = verify(state_.key, state_.log.epoch(), mark);
   return point && !state_.log.contains(*point, state_.position);
 }
 
@@ -200,7 +201,7 @@ void History::Renewal::finish(const Error* error) {
       state.position = std::max(state.position, position_);
     }
     history_.is_run_written_ = true;
-    history_.testify();
+    history_.write_high_water_mark();
   }
   promise_.set_value(log_.has_value());
 }

@@ -9,10 +9,10 @@
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
-#include "server/store/sqlite/opening/run_log.hpp"
-#include "server/store/sqlite/opening/witness_file.hpp"
+#include "server/store/sqlite/opening/high_water_mark_file.hpp"
+#include "server/store/sqlite/opening/timeline_history.hpp"
 #include "server/store/store.hpp"
-#include "server/store/values/history_seal.hpp"
+#include "server/store/values/consistency_token.hpp"
 
 namespace kinship::store {
 
@@ -56,18 +56,18 @@ class History {
  private:
   struct State {
     Digest key;
-    RunLog log{Uuid{}};
+    TimelineHistory log{Uuid{}};
     std::uint64_t position = 0;  ///< durable
     std::uint64_t rollbacks = 0;
     std::string trouble;
   };
 
-  std::string find_rollback(const State& before, const RunLog& log, std::uint64_t position,
+  std::string find_rollback(const State& before, const TimelineHistory& log, std::uint64_t position,
                             const std::string& stored_identity) const;
-  void testify() const;
+  void write_high_water_mark() const;
 
   const std::filesystem::path file_;
-  const WitnessFile witness_;
+  const HighWaterMarkFile high_water_mark_;
   bool is_run_written_ = false;  // of the writer's thread alone
   mutable std::mutex mutex_;
   State state_;  // guarded by mutex_
@@ -85,7 +85,7 @@ class History::Renewal : public WriteItem {
  private:
   History& history_;
   const HistoryMark& mark_;
-  std::optional<RunLog> log_;  // empty: nothing was to be done
+  std::optional<TimelineHistory> log_;  // empty: nothing was to be done
   std::uint64_t position_ = 0;
   std::promise<bool> promise_;
 };

@@ -181,8 +181,8 @@ Digest select_body(Database& database, std::int64_t id) {
 }
 
 /// Nothing if it is not whole any more.
-std::optional<SharedReport> read_shared(Database& database, const Uuid& report_uuid,
-                                        DamagedRows& noted) {
+std::optional<ReplicatedReport> read_replicated(Database& database, const Uuid& report_uuid,
+                                                DamagedRows& noted) {
   const ReportRows rows = find_report(database, report_uuid);
   std::optional<AttemptRow> row = rows.row ? read_row(database, *rows.row, noted) : std::nullopt;
   if (!row || row->attempt.report_uuid != report_uuid)  // the index led to another one
@@ -193,8 +193,8 @@ std::optional<SharedReport> read_shared(Database& database, const Uuid& report_u
   read_contents(database, *row, noted);
   if (!is_whole(row->attempt))
     return std::nullopt;
-  return SharedReport{std::move(row->attempt), select_body(database, *rows.row), row->received_ms,
-                      is_retired};
+  return ReplicatedReport{std::move(row->attempt), select_body(database, *rows.row),
+                          row->received_ms, is_retired};
 }
 
 }  // namespace
@@ -287,13 +287,14 @@ std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports) {
   return known;
 }
 
-SharedRead select_shared(Database& database, std::span<const Uuid> reports, std::size_t max_bytes) {
-  SharedRead read;
+ReplicatedRead select_replicated(Database& database, std::span<const Uuid> reports,
+                                 std::size_t max_bytes) {
+  ReplicatedRead read;
   std::size_t bytes = 0;
   for (const Uuid& report : reports) {
     if (read.found.looked_at > 0 && bytes > max_bytes)
       return read;
-    if (std::optional<SharedReport> shared = read_shared(database, report, read.damaged)) {
+    if (std::optional<ReplicatedReport> shared = read_replicated(database, report, read.damaged)) {
       const BatchBytes more = batch_bytes(shared->attempt);
       bytes += more.waypoints + more.scenes;
       read.found.reports.push_back(std::move(*shared));

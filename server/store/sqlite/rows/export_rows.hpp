@@ -38,6 +38,7 @@ Result<Attempt> find_attempt(Database& database, const Uuid& report_uuid, Damage
 Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
                                      std::string_view cursor, std::size_t limit);
 std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports);
-SharedRead select_shared(Database& database, std::span<const Uuid> reports, std::size_t max_bytes);
+ReplicatedRead select_replicated(Database& database, std::span<const Uuid> reports,
+                                 std::size_t max_bytes);
 
 }  // namespace kinship::store

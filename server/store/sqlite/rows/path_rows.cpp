@@ -151,7 +151,7 @@ SameContent find_same(Database& database, const ExperienceKey& key, const Digest
   return same;
 }
 
-bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id) {
+bool is_receipt_backed(Database& database, const ExperienceKey& key, std::int64_t id) {
   const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Path, id);
   if (row && is_readable(database, *row))
     return true;

@@ -20,7 +20,7 @@ namespace kinship::store {
 SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content);
 
 /// Whether a path or its replacement can be read, or need not be, because it is retired.
-bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id);
+bool is_receipt_backed(Database& database, const ExperienceKey& key, std::int64_t id);
 
 /// The paths in use with the largest digests, at most `limit`. From an index.
 std::set<KeptPath> select_largest(Database& database, const ExperienceKey& key,

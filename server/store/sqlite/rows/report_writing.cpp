@@ -69,13 +69,13 @@ void read_robot(Database& database, const Digest& robot, BatchState& state) {
 }
 
 /// \return whether all that the receipt of a report that came before vouches for can be read.
-bool read_what_is_vouched_for(Database& database, const PreparedAttempt& prepared,
-                              const ReportReading& reading, EarlierReport& earlier) {
+bool read_what_backs_its_receipt(Database& database, const PreparedAttempt& prepared,
+                                 const ReportReading& reading, EarlierReport& earlier) {
   if (prepared.scene && reading.earlier_scene_id)
     earlier.is_scene_readable = is_scene_readable(database, *reading.earlier_scene_id);
   if (prepared.path && earlier.path_id)
-    earlier.is_path_vouched_for = is_vouched_for(database, reading.key, *earlier.path_id);
-  return earlier.is_scene_readable && earlier.is_path_vouched_for;
+    earlier.is_path_backed = is_receipt_backed(database, reading.key, *earlier.path_id);
+  return earlier.is_scene_readable && earlier.is_path_backed;
 }
 
 /// Of a report with a path that may have to be written.
@@ -120,13 +120,13 @@ void read_pair(Database& database, const PreparedAttempt& prepared, std::uint64_
   pair.paths = ensure_experience(database, pair.key);
   const auto earlier = state.reports.find(attempt.report_uuid);
   const bool is_new = earlier == state.reports.end();
-  if (!is_new && read_what_is_vouched_for(database, prepared, reading, earlier->second))
+  if (!is_new && read_what_backs_its_receipt(database, prepared, reading, earlier->second))
     return;
   if (prepared.scene) {
     reading.scene = find_scene(database, prepared.scene->content);
     state.scenes[prepared.scene->content] = reading.scene.readable.has_value();
   }
-  if (prepared.path && (is_new || !earlier->second.is_path_vouched_for))
+  if (prepared.path && (is_new || !earlier->second.is_path_backed))
     read_paths(database, prepared, max_paths, state, pair);
 }
 

@@ -9,7 +9,7 @@
 #include "proto/types/audit.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/uuid.hpp"
-#include "server/store/shared_report.hpp"
+#include "server/store/replicated_report.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"

@@ -62,8 +62,8 @@ class ReadStore {
   ~ReadStore() {
     database_.reset();
     if (!had_wal_)
-      for (const char* const companion : {"-wal", "-shm"})
-        unlink((file_.string() + companion).c_str());
+      for (const char* const sidecar : {"-wal", "-shm"})
+        unlink((file_.string() + sidecar).c_str());
   }
 
   Database& database() { return *database_; }

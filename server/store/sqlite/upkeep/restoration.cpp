@@ -31,9 +31,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void remove_with_companions(const fs::path& file) {
-  for (const char* const companion : kCompanions)
-    unlink((file.string() + companion).c_str());
+void remove_with_sidecars(const fs::path& file) {
+  for (const char* const sidecar : kSidecars)
+    unlink((file.string() + sidecar).c_str());
   unlink((file.string() + std::string(SchemaCopy::kSuffix)).c_str());
   unlink(file.c_str());
 }
@@ -101,10 +101,10 @@ void copy_missing_audit(Database& database, Database& other) {
 
 Restoration::Restoration(fs::path backup, fs::path file)
     : backup_(std::move(backup)), file_(std::move(file)), copy_(file_.string() + ".restoring") {
-  remove_with_companions(copy_);
+  remove_with_sidecars(copy_);
 }
 
-Restoration::~Restoration() { remove_with_companions(copy_); }
+Restoration::~Restoration() { remove_with_sidecars(copy_); }
 
 void Restoration::prepare(const std::function<void(double)>& progress) {
   constexpr double kCopyShare = 0.3;
@@ -184,14 +184,14 @@ Restored Restoration::replace() {
   Restored restored;
   restored.epoch = epoch_;
   restored.leftovers = replaced_stores(file_);
-  WitnessFile::remove(file_);  // of the old store: it would take the new one for rolled back
+  HighWaterMarkFile::remove(file_);  // of the old store: it would take the new one for rolled back
   if (fs::exists(file_)) {
     fold_old();
     restored.replaced = name_copy();
-    set_companions_aside(restored.replaced);
+    move_sidecars(restored.replaced);
     exchange(restored.replaced);
   } else {
-    set_companions_aside(file_.string() + ".replaced-" + stamp());
+    move_sidecars(file_.string() + ".replaced-" + stamp());
     require(files::rename_new(copy_, file_), file_, "cannot be named");
   }
   files::sync_folder_of(file_);
@@ -216,11 +216,11 @@ void Restoration::fold_old() {
 
 /// SQLite must not find them beside the new store, nor under a name where it would take them for
 /// files of another one.
-void Restoration::set_companions_aside(const fs::path& replaced) const {
-  for (const std::string companion : kCompanions) {
-    const fs::path from = file_.string() + companion;
+void Restoration::move_sidecars(const fs::path& replaced) const {
+  for (const std::string sidecar : kSidecars) {
+    const fs::path from = file_.string() + sidecar;
     if (fs::exists(from))
-      require(files::rename_new(from, replaced.string() + "." + companion.substr(1)), from,
+      require(files::rename_new(from, replaced.string() + "." + sidecar.substr(1)), from,
               "cannot be set aside");
   }
 }

@@ -34,7 +34,7 @@ class Restoration {
  private:
   void keep_audit_of_old(Database& database) const;
   void fold_old();
-  void set_companions_aside(const std::filesystem::path& replaced) const;
+  void move_sidecars(const std::filesystem::path& replaced) const;
   std::filesystem::path name_copy() const;
   void exchange(const std::filesystem::path& replaced) const;
 

@@ -60,10 +60,10 @@ class Salvager {
   std::optional<std::int64_t> next_readable(const std::string& name, std::int64_t id) const;
   void keep_revision(Bytes digest, std::int64_t revision) const;
   void set_bad_content_aside() const;
-  void name_lost_tasks() const;
-  void name_lost_robots();
-  void stand_in_for_lost_scenes();
-  void stand_in_for_lost_paths();
+  void add_placeholder_tasks() const;
+  void add_placeholder_robots();
+  void add_placeholder_scenes();
+  void add_placeholder_paths();
   void note_orphans() const;
   void make_experience() const;
   void count_lost(const std::string& table, const std::string& index);
@@ -193,7 +193,7 @@ void Salvager::lose(const std::string& table, const Pair& pair, std::uint64_t ro
                             text_of("SELECT name FROM task WHERE id = ?", pair.first), rows});
 }
 
-void Salvager::name_lost_tasks() const {
+void Salvager::add_placeholder_tasks() const {
   std::map<std::int64_t, std::string> names;
   for_each_of_source("SELECT id, name FROM task ORDER BY name", [&](const Statement& row) {
     names.emplace(row.column_integer(0), row.column_text(1));
@@ -215,7 +215,7 @@ void Salvager::name_lost_tasks() const {
   }
 }
 
-void Salvager::name_lost_robots() {
+void Salvager::add_placeholder_robots() {
   std::map<std::int64_t, Digest> digests;
   std::map<std::int64_t, std::string> labels;
   for_each_of_source("SELECT id, digest FROM robot ORDER BY digest", [&](const Statement& row) {
@@ -252,7 +252,7 @@ void Salvager::name_lost_robots() {
   }
 }
 
-void Salvager::stand_in_for_lost_scenes() {
+void Salvager::add_placeholder_scenes() {
   std::map<std::int64_t, Digest> contents;
   for_each_of_source("SELECT id, content_sha256 FROM scene ORDER BY content_sha256",
                      [&](const Statement& row) {
@@ -279,7 +279,7 @@ void Salvager::stand_in_for_lost_scenes() {
     salvaged_.lost.push_back({"scene", "", "", count});
 }
 
-void Salvager::stand_in_for_lost_paths() {
+void Salvager::add_placeholder_paths() {
   std::map<std::int64_t, Digest> contents;
   for_each_of_source(
       "SELECT id, content_sha256 FROM path INDEXED BY path_by_content WHERE retired_ms IS NULL",
@@ -424,13 +424,13 @@ Salvaged Salvager::run(const Progress& progress) {
           retire_aside(*target_, row.column_integer(1));
       });
   set_bad_content_aside();
-  name_lost_tasks();
-  name_lost_robots();
+  add_placeholder_tasks();
+  add_placeholder_robots();
   for (const char* const small : {"robot_held_joint", "robot_never_colliding", "robot_geometry",
                                   "retired_report", "same_content"})
     copy_table(small);
-  stand_in_for_lost_paths();
-  stand_in_for_lost_scenes();
+  add_placeholder_paths();
+  add_placeholder_scenes();
   count_lost("path", "path_by_task_robot");
   count_lost("attempt", "attempt_by_task_robot");
   note_orphans();

@@ -20,7 +20,7 @@ class RolledBack : public ServiceFixture {
     fetch(request_for(pupil_));
     service_.reset();
     std::map<std::string, std::string> before;
-    for (const char* const suffix : {"", ".witness"})
+    for (const char* const suffix : {"", ".high-water-mark"})
       before[suffix] = test::read_text(file_.string() + suffix);
     start();
     const ReportReply reply = report({fleet::solved(teacher_, "shelf", 50)});

@@ -103,10 +103,10 @@ TEST_F(Carry, WhatIsFoundWrongOnTheWayIsNotCommitted) {
 TEST_F(Carry, AStoreThatWantsItAgainIsAskedAgain) {
   test::report(*site_, {solved(1)});
   store::TroubledStore busy(*memory_);
-  busy.on_commit = [](const std::vector<store::SharedReport>& reports,
+  busy.on_commit = [](const std::vector<store::ReplicatedReport>& reports,
                       const store::Store::ReportsDone& done) {
     std::vector<Receipt> receipts;
-    for (const store::SharedReport& report : reports)
+    for (const store::ReplicatedReport& report : reports)
       receipts.push_back(
           {report.attempt.report_uuid, ReceiptStatus::TryAgain, "the queue is full"});
     done(receipts);
@@ -123,9 +123,10 @@ TEST_F(Carry, AStoreThatWantsItAgainIsAskedAgain) {
 TEST_F(Carry, ARobotThatIsRemovedOnTheWayIsNotTheEndOfItsReports) {
   test::report(*site_, {solved(1)});
   store::TroubledStore memory(*memory_);
-  memory.on_commit = [&](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+  memory.on_commit = [&](std::vector<store::ReplicatedReport> reports,
+                         store::Store::ReportsDone done) {
     EXPECT_TRUE(memory_->remove_robot(panda_.digest));
-    memory_->commit_shared(std::move(reports), std::move(done));
+    memory_->commit_replicated(std::move(reports), std::move(done));
   };
   EXPECT_THROW(carry_page({.from = *site_, .to = memory}, "", cursor_, retired_, {}), Failure);
   EXPECT_TRUE(reports_of(*memory_).empty());
@@ -268,7 +269,7 @@ TEST_F(Carry, WhoStopsDoesNotWaitForAStoreThatNeverAnswers) {
   test::report(*site_, {solved(1)});
   store::TroubledStore silent(*memory_);
   std::stop_source stop;
-  silent.on_commit = [&](const std::vector<store::SharedReport>&,
+  silent.on_commit = [&](const std::vector<store::ReplicatedReport>&,
                          const store::Store::ReportsDone&) { stop.request_stop(); };
   EXPECT_THROW(carry_page({.from = *site_, .to = silent, .stop = stop.get_token()}, "", cursor_,
                           retired_, {}),

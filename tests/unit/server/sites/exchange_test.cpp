@@ -111,9 +111,10 @@ TEST_F(ExchangeTest, RetirementsGoBothWaysAlsoWhereNoTaskIsUsed) {
 TEST_F(ExchangeTest, AMemoryThatLostWhatItAcknowledgedGetsItAgain) {
   test::report(*site_, {solved(1)});
   exchange();
-  // Its machine goes back in time: the same file with its witness, so that it cannot tell itself.
+  // Its machine goes back in time: the same file with its high-water mark, so that it cannot tell
+  // itself.
   const std::vector<std::filesystem::path> files = {directory_ / "memory.db",
-                                                    directory_ / "memory.db.witness"};
+                                                    directory_ / "memory.db.high-water-mark"};
   exchange_.reset();
   memory_.reset();
   std::vector<std::string> before;
@@ -179,10 +180,11 @@ TEST_F(ExchangeTest, WhatIsRefusedIsSetAsideAndTriedWithTheNextConnection) {
 
 TEST_F(ExchangeTest, WhatCameDownIsHandedToTheServerOfTheSite) {
   std::size_t most = 0, all = 0;
-  hooks_.commit = [&](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+  hooks_.commit = [&](std::vector<store::ReplicatedReport> reports,
+                      store::Store::ReportsDone done) {
     most = std::max(most, reports.size());
     all += reports.size();
-    site_->commit_shared(std::move(reports), std::move(done));
+    site_->commit_replicated(std::move(reports), std::move(done));
   };
   options_.down = {.reports = 8, .commit = 3};
   in_use_ = {"shelf"};
@@ -222,10 +224,11 @@ TEST_F(ExchangeTest, RestsBetweenTwoTransactionsAtTheSite) {
     load_ += load;
   };
   constexpr std::chrono::milliseconds kSlow{1};  // of the site's disk
-  hooks_.commit = [&](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+  hooks_.commit = [&](std::vector<store::ReplicatedReport> reports,
+                      store::Store::ReportsDone done) {
     ++written;
     std::this_thread::sleep_for(kSlow);
-    site_->commit_shared(std::move(reports), std::move(done));
+    site_->commit_replicated(std::move(reports), std::move(done));
   };
   exchange();
   EXPECT_EQ(written, 4U);

@@ -184,10 +184,10 @@ TEST_F(ForwarderTest, RestsAsLongAsItIsTold) {
   constexpr std::uint64_t kReports = 4;
   options_.rest = 20;
   options_.hooks.tasks_in_use = [] { return std::set<std::string>{"shelf"}; };
-  options_.hooks.commit = [&](std::vector<store::SharedReport> reports,
+  options_.hooks.commit = [&](std::vector<store::ReplicatedReport> reports,
                               store::Store::ReportsDone done) {
     std::this_thread::sleep_for(kCommit);
-    site_->commit_shared(std::move(reports), std::move(done));
+    site_->commit_replicated(std::move(reports), std::move(done));
   };
   options_.exchange.down = {.reports = 1, .commit = 1};
   ASSERT_TRUE(memory_->register_robot(panda_));

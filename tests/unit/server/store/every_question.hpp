@@ -114,11 +114,11 @@ class EveryQuestion {
     store_->list_arrivals(task_, feed.cursor, 2);
     store_->list_retirements("", 2);
     store_->known_reports(reports);
-    SharedReports read = store_->read_reports(reports, 1'000'000);
+    ReplicatedReports read = store_->read_reports(reports, 1'000'000);
     ASSERT_FALSE(read.reports.empty());
     std::promise<void> done;
-    store_->commit_shared(std::move(read.reports),
-                          [&](const std::vector<Receipt>&) { done.set_value(); });
+    store_->commit_replicated(std::move(read.reports),
+                              [&](const std::vector<Receipt>&) { done.set_value(); });
     done.get_future().wait();
     store_->retire_reports(std::span(reports).first(1));
     store_->put_notes({{"site/line", "a"}});

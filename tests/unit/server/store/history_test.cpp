@@ -43,23 +43,23 @@ class HistoryTest : public testing::Test {
     for (std::uint64_t number = first; number < first + count; ++number)
       test::report(*store_, {test::make_attempt(robot_.digest, "shelf", number)});
   }
-  /// All there is of the closed store but its witness.
+  /// All there is of the closed store but its high-water mark.
   std::string snapshot() {
     store_.reset();
     EXPECT_FALSE(fs::exists(file_.string() + "-wal"));
     return bytes_of(file_);
   }
-  /// Puts a snapshot back as a rollback of the machine would, and the witness with it.
-  void roll_back(const std::string& bytes, const std::string& witness) {
+  /// Puts a snapshot back as a rollback of the machine would, and the high-water mark with it.
+  void roll_back(const std::string& bytes, const std::string& mark) {
     store_.reset();
     overwrite(file_, bytes);
-    overwrite(witness_, witness);
+    overwrite(high_water_mark_, mark);
   }
 
   test::TemporaryDirectory directory_;
   const fs::path home_ = directory_ / "home";
   const fs::path file_ = home_ / "store.db";
-  const fs::path witness_ = home_ / "store.db.witness";
+  const fs::path high_water_mark_ = home_ / "store.db.high-water-mark";
   const RobotRecord robot_ = test::make_robot("panda", 1);
   std::unique_ptr<Store> store_;
 };
@@ -146,7 +146,7 @@ TEST_F(HistoryTest, ADirectoryPutBackFromACopyIsAnotherFile) {
   EXPECT_NE(store_->epoch(), epoch);
 }
 
-/// The file, its inode and its witness put back: only who has a later mark can tell.
+/// The file, its inode and its high-water mark put back: only who has a later mark can tell.
 class HistoryOfClients : public HistoryTest {
  protected:
   void SetUp() override {
@@ -154,17 +154,17 @@ class HistoryOfClients : public HistoryTest {
     report(1, 3);
     early_ = store_->point().mark;
     before_ = snapshot();
-    witness_before_ = bytes_of(witness_);
+    mark_before_ = bytes_of(high_water_mark_);
     open();
     report(10, 3);
     late_ = store_->point().mark;
     epoch_ = store_->epoch();
-    roll_back(before_, witness_before_);
+    roll_back(before_, mark_before_);
     open();
   }
 
   HistoryMark early_, late_;
-  std::string before_, witness_before_;
+  std::string before_, mark_before_;
   Uuid epoch_;
 };
 
@@ -197,19 +197,19 @@ TEST_F(HistoryOfClients, AMarkThatTheStoreNeverMadeChangesNothing) {
   EXPECT_EQ(store_->epoch(), epoch_);
 }
 
-TEST_F(HistoryTest, ADamagedWitnessIsNone) {
+TEST_F(HistoryTest, ADamagedHighWaterMarkIsNone) {
   report(1, 3);
   const Uuid epoch = store_->epoch();
   for (const std::string& text : {std::string(), std::string("x"), std::string(300, '0')}) {
     store_.reset();
-    overwrite(witness_, text);
+    overwrite(high_water_mark_, text);
     open();
     EXPECT_EQ(store_->epoch(), epoch);
   }
   store_.reset();
-  std::string text = bytes_of(witness_);
+  std::string text = bytes_of(high_water_mark_);
   text[75] = '9';  // a digit of the position
-  overwrite(witness_, text);
+  overwrite(high_water_mark_, text);
   open();
   EXPECT_EQ(store_->epoch(), epoch);
 }

@@ -362,7 +362,7 @@ TEST_F(SqliteStoreTest, RefusesASecondServerAlsoThroughALink) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST_F(SqliteStoreTest, LeavesOneFileTheLockAndTheWitnessBehind) {
+TEST_F(SqliteStoreTest, LeavesOneFileTheLockAndTheHighWaterMarkBehind) {
   open();
   test::report(*store_, {attempt(1)});
   store_.reset();
@@ -370,7 +370,8 @@ TEST_F(SqliteStoreTest, LeavesOneFileTheLockAndTheWitnessBehind) {
   for (const auto& entry : std::filesystem::directory_iterator(directory_.path()))
     names.push_back(entry.path().filename());
   std::ranges::sort(names);
-  EXPECT_EQ(names, (std::vector<std::string>{"store.db", "store.db.lock", "store.db.witness"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"store.db", "store.db.high-water-mark", "store.db.lock"}));
 }
 
 TEST_F(SqliteStoreTest, WritesInWalModeWithPagesOf4KbAndTheRulesOfItsSchema) {

@@ -114,8 +114,8 @@ class StoreSharing : public StoreConformance {
     EXPECT_TRUE(other_->register_robot(panda_));
     EXPECT_TRUE(other_->register_robot(iiwa_));
   }
-  SharedReport shared(const Uuid& report) const {
-    const std::vector<SharedReport> read =
+  ReplicatedReport shared(const Uuid& report) const {
+    const std::vector<ReplicatedReport> read =
         store_->read_reports(std::vector{report}, kManyBytes).reports;
     if (read.size() != 1)
       throw std::runtime_error("no such report");

@@ -9,10 +9,11 @@ namespace {
 
 constexpr PathRange kAllPaths{.after_id = 0, .limit = 1000};
 
-std::vector<Receipt> commit(Store& store, std::vector<SharedReport> reports) {
+std::vector<Receipt> commit(Store& store, std::vector<ReplicatedReport> reports) {
   std::promise<std::vector<Receipt>> receipts;
-  store.commit_shared(std::move(reports),
-                      [&](const std::vector<Receipt>& answered) { receipts.set_value(answered); });
+  store.commit_replicated(std::move(reports), [&](const std::vector<Receipt>& answered) {
+    receipts.set_value(answered);
+  });
   return receipts.get_future().get();
 }
 
@@ -68,7 +69,7 @@ TEST_P(StoreSharing, AReportIsTheSameInTheOtherStore) {
   Attempt attempt = solved(1);
   attempt.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}}, {}, {}};
   report(attempt);
-  const SharedReport sent = shared(attempt.report_uuid);
+  const ReplicatedReport sent = shared(attempt.report_uuid);
   EXPECT_EQ(commit(*other_, {sent}).at(0).status, ReceiptStatus::Stored);
   const Attempt kept = other_->find_attempt(attempt.report_uuid).value();
   EXPECT_EQ(kept.machine, attempt.machine);
@@ -76,7 +77,7 @@ TEST_P(StoreSharing, AReportIsTheSameInTheOtherStore) {
   EXPECT_EQ(content_digest(*kept.scene), content_digest(*attempt.scene));
   const AttemptSummary here = store_->list_attempts({}, "", "", 1).rows.at(0);
   EXPECT_EQ(other_->list_attempts({}, "", "", 1).rows.at(0).received_ms, here.received_ms);
-  const SharedReport back =
+  const ReplicatedReport back =
       other_->read_reports(std::vector{attempt.report_uuid}, kManyBytes).reports.at(0);
   EXPECT_EQ(back.body, sent.body);
   EXPECT_EQ(back.received_ms, sent.received_ms);
@@ -87,7 +88,7 @@ TEST_P(StoreSharing, AReportIsTheSameInTheOtherStore) {
 
 TEST_P(StoreSharing, AReportKeepsTheTimeItCame) {
   report(solved(1));
-  SharedReport sent = shared(solved(1).report_uuid);
+  ReplicatedReport sent = shared(solved(1).report_uuid);
   sent.received_ms -= 86'400'000;
   commit(*other_, {sent});
   EXPECT_EQ(other_->list_attempts({}, "", "", 1).rows.at(0).received_ms, sent.received_ms);
@@ -109,11 +110,11 @@ TEST_P(StoreSharing, WhatIsKnownIsToldFromWhatIsNot) {
   const std::vector<Uuid> asked = {solved(1).report_uuid, test::id_from<Uuid>(2),
                                    test::id_from<Uuid>(3)};
   EXPECT_EQ(store_->known_reports(asked), (std::set<Uuid>{asked[0], asked[1]}));
-  const SharedReports read = store_->read_reports(asked, kManyBytes);
+  const ReplicatedReports read = store_->read_reports(asked, kManyBytes);
   EXPECT_EQ(read.looked_at, 3U);
   ASSERT_EQ(read.reports.size(), 2U);
   EXPECT_FALSE(read.reports[1].attempt.path);
-  const SharedReports few = store_->read_reports(asked, 1);
+  const ReplicatedReports few = store_->read_reports(asked, 1);
   EXPECT_EQ(few.looked_at, 1U) << "one at least";
   EXPECT_EQ(few.reports.size(), 1U);
 }
@@ -192,7 +193,7 @@ TEST_P(StoreSharing, WhatIsRetiredBeforeItComesIsRetiredWhenItComes) {
 TEST_P(StoreSharing, ARetiredReportComesAsRetiredAndStaysSo) {
   report(solved(1));
   ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
-  const SharedReport sent = shared(solved(1).report_uuid);
+  const ReplicatedReport sent = shared(solved(1).report_uuid);
   EXPECT_TRUE(sent.is_retired);
   EXPECT_EQ(commit(*other_, {sent}).at(0).status, ReceiptStatus::Recorded);
   EXPECT_TRUE(other_->read_paths(panda_.digest, "shelf", kAllPaths).empty());
@@ -212,7 +213,7 @@ TEST_P(StoreSharing, WhatIsHereAndComesAsRetiredIsRetired) {
 
 TEST_P(StoreSharing, AReportThatComesAgainAfterItWasRetiredHereStaysRetired) {
   report(solved(1));
-  const SharedReport live = shared(solved(1).report_uuid);
+  const ReplicatedReport live = shared(solved(1).report_uuid);
   EXPECT_FALSE(live.is_retired);
   ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
   EXPECT_EQ(commit(*store_, {live}).at(0).status, ReceiptStatus::Duplicate);
@@ -237,7 +238,7 @@ TEST_P(StoreSharing, ADroppedPathIsNeitherRetiredNorSent) {
   ASSERT_EQ(feed.rows.size(), 2U);
   EXPECT_FALSE(feed.rows[0].is_retired || feed.rows[1].is_retired);
   EXPECT_TRUE(store_->list_retirements("", 10).rows.empty());
-  const SharedReports read = store_->read_reports(
+  const ReplicatedReports read = store_->read_reports(
       std::vector{feed.rows[0].report_uuid, feed.rows[1].report_uuid}, kManyBytes);
   EXPECT_EQ(read.looked_at, 2U);
   EXPECT_EQ(read.reports.size(), 1U);

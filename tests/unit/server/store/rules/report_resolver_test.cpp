@@ -69,7 +69,7 @@ TEST_F(ReportResolverTest, ADamagedPathIsReplacedByTheReportThatBringsItsContent
   pair().contents[again.path->content] = {.readable = {}, .damaged = {7}, .set_aside = {}};
   EarlierReport earlier = came_before(again);
   earlier.path_id = 7;
-  earlier.is_path_vouched_for = false;
+  earlier.is_path_backed = false;
   state_.reports[again.attempt.report_uuid] = earlier;
   const BatchChanges made = resolve();
   EXPECT_EQ(made.receipts[0].status, ReceiptStatus::Stored);
@@ -104,7 +104,7 @@ TEST_F(ReportResolverTest, ADamagedPathBeyondTheCapIsNotReplaced) {
   pair().contents[again.path->content] = {.readable = {}, .damaged = {}, .set_aside = {7}};
   EarlierReport earlier = came_before(again);
   earlier.path_id = 7;
-  earlier.is_path_vouched_for = false;
+  earlier.is_path_backed = false;
   state_.reports[again.attempt.report_uuid] = earlier;
   const BatchChanges made = resolve(1);
   EXPECT_EQ(made.receipts[0].status, ReceiptStatus::Recorded);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "proto/types/uuid.hpp"
-#include "server/store/values/history_seal.hpp"
+#include "server/store/values/consistency_token.hpp"
 
 namespace kinship::store {
 
@@ -16,9 +16,9 @@ namespace kinship::store {
 /// rolled back and written again, points of the lost runs, and points behind the cut of the run
 /// that was cut off, are not on the timeline any more, for every later position. (Like the
 /// timelines of PostgreSQL.)
-class RunLog {
+class TimelineHistory {
  public:
-  explicit RunLog(const Uuid& epoch) : epoch_(epoch) {}
+  explicit TimelineHistory(const Uuid& epoch) : epoch_(epoch) {}
 
   const Uuid& epoch() const noexcept { return epoch_; }
   bool is_empty() const noexcept { return runs_.empty(); }
@@ -28,13 +28,14 @@ class RunLog {
   void begin(const Uuid& run, std::uint64_t position);
 
   /// The point of a position: with the run that wrote it; empty only without runs.
-  HistoryPoint at(std::uint64_t position) const;
+  LogPosition at(std::uint64_t position) const;
 
   /// Whether the history up to a point is part of the store at `position`, the current one.
-  bool contains(const HistoryPoint& point, std::uint64_t position) const;
+  bool contains(const LogPosition& point, std::uint64_t position) const;
 
   std::string text() const;
-  static std::optional<RunLog> parse(std::string_view text);  ///< empty: no result of text()
+  static std::optional<TimelineHistory> parse(
+      std::string_view text);  ///< empty: no result of text()
 
  private:
   struct Run {

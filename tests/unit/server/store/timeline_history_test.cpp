@@ -1,16 +1,16 @@
-#include "server/store/sqlite/opening/run_log.hpp"
+#include "server/store/sqlite/opening/timeline_history.hpp"
 
 #include <gtest/gtest.h>
 
-#include "server/store/values/history_seal.hpp"
+#include "server/store/values/consistency_token.hpp"
 
-namespace kinship::store::run_log_test {
+namespace kinship::store::timeline_history_test {
 namespace {
 
 const Uuid kEpoch = Uuid::random();
 
-TEST(RunLog, ContainsWhatEachRunWroteAndNothingBehindIt) {
-  RunLog log(kEpoch);
+TEST(TimelineHistory, ContainsWhatEachRunWroteAndNothingBehindIt) {
+  TimelineHistory log(kEpoch);
   const Uuid first = Uuid::random(), second = Uuid::random();
   log.begin(first, 0);
   log.begin(second, 50);
@@ -22,19 +22,19 @@ TEST(RunLog, ContainsWhatEachRunWroteAndNothingBehindIt) {
   EXPECT_FALSE(log.contains({Uuid::random(), 1}, 70));
 }
 
-TEST(RunLog, APositionIsNamedByTheRunThatWroteIt) {
-  RunLog log(kEpoch);
+TEST(TimelineHistory, APositionIsNamedByTheRunThatWroteIt) {
+  TimelineHistory log(kEpoch);
   const Uuid first = Uuid::random(), second = Uuid::random();
   log.begin(first, 10);
-  EXPECT_EQ(log.at(10), (HistoryPoint{first, 10}));
+  EXPECT_EQ(log.at(10), (LogPosition{first, 10}));
   log.begin(second, 50);
-  EXPECT_EQ(log.at(50), (HistoryPoint{first, 50}));
-  EXPECT_EQ(log.at(51), (HistoryPoint{second, 51}));
+  EXPECT_EQ(log.at(50), (LogPosition{first, 50}));
+  EXPECT_EQ(log.at(51), (LogPosition{second, 51}));
   EXPECT_TRUE(log.contains(log.at(50), 50));
 }
 
-TEST(RunLog, ARunThatWroteNothingIsForgottenAndWasNeverNamed) {
-  RunLog log(kEpoch);
+TEST(TimelineHistory, ARunThatWroteNothingIsForgottenAndWasNeverNamed) {
+  TimelineHistory log(kEpoch);
   log.begin(Uuid::random(), 0);
   for (int i = 0; i < 1000; ++i) {
     log.begin(Uuid::random(), 7);
@@ -43,8 +43,8 @@ TEST(RunLog, ARunThatWroteNothingIsForgottenAndWasNeverNamed) {
   EXPECT_LT(log.text().size(), 200U);
 }
 
-TEST(RunLog, OfManyRunsTheOldestAreForgottenAndCountAsKept) {
-  RunLog log(kEpoch);
+TEST(TimelineHistory, OfManyRunsTheOldestAreForgottenAndCountAsKept) {
+  TimelineHistory log(kEpoch);
   const Uuid first = Uuid::random();
   log.begin(first, 0);
   for (std::uint64_t position = 1; position <= 1000; ++position)
@@ -54,35 +54,35 @@ TEST(RunLog, OfManyRunsTheOldestAreForgottenAndCountAsKept) {
   EXPECT_FALSE(log.contains({Uuid::random(), 999}, 1000));
 }
 
-TEST(RunLog, ComesBackFromItsText) {
-  RunLog log(kEpoch);
+TEST(TimelineHistory, ComesBackFromItsText) {
+  TimelineHistory log(kEpoch);
   const Uuid run = Uuid::random();
   log.begin(run, 3);
   log.begin(Uuid::random(), 9);
-  const std::optional<RunLog> read = RunLog::parse(log.text());
+  const std::optional<TimelineHistory> read = TimelineHistory::parse(log.text());
   ASSERT_TRUE(read);
   EXPECT_EQ(read->epoch(), kEpoch);
   EXPECT_EQ(read->text(), log.text());
   EXPECT_FALSE(read->contains({run, 10}, 20));
   for (const char* const text : {"", "x", "0\n"})
-    EXPECT_FALSE(RunLog::parse(text)) << text;
-  EXPECT_FALSE(RunLog::parse(log.text() + "nobody 3\n"));
+    EXPECT_FALSE(TimelineHistory::parse(text)) << text;
+  EXPECT_FALSE(TimelineHistory::parse(log.text() + "nobody 3\n"));
 }
 
-TEST(HistorySeal, OpensOnlyWhatItsOwnKeySealedInThisEpoch) {
+TEST(ConsistencyToken, IsVerifiedByItsOwnKeyInThisEpochAlone) {
   const Digest key = *Digest::from_hex(std::string(64, 'a'));
-  const HistoryPoint point{Uuid::random(), 0x0102030405060708};
-  const HistoryMark mark = seal(key, kEpoch, point);
-  EXPECT_EQ(open_seal(key, kEpoch, mark), point);
-  EXPECT_FALSE(open_seal(key, Uuid::random(), mark));
-  EXPECT_FALSE(open_seal(Digest{}, kEpoch, mark));
-  EXPECT_FALSE(open_seal(key, kEpoch, {}));
+  const LogPosition point{Uuid::random(), 0x0102030405060708};
+  const HistoryMark mark = sign(key, kEpoch, point);
+  EXPECT_EQ(verify(key, kEpoch, mark), point);
+  EXPECT_FALSE(verify(key, Uuid::random(), mark));
+  EXPECT_FALSE(verify(Digest{}, kEpoch, mark));
+  EXPECT_FALSE(verify(key, kEpoch, {}));
   for (std::size_t i = 0; i < mark.size(); ++i) {
     HistoryMark other = mark;
     other[i] ^= 1;
-    EXPECT_FALSE(open_seal(key, kEpoch, other)) << i;
+    EXPECT_FALSE(verify(key, kEpoch, other)) << i;
   }
 }
 
 }  // namespace
-}  // namespace kinship::store::run_log_test
+}  // namespace kinship::store::timeline_history_test

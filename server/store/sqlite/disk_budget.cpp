@@ -1,11 +1,11 @@
-#include "server/store/sqlite/report_room.hpp"
+#include "server/store/sqlite/disk_budget.hpp"
 
 #include <chrono>
 
 namespace kinship::store {
 
-std::string lack_of_room(const DiskSpace& space, const Writer& writer, const ReaderPool& readers,
-                         std::uint64_t max_wal_bytes) {
+std::string out_of_space_reason(const DiskSpace& space, const Writer& writer,
+                                const ReaderPool& readers, std::uint64_t max_wal_bytes) {
   std::string why = space.shortage();
   if (!why.empty() || !writer.wal_full())
     return why;
@@ -30,7 +30,7 @@ void describe_disk(StoreStatus& status, const DiskSpace& space, const Writer& wr
   if (const WriterFailures failures = writer.failures(); failures.count > 0)
     status.message += std::to_string(failures.count) +
                       " failures of the disk since the start, the last: " + failures.last + "; ";
-  if (const std::string ballast = space.lack_of_ballast(); !ballast.empty())
+  if (const std::string ballast = space.missing_ballast(); !ballast.empty())
     status.message += ballast + "; ";
 }
 

@@ -12,10 +12,10 @@
 namespace kinship::store {
 
 /// Empty if reports are accepted; else the reason why not.
-std::string lack_of_room(const DiskSpace& space, const Writer& writer, const ReaderPool& readers,
-                         std::uint64_t max_wal_bytes);
+std::string out_of_space_reason(const DiskSpace& space, const Writer& writer,
+                                const ReaderPool& readers, std::uint64_t max_wal_bytes);
 
-/// \param lack  result of lack_of_room().
+/// \param lack  result of out_of_space_reason().
 void describe_disk(StoreStatus& status, const DiskSpace& space, const Writer& writer,
                    const std::string& lack);
 

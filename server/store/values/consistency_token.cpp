@@ -1,4 +1,4 @@
-#include "server/store/values/history_seal.hpp"
+#include "server/store/values/consistency_token.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kMarkSealBytes = 16;
-constexpr std::size_t kMarkBytes = kUuidBytes + kPositionBytes + kMarkSealBytes;
+constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kSignatureBytes = 16;
+constexpr std::size_t kMarkBytes = kUuidBytes + kPositionBytes + kSignatureBytes;
 
 /// HMAC (RFC 2104) with SHA-256, whose block has 64 bytes.
 Digest hmac(const Digest& key, std::span<const std::uint8_t> message) {
@@ -35,26 +35,25 @@ Digest random_key() {
   return key;
 }
 
-HistoryMark seal(const Digest& key, const Uuid& epoch, const HistoryPoint& point) {
+HistoryMark sign(const Digest& key, const Uuid& epoch, const LogPosition& point) {
   HistoryMark mark(point.run.bytes.begin(), point.run.bytes.end());
   for (std::size_t i = 0; i < kPositionBytes; ++i)
     mark.push_back(static_cast<std::uint8_t>(point.position >> (8 * i)));
   std::vector<std::uint8_t> message(epoch.bytes.begin(), epoch.bytes.end());
   message.insert(message.end(), mark.begin(), mark.end());
   const Digest whole = hmac(key, message);
-  mark.insert(mark.end(), whole.bytes.begin(), whole.bytes.begin() + kMarkSealBytes);
+  mark.insert(mark.end(), whole.bytes.begin(), whole.bytes.begin() + kSignatureBytes);
   return mark;
 }
 
-std::optional<HistoryPoint> open_seal(const Digest& key, const Uuid& epoch,
-                                      const HistoryMark& mark) {
+std::optional<LogPosition> verify(const Digest& key, const Uuid& epoch, const HistoryMark& mark) {
   if (mark.size() != kMarkBytes)
     return std::nullopt;
-  HistoryPoint point;
+  LogPosition point;
   std::copy_n(mark.begin(), kUuidBytes, point.run.bytes.begin());
   for (std::size_t i = 0; i < kPositionBytes; ++i)
     point.position |= static_cast<std::uint64_t>(mark[kUuidBytes + i]) << (8 * i);
-  if (seal(key, epoch, point) != mark)
+  if (sign(key, epoch, point) != mark)
     return std::nullopt;
   return point;
 }

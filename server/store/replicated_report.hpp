@@ -15,7 +15,7 @@
 namespace kinship::store {
 
 /// A report on its way from one store to another.
-struct SharedReport {
+struct ReplicatedReport {
   Attempt attempt;
   /// Digest of the report as its robot sent it: tells a retry from a second use of the UUID. It is
   /// sent along, as a placement that was stored and read again may differ in its last bit.
@@ -39,8 +39,8 @@ struct Feed {
 };
 
 /// Reports that were read whole.
-struct SharedReports {
-  std::vector<SharedReport> reports;
+struct ReplicatedReports {
+  std::vector<ReplicatedReport> reports;
   /// Requested reports that were looked at, from the first; the others exceed the bytes.
   std::size_t looked_at = 0;
 };

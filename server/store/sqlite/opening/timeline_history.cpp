@@ -1,4 +1,4 @@
-#include "server/store/sqlite/opening/run_log.hpp"
+#include "server/store/sqlite/opening/timeline_history.hpp"
 
 #include <algorithm>
 #include <sstream>
@@ -10,7 +10,7 @@ constexpr std::size_t kMaxRuns = 256;
 
 }  // namespace
 
-void RunLog::begin(const Uuid& run, std::uint64_t position) {
+void TimelineHistory::begin(const Uuid& run, std::uint64_t position) {
   // The first of an epoch names the position at which that began.
   if (runs_.size() > 1 && runs_.back().start == position)
     runs_.pop_back();
@@ -21,14 +21,14 @@ void RunLog::begin(const Uuid& run, std::uint64_t position) {
   }
 }
 
-HistoryPoint RunLog::at(std::uint64_t position) const {
+LogPosition TimelineHistory::at(std::uint64_t position) const {
   auto run = runs_.rbegin();
   while (run != runs_.rend() && run->start >= position && run + 1 != runs_.rend())
     ++run;
-  return run == runs_.rend() ? HistoryPoint{} : HistoryPoint{run->id, position};
+  return run == runs_.rend() ? LogPosition{} : LogPosition{run->id, position};
 }
 
-bool RunLog::contains(const HistoryPoint& point, std::uint64_t position) const {
+bool TimelineHistory::contains(const LogPosition& point, std::uint64_t position) const {
   const auto run = std::ranges::find(runs_, point.run, &Run::id);
   if (run == runs_.end())
     return point.position <= forgotten_until_;
@@ -36,21 +36,21 @@ bool RunLog::contains(const HistoryPoint& point, std::uint64_t position) const {
   return point.position <= (is_last ? position : (run + 1)->start);
 }
 
-std::string RunLog::text() const {
+std::string TimelineHistory::text() const {
   std::string text = epoch_.text() + "\n" + std::to_string(forgotten_until_) + "\n";
   for (const Run& run : runs_)
     text += run.id.text() + " " + std::to_string(run.start) + "\n";
   return text;
 }
 
-std::optional<RunLog> RunLog::parse(std::string_view text) {
+std::optional<TimelineHistory> TimelineHistory::parse(std::string_view text) {
   std::istringstream stream{std::string(text)};
   std::string word;
   stream >> word;
   const std::optional<Uuid> epoch = Uuid::parse(word);
   if (!epoch)
     return std::nullopt;
-  RunLog log(*epoch);
+  TimelineHistory log(*epoch);
   if (!(stream >> log.forgotten_until_))
     return std::nullopt;
   while (stream >> word) {
