@@ -17,7 +17,7 @@ OTHERS, NOBODY, ALL = "the others", "nobody", "all"  # whose experience: of all 
 
 
 @dataclasses.dataclass(frozen=True)
-class Wish:
+class DistributionRequest:
     """What a distribution is asked for; robots by their places in the fleet."""
 
     task: str

@@ -14,7 +14,7 @@ import numpy as np
 
 from .files import LineFile, compress_file, expand_file, to_line, write_whole
 from .parallel import for_each
-from .cells import Wish
+from .cells import DistributionRequest
 from .study import Instance, Member, RunOptions, Study
 
 SHORTCUT_CHECKS = 300  # of a path that is learned
@@ -140,11 +140,11 @@ class Server:
             if receipt.status not in ("stored", "duplicate", "recorded"):
                 raise ValueError(f"the server did not take attempt {receipt.report_uuid}: {receipt.message}")
 
-    def fetch(self, wish: Wish) -> kinship.Distribution | None:
+    def fetch(self, request: DistributionRequest) -> kinship.Distribution | None:
         """What the server made of the sources' experience; None, and why on standard error, if nothing."""
-        member = self._fleet[wish.target]
+        member = self._fleet[request.target]
         try:
-            distribution = self._client.fetch(wish.task, member.robot, **self._asked(wish))
+            distribution = self._client.fetch(request.task, member.robot, **self._asked(request))
         except kinship.FitFailed as error:
             print(f"no distribution for {member.label}: {error}", file=sys.stderr)
             return None
@@ -155,16 +155,16 @@ class Server:
               f"transfer {made['transfer_time_s']:.3g} s, fit {made['fit_time_s']:.3g} s", file=sys.stderr, flush=True)
         return distribution
 
-    def guidance(self, wish: Wish, guide: str | None, share: float) -> kinship.Guidance | None:
+    def guidance(self, request: DistributionRequest, guide: str | None, share: float) -> kinship.Guidance | None:
         """guide: missing: what the server finds by rehearsal, which is waited for. None: there is not what the guide needs."""
-        member = self._fleet[wish.target]
-        guidance = self._client.guidance(wish.task, member.robot, **self._asked(wish), guide=guide or "", share=share, control_share=0,
+        member = self._fleet[request.target]
+        guidance = self._client.guidance(request.task, member.robot, **self._asked(request), guide=guide or "", share=share, control_share=0,
                                          rehearsed=guide is None)
         parts = guidance.guide.split("+")
         if ("mixture" in parts and guidance.distribution_id is None) or ("ways" in parts and not guidance.ways):
             return None
         return guidance
 
-    def _asked(self, wish: Wish) -> dict[str, object]:
-        return {"deadline": 3600, "T_task_base": self._fleet[wish.target].T_task_base, "profile": wish.profile,
-                "sources": [self._fleet[source].robot for source in wish.sources]}
+    def _asked(self, request: DistributionRequest) -> dict[str, object]:
+        return {"deadline": 3600, "T_task_base": self._fleet[request.target].T_task_base, "profile": request.profile,
+                "sources": [self._fleet[source].robot for source in request.sources]}

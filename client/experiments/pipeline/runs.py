@@ -13,11 +13,11 @@ from typing import Any
 import kinship
 
 from . import peers
-from .cells import Cell, QueryPlan, Wish, run_queries, uniform_cell, uniform_cells, uniform_name
+from .cells import Cell, DistributionRequest, QueryPlan, run_queries, uniform_cell, uniform_cells, uniform_name
 from .files import QueryLog, compress_file, write_whole
 from .learning import LearningSet, Server, renamed, running_kinshipd
 from .parallel import Progress
-from .side_studies import SideStudy, WishedCell, find_side_study, side_studies
+from .side_studies import RequestedCell, SideStudy, find_side_study, side_studies
 from .study import QUICK_INSTANCES, RunOptions, Study
 
 OTHER_ROBOTS = "others"  # as a source of a tuning run: all robots but the one that plans, together
@@ -144,10 +144,10 @@ def run_study(study: Study) -> None:
         for target in range(len(study.fleet)):
             cells += uniform_cells(study, target, study.description["overshoot"])
             for source, member in enumerate(study.fleet):
-                wish = Wish(study.name, target, (source,))
-                if distribution := server.fetch(wish):
+                request = DistributionRequest(study.name, target, (source,))
+                if distribution := server.fetch(request):
                     distributions.append(distribution.to_json() + "\n")
-                    cells += _guided(server, wish, None, study.description["guided_share"],
+                    cells += _guided(server, request, None, study.description["guided_share"],
                                      Cell(target, member.label, study.plan_options()))
         write_whole(run.folder / "distributions.jsonl", "".join(distributions).encode())
         run.plan("test", cells, run.test_plan(), log)
@@ -155,9 +155,9 @@ def run_study(study: Study) -> None:
     _try_to_report(run)
 
 
-def _guided(server: Server, wish: Wish, guide: str | None, share: float, cell: Cell) -> list[Cell]:
+def _guided(server: Server, request: DistributionRequest, guide: str | None, share: float, cell: Cell) -> list[Cell]:
     """The cell with its guidance; none if there is not what the guide needs."""
-    guidance = server.guidance(wish, guide, share)
+    guidance = server.guidance(request, guide, share)
     return [dataclasses.replace(cell, guidance=guidance)] if guidance else []
 
 
@@ -180,20 +180,20 @@ def run_side_study(study: Study, name: str) -> None:
 def _side_cells(run: StudyRun, side: SideStudy) -> list[Cell]:
     study = run.study
     cells = [uniform_cell(study, robot, study.description["overshoot"]) for robot in range(len(study.fleet))]
-    wished = side.cells(study)
-    if all(each.wish is None for each in wished):
-        return cells + [_unguided(study, each) for each in wished]
+    requested = side.cells(study)
+    if all(each.request is None for each in requested):
+        return cells + [_unguided(study, each) for each in requested]
     with run.learned(side.shortened(study)) as server:
-        for each in wished:
-            if each.wish is None:
+        for each in requested:
+            if each.request is None:
                 cells.append(_unguided(study, each))
-            elif server.fetch(each.wish):
-                cells += _guided(server, each.wish, each.guide, each.share, _unguided(study, each))
+            elif server.fetch(each.request):
+                cells += _guided(server, each.request, each.guide, each.share, _unguided(study, each))
     return cells
 
 
-def _unguided(study: Study, wished: WishedCell) -> Cell:
-    return Cell(wished.robot, wished.name, study.plan_options(**wished.options), oracle_deviation=wished.oracle_deviation)
+def _unguided(study: Study, requested: RequestedCell) -> Cell:
+    return Cell(requested.robot, requested.name, study.plan_options(**requested.options), oracle_deviation=requested.oracle_deviation)
 
 
 def tune_study(study: Study, tuning: TuningOptions) -> None:
@@ -211,14 +211,14 @@ def tune_study(study: Study, tuning: TuningOptions) -> None:
             label = study.fleet[target].label
             cells += uniform_cells(study, target, overshoot)
             for name, sources in _named_sources(study, tuning.sources, target):
-                wish = Wish(study.name, target, sources, tuning.profile)
-                distribution = server.fetch(wish)
+                request = DistributionRequest(study.name, target, sources, tuning.profile)
+                distribution = server.fetch(request)
                 if distribution is None:
                     continue
                 # The distribution stands for profile, engines and experience.
                 cell_name = (f"{name} {tuning.profile} {distribution.id[:12]} r{distribution.revision} f{overshoot:g} s{tuning.share:g} "
                              f"{tuning.guide or 'rehearsed'}")
-                guided = _guided(server, wish, tuning.guide, tuning.share,
+                guided = _guided(server, request, tuning.guide, tuning.share,
                                  Cell(target, cell_name, study.plan_options(overshoot=overshoot)))
                 cells += guided
                 pairs += [{"robot": label, "source": name, "guidance": cell.name} for cell in guided]

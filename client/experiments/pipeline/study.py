@@ -72,8 +72,8 @@ class Study:
 
     @property
     def learning_instances(self) -> int:
-        wished = self.options.learning or self.description["learning_instances"]
-        return min(QUICK_LEARNING, wished) if self.options.quick else wished
+        requested = self.options.learning or self.description["learning_instances"]
+        return min(QUICK_LEARNING, requested) if self.options.quick else requested
 
     def instances(self, robot: int, which: str, count: int) -> list[Instance]:
         """The first `count` instances of a set: calibration, learning, tuning or test."""

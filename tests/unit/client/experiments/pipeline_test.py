@@ -121,15 +121,15 @@ class SideStudies(unittest.TestCase):
             side_studies.find_side_study(self.study, "peers")
 
     def test_the_paper_knows_neither_uniform_samples_nor_overshoot(self):
-        self.assertEqual({(each.share, each.options["overshoot"], each.wish.profile) for each in self.cells("paper")}, {(1.0, 1, "paper")})
+        self.assertEqual({(each.share, each.options["overshoot"], each.request.profile) for each in self.cells("paper")}, {(1.0, 1, "paper")})
         self.assertEqual([each.name for each in self.cells("paper")], ["a|paper", "b|paper"] * 2)
 
     def test_sizes_are_smaller_than_the_learning_set(self):
         self.assertEqual(side_studies.find_side_study(self.study, "sizes").shortened(self.study), {"task_10": 10, "task_50": 50})
-        self.assertEqual({each.wish.task for each in self.cells("sizes")}, {"task_10", "task_50"})
+        self.assertEqual({each.request.task for each in self.cells("sizes")}, {"task_10", "task_50"})
 
     def test_pooled_experience_is_of_the_others_or_of_all(self):
-        self.assertEqual([(each.robot, each.wish.sources, each.guide) for each in self.cells("pooled")],
+        self.assertEqual([(each.robot, each.request.sources, each.guide) for each in self.cells("pooled")],
                          [(0, (1,), None), (0, (0, 1), None), (1, (0,), None), (1, (0, 1), None)])
 
 
