@@ -39,6 +39,8 @@ void ask_about_robots(const store::Store& store, const StoredThings& things, Ans
     });
   ask([&] {
     for (RobotSummary robot : store.list_robots("", 100).rows) {
+      if (robot.dof == 0)
+        continue;  // its row is damaged: its name alone is listed
       robot.paths = robot.attempts = 0;
       answers["listed robot " + robot.label] = json::to_json(robot);
     }

@@ -15,7 +15,7 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/upkeep/damage_search.hpp"
+#include "server/store/sqlite/rows/damage_search.hpp"
 
 namespace kinship::store::moving {
 namespace {

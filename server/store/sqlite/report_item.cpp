@@ -4,8 +4,8 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/sqlite/rows/report_writing.hpp"
-#include "server/store/sqlite/upkeep/damage_search.hpp"
 
 namespace kinship::store {
 namespace {

@@ -68,7 +68,9 @@ std::int64_t require_robot(Session& session, const Distribution& distribution) {
   if (!id)
     throw Failure(ErrorCode::NotFound, "distribution " + distribution.id.short_hex() + ": robot " +
                                            distribution.robot.short_hex() + " is not registered");
-  if (!is_robot_readable(session, *id))
+  if (!session.find_integer(
+          "SELECT 1 FROM robot WHERE id = $1 AND digest = $2 AND " + session.is_intact("robot"),
+          *id, distribution.robot))
     throw Failure(ErrorCode::Storage, "distribution " + distribution.id.short_hex() + ": robot " +
                                           distribution.robot.short_hex() + ": its row is damaged");
   return *id;

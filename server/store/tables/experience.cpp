@@ -112,13 +112,22 @@ std::uint64_t generation_of(Session& session, const Digest& robot, std::string_v
 }
 
 std::vector<ExperienceSummary> experience_of(Session& session, std::string_view task) {
+  constexpr int kRobotId = 5, kIsIntact = 6;
   std::vector<ExperienceSummary> robots;
-  for (const Row& row :
-       session.query("SELECT digest, paths, generation, retired_generation, dropped FROM experience"
-                     " JOIN robot ON robot.id = robot_id AND " +
-                         session.is_intact("robot") + robots_of_task(session),
-                     task))
+  std::map<std::int64_t, std::size_t> damaged;  // places of robots with damaged rows, by id
+  for (const Row& row : session.query(
+           "SELECT digest, paths, generation, retired_generation, dropped, robot_id, " +
+               session.is_intact("robot") + " FROM experience JOIN robot ON robot.id = robot_id" +
+               robots_of_task(session),
+           task)) {
+    if (row.column_integer(kIsIntact) == 0)
+      damaged.emplace(row.column_integer(kRobotId), robots.size());
     robots.push_back(read_experience(id_of<Digest>(row.column_blob(0)), row));
+  }
+  if (!damaged.empty())
+    for (const auto& [id, name] : select_robot_names(session))
+      if (const auto place = damaged.find(id); place != damaged.end())
+        robots[place->second].robot = name.digest;
   std::ranges::sort(robots, {}, &ExperienceSummary::robot);
   return robots;
 }

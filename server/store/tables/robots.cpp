@@ -144,6 +144,16 @@ std::optional<std::int64_t> geometry_revision_of(Session& session, std::int64_t 
                               robot_id);
 }
 
+/// The names of all robots, as far as their rows are in the indexes: also of damaged rows.
+std::map<std::int64_t, RobotName> names_in_indexes(Session& session) {
+  std::map<std::int64_t, RobotName> names;
+  for (const Row& row : session.query("SELECT id, digest FROM robot ORDER BY digest"))
+    names[row.column_integer(0)].digest = id_of<Digest>(row.column_blob(1));
+  for (const Row& row : session.query("SELECT id, label FROM robot ORDER BY label"))
+    names[row.column_integer(0)].label = row.column_text(1);
+  return names;
+}
+
 }  // namespace
 
 std::optional<std::int64_t> find_registered(Session& session, const Digest& robot) {
@@ -270,23 +280,45 @@ RobotsRead select_robots(Session& session) {
 
 Page<RobotSummary> page_of_robots(Session& session, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  return read_page<RobotSummary>(
+  const auto is_intact = [](const Row& row) { return row.column_integer(row.columns() - 1) != 0; };
+  std::vector<std::int64_t> ids;  // of the page; 0: intact
+  Page<RobotSummary> page = read_page<RobotSummary>(
       // Without base link: a repair of SQLite knew its name alone.
-      session.query("SELECT " + std::string(kRobotSummaryColumns) + "FROM robot WHERE " +
+      session.query("SELECT " + std::string(kRobotSummaryColumns) + ", id, " +
                         session.is_intact("robot") +
-                        " AND label > $1 AND base_link <> ''"
+                        " FROM robot WHERE label > $1 AND base_link <> ''"
                         " AND label NOT LIKE 'removed %' ORDER BY label LIMIT $2",
                     cursor, rows + 1),
-      rows, read_robot_summary<Row>,
+      rows,
+      [&](const Row& row) {
+        ids.push_back(is_intact(row) ? 0 : row.column_integer(row.columns() - 2));
+        return ids.back() == 0 ? read_robot_summary(row) : RobotSummary();
+      },
       [](const Row& row) { return std::string(row.column_text(1)); });
+  std::map<std::int64_t, RobotName> names;
+  for (std::size_t i = 0; i < page.rows.size(); ++i) {
+    if (ids[i] == 0)
+      continue;
+    if (names.empty())
+      names = names_in_indexes(session);
+    page.rows[i].robot = names[ids[i]].digest;
+    page.rows[i].label = names[ids[i]].label;
+  }
+  return page;
 }
 
 std::map<std::int64_t, RobotName> select_robot_names(Session& session) {
   std::map<std::int64_t, RobotName> names;
+  bool is_whole = true;
   for (const Row& row :
-       session.query("SELECT id, digest, label FROM robot WHERE " + session.is_intact("robot")))
-    names[row.column_integer(0)] = {id_of<Digest>(row.column_blob(1)),
-                                    std::string(row.column_text(2))};
+       session.query("SELECT id, digest, label, " + session.is_intact("robot") + " FROM robot")) {
+    if (row.column_integer(3) != 0)
+      names[row.column_integer(0)] = {id_of<Digest>(row.column_blob(1)),
+                                      std::string(row.column_text(2))};
+    is_whole = is_whole && row.column_integer(3) != 0;
+  }
+  if (!is_whole)
+    names.merge(names_in_indexes(session));
   return names;
 }
 

@@ -58,7 +58,8 @@ struct RobotsRead {
 };
 RobotsRead select_robots(Session& session);
 
-/// In order of labels, without removed ones. \param cursor  the label of the last robot shown.
+/// In order of labels, without removed ones; of a robot with a damaged row its name alone.
+/// \param cursor  the label of the last robot shown.
 Page<RobotSummary> page_of_robots(Session& session, std::string_view cursor, std::size_t limit);
 
 /// Digest and label of a robot.
@@ -66,7 +67,8 @@ struct RobotName {
   Digest digest;
   std::string label;
 };
-/// Of all robots whose rows are not damaged, removed ones too, by their internal ids.
+/// Of all robots, removed ones too, by their internal ids. A damaged row has the name that indexes
+/// have of it.
 std::map<std::int64_t, RobotName> select_robot_names(Session& session);
 
 }  // namespace kinship::store

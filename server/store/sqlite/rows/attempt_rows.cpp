@@ -4,6 +4,7 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
@@ -97,10 +98,13 @@ std::optional<AttemptRow> select_named(Database& database, std::optional<std::in
 void name_robot_and_task(Database& database, AttemptRow& row) {
   const auto robot = database.cached("SELECT digest, label FROM robot WHERE id = ? AND " +
                                      database.is_intact("robot"));
-  if (!robot->bind(1, row.robot_id).step())
-    throw damaged_row("robot " + std::to_string(row.robot_id));
-  row.attempt.robot = id_of<Digest>(robot->column_blob(0));
-  row.is_robot_removed = is_removed_label(robot->column_text(1));
+  RobotName name;
+  if (robot->bind(1, row.robot_id).step())
+    name = {id_of<Digest>(robot->column_blob(0)), std::string(robot->column_text(1))};
+  else
+    name = select_robot_names(database)[row.robot_id];
+  row.attempt.robot = name.digest;
+  row.is_robot_removed = is_removed_label(name.label);
   const auto task =
       database.cached("SELECT name FROM task WHERE id = ? AND " + database.is_intact("task"));
   if (!task->bind(1, row.task_id).step())

@@ -13,7 +13,7 @@
 
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/opening/reader_pool.hpp"
-#include "server/store/sqlite/upkeep/damage_search.hpp"
+#include "server/store/sqlite/rows/damage_search.hpp"
 
 namespace kinship::store {
 

@@ -7,7 +7,7 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
-#include "server/store/sqlite/upkeep/damage_search.hpp"
+#include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"

@@ -10,10 +10,10 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
-#include "server/store/sqlite/upkeep/damage_search.hpp"
 #include "server/store/sqlite/upkeep/schema_recovery.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/upkeep/damage_search.hpp"
+#include "server/store/sqlite/rows/damage_search.hpp"
 
 #include <algorithm>
 #include <limits>
