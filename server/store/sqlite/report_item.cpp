@@ -4,7 +4,6 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/sqlite/rows/report_writing.hpp"
 
 namespace kinship::store {
@@ -118,17 +117,6 @@ void ReportItem::apply(Batch& batch) {
           insert_alone(batch, *prepared_[i], damaged_, max_paths_, prepared_.size() == 1);
   history_.write_run(batch.database());
   position_ = position_of(batch.database());
-}
-
-void DamageItem::apply(Batch& batch) {
-  std::erase_if(rows_, [&](std::int64_t row) {
-    return check_rows(batch.database(), std::string(name_of(kind_, 1)), row - 1, 1).damaged_ids !=
-           std::vector<std::int64_t>{row};
-  });
-  if (kind_ == AsideKind::Path)
-    return set_aside(batch, rows_);
-  for (const std::int64_t row : rows_)
-    put_aside(batch.database(), kind_, row);
 }
 
 void ReportItem::finish(const Error* error) {

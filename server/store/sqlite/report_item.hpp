@@ -13,8 +13,6 @@
 #include "proto/types/uuid.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/opening/history.hpp"
-#include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/store.hpp"
 #include "server/store/values/prepared_attempt.hpp"
 
@@ -80,21 +78,6 @@ class ReportItem : public WriteItem {
   std::size_t bytes_ = 0;
   std::uint64_t max_paths_ = 0;
   Store::ReportsDone done_;
-};
-
-/// Quarantines damaged rows that a reader found; if it fails, the next reader finds them again.
-class DamageItem : public WriteItem {
- public:
-  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
-      : kind_(kind), rows_(std::move(rows)) {}
-
-  /// An index may have led to a row that is sound: each is looked at again.
-  void apply(Batch& batch) override;
-  void finish(const Error* /*error*/) override {}
-
- private:
-  AsideKind kind_;
-  std::vector<std::int64_t> rows_;
 };
 
 }  // namespace kinship::store

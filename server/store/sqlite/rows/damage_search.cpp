@@ -145,6 +145,17 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
   return checked;
 }
 
+void DamageItem::apply(Batch& batch) {
+  std::erase_if(rows_, [&](std::int64_t row) {
+    return check_rows(batch.database(), std::string(name_of(kind_, 1)), row - 1, 1).damaged_ids !=
+           std::vector<std::int64_t>{row};
+  });
+  if (kind_ == AsideKind::Path)
+    return set_aside(batch, rows_);
+  for (const std::int64_t row : rows_)
+    put_aside(batch.database(), kind_, row);
+}
+
 std::optional<std::string> find_damaged_row(Database& database) {
   for (const auto& [table, columns] : database.checked_tables()) {
     Statement row(database.connection(), "SELECT " + name_of_row(table, columns) + " FROM " +

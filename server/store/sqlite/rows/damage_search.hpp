@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
 
 /// The search for damage in a store's tables, in slices. Each throws SqliteError if it meets a page
 /// that SQLite cannot read.
@@ -32,6 +35,21 @@ struct RowsChecked {
 /// those of their contents.
 RowsChecked check_rows(Database& database, const std::string& table, std::int64_t after_id,
                        std::int64_t limit);
+
+/// Quarantines damaged rows that a reader found; if it fails, the next reader finds them again.
+class DamageItem : public WriteItem {
+ public:
+  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
+      : kind_(kind), rows_(std::move(rows)) {}
+
+  /// An index may have led to a row that is sound: each is looked at again.
+  void apply(Batch& batch) override;
+  void finish(const Error* /*error*/) override {}
+
+ private:
+  AsideKind kind_;
+  std::vector<std::int64_t> rows_;
+};
 
 /// The name of a row with a wrong checksum that is not in quarantine, of any table. It does not
 /// read contents.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/report_item.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store {
