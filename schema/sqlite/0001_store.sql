@@ -7,9 +7,9 @@
 --
 -- row_crc32c is the checksum of the other columns of its row; a large one has a checksum of its own
 -- (server/store/sqlite/database/row_checksums). A row whose checksum is wrong
--- is not read. What is damaged is set aside by its id, in a table of its own: the row itself may
+-- is not read. What is damaged is quarantined by its id, in a table of its own: the row itself may
 -- not be writable. For the same reason nothing is UNIQUE that a report may bring again. The one
--- writer sees to it that there is one row which is not set aside.
+-- writer sees to it that there is one row which is not quarantined.
 
 PRAGMA application_id = 0x4B494E53;  -- 'KINS': files without it are refused
 
@@ -219,16 +219,21 @@ CREATE TABLE evicted_distribution (
   row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT, WITHOUT ROWID;
 
-CREATE TABLE set_aside (
-  kind         INTEGER NOT NULL CHECK (kind BETWEEN 1 AND 5),  -- 1 path, 2 attempt, 3 scene, 4 distribution; 5 path that lost its attempt in a repair
+CREATE TABLE quarantine (
+  of_table     TEXT NOT NULL CHECK (of_table IN ('path', 'attempt', 'scene', 'distribution')),
   id           INTEGER NOT NULL,
   noticed_ms   INTEGER NOT NULL,
   replaced_by  INTEGER,  -- the row that a report brought in its place
   retired_ms   INTEGER CHECK (retired_ms > 0),  -- of a path that was retired before or after
-  reason       TEXT NOT NULL,
   row_crc32c   INTEGER NOT NULL DEFAULT 0,
-  PRIMARY KEY (kind, id)
+  PRIMARY KEY (of_table, id)
 ) STRICT, WITHOUT ROWID;
+
+-- Paths, in use or retired, that lost their attempts in a repair.
+CREATE TABLE lost_attempt (
+  path_id     INTEGER PRIMARY KEY,
+  row_crc32c  INTEGER NOT NULL DEFAULT 0
+) STRICT;
 
 -- Reports whose path somebody retired, here or in another store, in the order in which that became
 -- known. Also of reports that are not here: their paths are retired when they come.

@@ -44,7 +44,7 @@ void print(const StoreCheck& check, std::ostream& out) {
     out << "  " << std::left << std::setw(24) << table.name << std::right << std::setw(12)
         << table.rows << " rows" << std::setw(8) << table.problems << " problems\n";
   out << check.retired_paths << " paths are retired, " << check.damaged_paths
-      << " were set aside as damaged before\n";
+      << " were quarantined before\n";
   for (const std::string& message : check.messages)
     out << message << '\n';
   if (check.problems > check.messages.size())

@@ -113,14 +113,10 @@ struct Dialect {
   std::string_view for_update = {};   ///< of a SELECT: locks the rows
   /// The same for table experience, whose keys stay readable.
   std::string_view lock_experience = {};
-  std::string_view mark_changed = {};           ///< of an UPDATE: sets when the row was changed
-  std::string_view note_gone_robot = {};        ///< before the robot $1 is deleted
-  std::string_view newest_attempts_first = {};  ///< of an ORDER BY
-  // For damage; the first three are expressions on the table:
-  std::string_view is_quarantined_path = {};
-  std::string_view is_quarantined_scene = {};
-  std::string_view is_quarantined_distribution = {};
-  std::string_view quarantine_distribution = {};  ///< of row $1, at time $2
+  std::string_view mark_changed = {};             ///< of an UPDATE: sets when the row was changed
+  std::string_view note_gone_robot = {};          ///< before the robot $1 is deleted
+  std::string_view newest_attempts_first = {};    ///< of an ORDER BY
+  std::string_view quarantine_distribution = {};  ///< a damaged one: of row $1, at time $2
   std::string_view by_task_robot = {};            ///< behind table path: reads an index alone
 };
 
@@ -138,6 +134,8 @@ class Session {
   virtual const Dialect& dialect() const noexcept = 0;
   /// SQL that says whether a row of a table is as it was written: true where the engine sees to it.
   virtual std::string is_intact(std::string_view /*table*/) { return "TRUE"; }
+  /// SQL that says whether a row of table path, scene or distribution is quarantined.
+  virtual std::string is_quarantined(std::string_view table) const = 0;
 
   template <typename... Values>
   Rows query(std::string_view sql, const Values&... values) {

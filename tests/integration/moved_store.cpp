@@ -31,10 +31,7 @@ std::vector<std::string> columns_of(store::Database& database, const std::string
   query.bind(1, std::string_view(table));
   std::vector<std::string> columns;
   while (query.step())
-    // The reason says where the damage was noticed, which is there no more.
-    if (table != "set_aside" ||
-        (query.column_text(0) != "reason" && query.column_text(0) != "row_crc32c"))
-      columns.emplace_back(query.column_text(0));
+    columns.emplace_back(query.column_text(0));
   return columns;
 }
 

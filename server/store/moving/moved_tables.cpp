@@ -3,17 +3,21 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "server/store/sqlite/database/database.hpp"
+
 namespace kinship::store::moving {
 namespace {
 
 using enum CellType;
 
-/// A mark of damage in SQLite.
-MovedColumn noticed(const std::string& table, int kind) {
-  return {"damaged_ms", Integer,
-          "(SELECT noticed_ms FROM set_aside WHERE kind = " + std::to_string(kind) +
-              " AND set_aside.id = " + table + ".id)",
-          true};
+/// SQL for a column of SQLite's quarantine; NULL: the row is not in it.
+std::string quarantined(const std::string& column, const std::string& table) {
+  return "(SELECT " + column + " FROM quarantine WHERE of_table = '" + table +
+         "' AND quarantine.id = " + table + ".id)";
+}
+
+MovedColumn damaged_ms(const std::string& table) {
+  return {"damaged_ms", Integer, quarantined("noticed_ms", table), true};
 }
 
 MovedTable robots() {
@@ -53,9 +57,7 @@ MovedTable experience() {
 /// One that was replaced in SQLite has its first id and the content of the last (SqliteScenes): in
 /// PostgreSQL a content has one row, which is mended.
 MovedTable scenes() {
-  const std::string in_use =
-      "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 3 AND set_aside.id = scene.id"
-      " AND replaced_by IS NOT NULL)";
+  const std::string in_use = quarantined("replaced_by", "scene") + " IS NULL";
   return {.name = "scene",
           .reading = Reading::ById,
           .columns = {{"id"},
@@ -64,14 +66,12 @@ MovedTable scenes() {
                       {"size"},
                       {"encoding"},
                       {"crc32c"},
-                      noticed("scene", 3),
+                      damaged_ms("scene"),
                       {"scene", Blob}},
-          .sqlite_light =
-              "SELECT id, coalesce((SELECT noticed_ms FROM set_aside WHERE"
-              " kind = 3 AND set_aside.id = scene.id), 0) FROM scene WHERE " +
-              in_use + " ORDER BY id",
+          .sqlite_light = "SELECT id, coalesce(" + quarantined("noticed_ms", "scene") +
+                          ", 0) FROM scene WHERE " + in_use + " ORDER BY id",
           .postgres_light = "SELECT id, coalesce(damaged_ms, 0) FROM scene ORDER BY id",
-          .aside_kind = 3};
+          .has_quarantine = true};
 }
 
 MovedTable paths() {
@@ -79,15 +79,12 @@ MovedTable paths() {
   const auto indexed = [](const std::string& index, const std::string& retired,
                           const std::string& condition) {
     return "SELECT path.id, " + retired +
-           ", coalesce(aside.noticed_ms, 0), coalesce(aside.replaced_by, 0)"
+           ", coalesce(quarantine.noticed_ms, 0), coalesce(quarantine.replaced_by, 0)"
            " FROM path INDEXED BY " +
            index +
-           " LEFT JOIN set_aside AS aside ON aside.kind = 1 AND aside.id = path.id"
+           " LEFT JOIN quarantine ON of_table = 'path' AND quarantine.id = path.id"
            " WHERE path.task_id = ?1 AND path.robot_id = ?2 AND path.retired_ms IS " +
            condition;
-  };
-  const auto aside = [](const std::string& column) {
-    return "(SELECT " + column + " FROM set_aside WHERE kind = 1 AND set_aside.id = path.id)";
   };
   return {
       .name = "path",
@@ -101,27 +98,28 @@ MovedTable paths() {
                   {"dof"},
                   {"length", Real},
                   {"received_ms"},
-                  {"retired_ms", Integer, "coalesce(path.retired_ms, " + aside("retired_ms") + ")"},
-                  noticed("path", 1),
-                  {"replaced_by", Integer, aside("replaced_by"), true},
+                  {"retired_ms", Integer,
+                   "coalesce(path.retired_ms, " + quarantined("retired_ms", "path") + ")"},
+                  damaged_ms("path"),
+                  {"replaced_by", Integer, quarantined("replaced_by", "path"), true},
                   {"scene_id"},
                   {"T_task_base", Blob},
                   {"encoding"},
                   {"crc32c"},
                   {"waypoints", Blob}},
-      .sqlite_light = indexed("path_by_task_robot", "aside.retired_ms IS NOT NULL", "NULL") +
+      .sqlite_light = indexed("path_by_task_robot", "quarantine.retired_ms IS NOT NULL", "NULL") +
                       " UNION ALL " + indexed("path_retired", "1", "NOT NULL") + " ORDER BY 1",
       .postgres_light =
           "SELECT id, (retired_ms IS NOT NULL)::int::bigint, coalesce(damaged_ms, 0),"
           " coalesce(replaced_by, 0) FROM path"
           " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
-      .aside_kind = 1};
+      .has_quarantine = true};
 }
 
-/// One that is set aside in SQLite stands for nothing: its UUID may come again, as if it were new.
+/// One that is quarantined in SQLite stands for nothing: its UUID may come again, as if it were
+/// new.
 MovedTable attempts() {
-  const std::string readable =
-      "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id)";
+  const std::string readable = "NOT " + in_quarantine("attempt");
   return {.name = "attempt",
           .reading = Reading::ByPair,
           .columns = {{"id"},
@@ -157,11 +155,8 @@ MovedTable attempts() {
           .is_in_arrival = true};
 }
 
-constexpr const char* kSoundDistribution =
-    "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = ";
-
 MovedTable distributions() {
-  const std::string sound = std::string(kSoundDistribution) + "distribution.id)";
+  const std::string sound = "NOT " + in_quarantine("distribution");
   return {.name = "distribution",
           .reading = Reading::ById,
           .columns = {{"id"},
@@ -187,19 +182,20 @@ MovedTable distributions() {
 MovedTable uses() {
   return {.name = "distribution_use",
           .columns = {{"id"}, {"used_ms"}, {"bytes"}},
-          .sqlite_condition = std::string(kSoundDistribution) +
-                              "distribution_use.id) AND id IN (SELECT id FROM distribution)"};
+          .sqlite_condition = "id IN (SELECT id FROM distribution WHERE NOT " +
+                              in_quarantine("distribution") + ")"};
 }
 
 /// With the quarantined rows of SQLite: no revision is given twice.
 MovedTable evictions() {
-  return {.name = "evicted_distribution",
-          .columns = {{"digest", Blob}, {"revision"}, {"evicted_ms"}},
-          .sqlite_from =
-              "(SELECT digest, max(revision) AS revision, max(evicted_ms) AS evicted_ms FROM"
-              " (SELECT digest, revision, evicted_ms FROM evicted_distribution UNION ALL"
-              " SELECT digest, revision, noticed_ms FROM distribution JOIN set_aside"
-              " ON kind = 4 AND set_aside.id = distribution.id) GROUP BY digest)"};
+  return {
+      .name = "evicted_distribution",
+      .columns = {{"digest", Blob}, {"revision"}, {"evicted_ms"}},
+      .sqlite_from =
+          "(SELECT digest, max(revision) AS revision, max(evicted_ms) AS evicted_ms FROM"
+          " (SELECT digest, revision, evicted_ms FROM evicted_distribution UNION ALL"
+          " SELECT digest, revision, noticed_ms FROM distribution JOIN quarantine"
+          " ON of_table = 'distribution' AND quarantine.id = distribution.id) GROUP BY digest)"};
 }
 
 MovedTable audit() {

@@ -36,8 +36,8 @@ enum class CellType { Integer, Real, Text, Blob };
 struct MovedColumn {
   std::string name;
   CellType type = CellType::Integer;
-  std::string sqlite = {};  ///< its expression in SQLite; empty: its name
-  bool is_aside = false;    ///< a mark of damage, which SQLite keeps in a table of its own
+  std::string sqlite = {};        ///< its expression in SQLite; empty: its name
+  bool is_of_quarantine = false;  ///< SQLite has it in table quarantine
 };
 
 /// How a table is compared and copied.
@@ -59,8 +59,8 @@ struct MovedTable {
   /// the ids of its task and robot.
   std::string sqlite_light = {};
   std::string postgres_light = {};
-  int aside_kind = 0;          ///< of SQLite's set_aside; 0: none
-  bool is_in_arrival = false;  ///< PostgreSQL keeps the transaction of each row
+  bool has_quarantine = false;  ///< rows that SQLite quarantines and PostgreSQL marks as damaged
+  bool is_in_arrival = false;   ///< PostgreSQL keeps the transaction of each row
 
   std::size_t column(const std::string& name) const;  ///< its place. \throws std::logic_error
 };

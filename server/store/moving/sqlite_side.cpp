@@ -16,6 +16,7 @@
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/rows/damage_search.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 
 namespace kinship::store::moving {
 namespace {
@@ -52,7 +53,8 @@ class SqliteScenes {
 
 SqliteScenes::SqliteScenes(Database& database) {
   const auto query = database.cached(
-      "SELECT id, replaced_by FROM set_aside WHERE kind = 3 AND replaced_by > id ORDER BY id");
+      "SELECT id, replaced_by FROM quarantine WHERE of_table = 'scene' AND replaced_by > id ORDER "
+      "BY id");
   while (query->step())
     replaced_by_[query->column_integer(0)] = query->column_integer(1);
   for (const auto& [id, next] : replaced_by_)
@@ -91,7 +93,7 @@ std::string upsert_into(const MovedTable& table) {
   std::vector<std::string> names, places, keys, changes;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const MovedColumn& column = table.columns[i];
-    if (column.is_aside)
+    if (column.is_of_quarantine)
       continue;
     names.push_back(column.name);
     places.emplace_back("?");
@@ -237,12 +239,12 @@ class SqliteSide : public Side {
     for (const MovedRow& row : rows) {
       int index = 0;
       for (std::size_t i = 0; i < row.size(); ++i)
-        if (!table.columns[i].is_aside)
+        if (!table.columns[i].is_of_quarantine)
           bind_cell(*upsert, ++index, row[i], table.columns[i].type);
       upsert->run();
       upsert->reset();
-      if (table.aside_kind != 0)
-        write_aside(table, row);
+      if (table.has_quarantine)
+        write_quarantine(table, row);
     }
   }
 
@@ -266,12 +268,8 @@ class SqliteSide : public Side {
         "%';"
         "DELETE FROM same_content;"
         "INSERT INTO same_content (path_id, report_uuid) SELECT path_id, report_uuid FROM attempt"
-        " WHERE status = 2 AND path_id IS NOT NULL;"
-        "INSERT OR IGNORE INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
-        " SELECT 5, id, 1, NULL, NULL, 'its attempt is lost'"
-        " FROM path WHERE NOT EXISTS (SELECT 1 FROM set_aside AS aside WHERE kind = 1"
-        " AND aside.id = path.id) AND NOT EXISTS (SELECT 1 FROM attempt"
-        " WHERE attempt.report_uuid = path.report_uuid AND attempt.path_id = path.id)");
+        " WHERE status = 2 AND path_id IS NOT NULL");
+    note_lost_attempts(*database_);
   }
 
   void remove_all() override {
@@ -329,19 +327,19 @@ class SqliteSide : public Side {
         row[i] = scenes.first_of(integer_of(row, i));
   }
 
-  void write_aside(const MovedTable& table, const MovedRow& row) {
+  void write_quarantine(const MovedTable& table, const MovedRow& row) {
     const std::size_t damaged = table.column("damaged_ms");
     if (integer_of(row, damaged) == 0) {
-      database_->cached("DELETE FROM set_aside WHERE kind = ? AND id = ?")
-          ->bind_all(std::int64_t{table.aside_kind}, integer_of(row, 0))
+      database_->cached("DELETE FROM quarantine WHERE of_table = ? AND id = ?")
+          ->bind_all(std::string_view(table.name), integer_of(row, 0))
           .run();
       return;
     }
     const bool is_path = table.name == "path";
     const auto insert = database_->cached(
-        "INSERT OR REPLACE INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
-        " VALUES (?, ?, ?, ?, ?, 'was set aside before a move')");
-    insert->bind_all(std::int64_t{table.aside_kind}, integer_of(row, 0), integer_of(row, damaged));
+        "INSERT OR REPLACE INTO quarantine (of_table, id, noticed_ms, replaced_by, retired_ms)"
+        " VALUES (?, ?, ?, ?, ?)");
+    insert->bind_all(std::string_view(table.name), integer_of(row, 0), integer_of(row, damaged));
     constexpr int kReplacedBy = 4, kRetired = 5;
     if (is_path) {
       bind_cell(*insert, kReplacedBy, row[table.column("replaced_by")], CellType::Integer);

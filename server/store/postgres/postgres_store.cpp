@@ -129,7 +129,7 @@ class PostgresStore : public SqlStore {
                                  std::size_t max_bytes) const override {
     ReplicatedRead read = readers_.read_snapshot(
         [&](Connection& connection) { return select_replicated(connection, reports, max_bytes); });
-    set_aside_later(std::move(read.damaged));
+    quarantine_later(std::move(read.damaged));
     return std::move(read.found);
   }
 
@@ -145,7 +145,7 @@ class PostgresStore : public SqlStore {
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
     PathsRead read = fit_reads_.paths(robot, task, range);
-    set_aside_later({.paths = std::move(read.damaged)});
+    quarantine_later({.paths = std::move(read.damaged)});
     return std::move(read.paths);
   }
 
@@ -157,7 +157,7 @@ class PostgresStore : public SqlStore {
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     SceneRead read = fit_reads_.scene(scene_id);
     if (read.damaged)
-      set_aside_later({.scenes = {scene_id}});
+      quarantine_later({.scenes = {scene_id}});
     return std::move(read.scene);
   }
 
@@ -202,7 +202,7 @@ class PostgresStore : public SqlStore {
       noticed = {};
       return postgres::find_attempt(connection, report_uuid, noticed);
     });
-    set_aside_later(std::move(noticed));
+    quarantine_later(std::move(noticed));
     return attempt;
   }
 
@@ -214,7 +214,7 @@ class PostgresStore : public SqlStore {
       noticed = {};
       return export_page(connection, {robot, task}, cursor, limit, max_bytes, noticed);
     });
-    set_aside_later(std::move(noticed));
+    quarantine_later(std::move(noticed));
     return page;
   }
 
@@ -276,11 +276,12 @@ class PostgresStore : public SqlStore {
     writer_->submit(std::move(item));
   }
 
-  void set_aside_later(DamagedRows noticed) const {
+  void quarantine_later(DamagedRows noticed) const {
     if (noticed.paths.empty() && noticed.scenes.empty())
       return;
-    write_later(
-        [noticed = std::move(noticed)](Connection& connection) { set_aside(connection, noticed); });
+    write_later([noticed = std::move(noticed)](Connection& connection) {
+      quarantine(connection, noticed);
+    });
   }
 
   /// The database's counts, or the last ones it gave.

@@ -37,8 +37,8 @@ struct EarlierReport {
 /// Paths with the content of a new one, neither retired nor replaced.
 struct SameContent {
   std::optional<std::int64_t> readable;
-  std::vector<std::int64_t> damaged;    ///< in use until now: they are counted
-  std::vector<std::int64_t> set_aside;  ///< quarantined before: they are not counted any more
+  std::vector<std::int64_t> damaged;      ///< in use until now: they are counted
+  std::vector<std::int64_t> quarantined;  ///< quarantined before: they are not counted any more
 };
 
 /// A path in use that may be dropped.

@@ -64,7 +64,7 @@ class ReportResolver {
   bool is_within_cap(const Pair& pair, const Digest& content) const;
   void drop_excess(Pair& pair);
   void drop(Pair& pair, const KeptPath& path);
-  void set_aside(Pair& pair, std::int64_t id);
+  void quarantine(Pair& pair, std::int64_t id);
   void note_damaged(std::int64_t id, std::optional<std::int64_t> replaced_by);
   Receipt receipt_of(const PreparedAttempt& prepared, const AttemptPath& path) const;
   PairChange& change_of(const Pair& pair) { return changes_.pairs[pair.key]; }
@@ -124,7 +124,7 @@ Receipt ReportResolver::resolve_again(const PreparedAttempt& prepared, Pair& pai
   const std::int64_t damaged = earlier.path_id.value();
   const AttemptPath path = keep_path(prepared, pair, earlier.received_ms);
   if (std::ranges::count(pair.contents[prepared.path->content].damaged, damaged) > 0)
-    set_aside(pair, damaged);  // where keep_path() left the paths of its content as they were
+    quarantine(pair, damaged);  // where keep_path() left the paths of its content as they were
   note_damaged(damaged, path.id);
   changes_.restored.push_back({uuid, path.status, path.id});
   earlier.path_id = path.id;
@@ -160,11 +160,11 @@ AttemptPath ReportResolver::keep_path(const PreparedAttempt& prepared, Pair& pai
   if (same.readable)
     return {AttemptStatus::DuplicateContent, same.readable};
   for (const std::int64_t damaged : same.damaged)
-    set_aside(pair, damaged);
+    quarantine(pair, damaged);
   std::optional<std::int64_t> id;
   if (is_within_cap(pair, content)) {
     id = add_path(prepared, pair, received_ms, false);
-    pair.contents[content] = {.readable = id, .damaged = {}, .set_aside = {}};
+    pair.contents[content] = {.readable = id, .damaged = {}, .quarantined = {}};
     ++pair.paths;
     PairChange& change = change_of(pair);
     ++change.paths;
@@ -172,7 +172,7 @@ AttemptPath ReportResolver::keep_path(const PreparedAttempt& prepared, Pair& pai
   } else {
     ++change_of(pair).dropped;
   }
-  for (const std::vector<std::int64_t>* const damaged : {&same.damaged, &same.set_aside})
+  for (const std::vector<std::int64_t>* const damaged : {&same.damaged, &same.quarantined})
     for (const std::int64_t each : *damaged)
       note_damaged(each, id);
   return {AttemptStatus::Stored, id};
@@ -222,7 +222,7 @@ void ReportResolver::drop(Pair& pair, const KeptPath& path) {
 }
 
 /// Takes a path that is in use out of it, once.
-void ReportResolver::set_aside(Pair& pair, std::int64_t id) {
+void ReportResolver::quarantine(Pair& pair, std::int64_t id) {
   if (std::ranges::find(changes_.damaged, id, &DamagedPath::id) != changes_.damaged.end())
     return;
   note_damaged(id, std::nullopt);
@@ -235,7 +235,7 @@ void ReportResolver::set_aside(Pair& pair, std::int64_t id) {
   change.is_changed = true;
 }
 
-/// Of a path that is set aside, now or before.
+/// Of a path that is quarantined, now or before.
 void ReportResolver::note_damaged(std::int64_t id, std::optional<std::int64_t> replaced_by) {
   const auto noted = std::ranges::find(changes_.damaged, id, &DamagedPath::id);
   if (noted == changes_.damaged.end())

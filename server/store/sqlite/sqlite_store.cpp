@@ -24,9 +24,9 @@
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/distributions.hpp"
@@ -123,7 +123,7 @@ class SqliteStore : public SqlStore {
                                  std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
     ReplicatedRead read = select_replicated(*reader, reports, max_bytes);
-    set_aside_later(std::move(read.damaged));
+    quarantine_later(std::move(read.damaged));
     return std::move(read.found);
   }
 
@@ -180,7 +180,7 @@ class SqliteStore : public SqlStore {
     const ReaderPool::Lease reader = readers_.lease();
     DamagedRows damaged;
     Result<Attempt> attempt = store::find_attempt(*reader, report_uuid, damaged);
-    set_aside_later(std::move(damaged));
+    quarantine_later(std::move(damaged));
     if (attempt)
       return std::move(attempt).value();
     if (attempt.error().code == ErrorCode::NotFound)
@@ -193,7 +193,7 @@ class SqliteStore : public SqlStore {
                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
     ExportRead read = export_page(*reader, {robot, task}, cursor, limit, max_bytes);
-    set_aside_later(std::move(read.damaged));
+    quarantine_later(std::move(read.damaged));
     return std::move(read.page);
   }
 
@@ -260,22 +260,22 @@ class SqliteStore : public SqlStore {
   }
 
   std::vector<StoredPath> undamaged(PathsRead read) const {
-    set_aside_later(AsideKind::Path, std::move(read.damaged));
+    quarantine_later("path", std::move(read.damaged));
     return std::move(read.paths);
   }
   std::optional<RecordedScene> undamaged(SceneRead read, std::int64_t scene_id) const {
     if (read.damaged)
-      set_aside_later(AsideKind::Scene, {scene_id});
+      quarantine_later("scene", {scene_id});
     return std::move(read.scene);
   }
-  void set_aside_later(AsideKind kind, std::vector<std::int64_t> damaged) const {
+  void quarantine_later(const char* table, std::vector<std::int64_t> damaged) const {
     if (!damaged.empty())
-      writer_->submit(std::make_unique<DamageItem>(kind, std::move(damaged)));
+      writer_->submit(std::make_unique<DamageItem>(table, std::move(damaged)));
   }
-  void set_aside_later(DamagedRows damaged) const {
-    set_aside_later(AsideKind::Path, std::move(damaged.paths));
-    set_aside_later(AsideKind::Scene, std::move(damaged.scenes));
-    set_aside_later(AsideKind::Attempt, std::move(damaged.attempts));
+  void quarantine_later(DamagedRows damaged) const {
+    quarantine_later("path", std::move(damaged.paths));
+    quarantine_later("scene", std::move(damaged.scenes));
+    quarantine_later("attempt", std::move(damaged.attempts));
   }
 
   /// After a write failure no connection stays open, so that the WAL is read anew from the disk.

@@ -13,7 +13,7 @@ namespace {
 std::string paths_in_use(Session& session) {
   return " WHERE task_id = " + id_of_task(session, "$1") +
          " AND robot_id = " + id_of_robot(session, "$2") + " AND retired_ms IS NULL AND NOT " +
-         std::string(session.dialect().is_quarantined_path);
+         session.is_quarantined("path");
 }
 
 /// kPathColumns, and whether the row is as it was written.
@@ -93,8 +93,7 @@ SceneRead select_scene(Session& session, std::int64_t id) {
   const auto read = session.unless_damaged([&]() -> std::optional<SceneRead> {
     const Rows rows =
         session.query("SELECT " + std::string(kSceneColumns) + ", " + session.is_intact("scene") +
-                          " FROM scene WHERE id = $1 AND NOT " +
-                          std::string(session.dialect().is_quarantined_scene),
+                          " FROM scene WHERE id = $1 AND NOT " + session.is_quarantined("scene"),
                       id);
     if (rows.empty())
       return SceneRead();

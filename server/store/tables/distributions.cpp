@@ -40,10 +40,10 @@ std::int64_t revision_floor(Session& session) {
 /// From indexes.
 Revisions revisions_of(Session& session, const Digest& id) {
   Revisions revisions{.row = {}, .newest = revision_floor(session)};
-  for (const Row& row : session.query(
-           "SELECT id, revision, " + std::string(session.dialect().is_quarantined_distribution) +
-               " FROM distribution WHERE digest = $1",
-           id)) {
+  for (const Row& row :
+       session.query("SELECT id, revision, " + session.is_quarantined("distribution") +
+                         " FROM distribution WHERE digest = $1",
+                     id)) {
     if (row.column_integer(2) == 0)
       revisions.row = row.column_integer(0);
     revisions.newest = std::max(revisions.newest, row.column_integer(1));
@@ -225,7 +225,7 @@ DistributionRead select_distribution(Session& session, const Digest& id) {
   DistributionRead read =
       read_where(session,
                  "(SELECT max(id) FROM distribution WHERE digest = $1 AND NOT " +
-                     std::string(session.dialect().is_quarantined_distribution) + ")",
+                     session.is_quarantined("distribution") + ")",
                  Parameter(id));
   if (read.distribution && read.distribution->id != id)
     return {std::nullopt, true};

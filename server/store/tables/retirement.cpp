@@ -48,7 +48,7 @@ void count_rest(Session& session, std::int64_t robot_id, RemovedRobot& removed) 
   for (const Row& row :
        session.query("SELECT digest, task.name FROM distribution"
                      " JOIN task ON task.id = task_id WHERE robot_id = $1 AND NOT " +
-                         std::string(session.dialect().is_quarantined_distribution),
+                         session.is_quarantined("distribution"),
                      robot_id)) {
     removed.distributions.push_back(id_of<Digest>(row.column_blob(0)));
     tasks.emplace(row.column_text(1));

@@ -153,16 +153,15 @@ class RowCopy {
   /// Marks of damage are columns in PostgreSQL and a table of its own in SQLite.
   void copy_damage() {
     Statement insert(target_->connection(),
-                     "INSERT INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
-                     " VALUES (?, ?, ?, ?, ?, ?)");
-    const std::vector<Column> columns = columns_of(*target_, "set_aside");
-    const std::string reason = "'was set aside in PostgreSQL'";
+                     "INSERT INTO quarantine (of_table, id, noticed_ms, replaced_by, retired_ms)"
+                     " VALUES (?, ?, ?, ?, ?)");
+    const std::vector<Column> columns = columns_of(*target_, "quarantine");
     insert_all(insert, columns,
-               source_->query("SELECT 1::bigint, id, damaged_ms, replaced_by, retired_ms, " +
-                              reason + " FROM path WHERE damaged_ms IS NOT NULL"));
+               source_->query("SELECT 'path', id, damaged_ms, replaced_by, retired_ms FROM path "
+                              "WHERE damaged_ms IS NOT NULL"));
     insert_all(insert, columns,
-               source_->query("SELECT 3::bigint, id, damaged_ms, NULL::bigint, NULL::bigint, " +
-                              reason + " FROM scene WHERE damaged_ms IS NOT NULL"));
+               source_->query("SELECT 'scene', id, damaged_ms, NULL::bigint, NULL::bigint FROM "
+                              "scene WHERE damaged_ms IS NOT NULL"));
   }
 
   Connection* source_;

@@ -154,11 +154,14 @@ const Dialect& Connection::dialect() const noexcept {
       .note_gone_robot =
           "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
           " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
-      .newest_attempts_first = "arrived_in DESC, id DESC",
-      .is_quarantined_path = "(path.damaged_ms IS NOT NULL)",
-      .is_quarantined_scene = "(scene.damaged_ms IS NOT NULL)",
-      .is_quarantined_distribution = "FALSE"};
+      .newest_attempts_first = "arrived_in DESC, id DESC"};
   return kDialect;
+}
+
+std::string Connection::is_quarantined(std::string_view table) const {
+  if (table == "distribution")
+    return "FALSE";
+  return "(" + std::string(table) + ".damaged_ms IS NOT NULL)";
 }
 
 store::Row& Connection::run(std::string_view sql, std::span<const Parameter> parameters) {

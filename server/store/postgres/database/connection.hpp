@@ -63,6 +63,7 @@ class Connection : public Session {
   ~Connection() override;
 
   const Dialect& dialect() const noexcept override;
+  std::string is_quarantined(std::string_view table) const override;
 
   /// Runs one statement with its parameters.
   template <typename... Values>

@@ -24,7 +24,7 @@ constexpr std::string_view kWriteScenes =
     " received_ms = excluded.received_ms, size = excluded.size, encoding = excluded.encoding,"
     " crc32c = excluded.crc32c, scene = excluded.scene WHERE scene.damaged_ms IS NOT NULL";
 
-constexpr std::string_view kSetAside =
+constexpr std::string_view kQuarantine =
     "UPDATE path SET damaged_ms = coalesce(damaged_ms, $1),"
     " replaced_by = coalesce(new.replaced_by, path.replaced_by)"
     " FROM unnest($2, $3) AS new (id, replaced_by) WHERE path.id = new.id";
@@ -294,7 +294,7 @@ std::vector<Request> requests_of(const BatchChanges& changes, std::int64_t now_m
     requests.push_back({kWriteScenes, scenes_in_columns(changes, now_ms)});
   if (!changes.damaged.empty()) {
     const DamagedColumns damaged(changes);
-    requests.push_back({kSetAside, Parameters(now_ms, damaged.ids, damaged.replaced_by)});
+    requests.push_back({kQuarantine, Parameters(now_ms, damaged.ids, damaged.replaced_by)});
   }
   if (!changes.dropped.empty())
     requests.push_back({kDrop, dropped_in_columns(changes, now_ms)});

@@ -175,7 +175,7 @@ RetireSome retirement_in(Connection& connection) {
   };
 }
 
-void set_aside(Connection& connection, const DamagedRows& damaged) {
+void quarantine(Connection& connection, const DamagedRows& damaged) {
   connection.query(
       "SELECT 1 FROM experience WHERE (task_id, robot_id) IN"
       " (SELECT found.task_id, found.robot_id FROM unnest($1) AS wanted (id) CROSS JOIN LATERAL"
@@ -183,9 +183,11 @@ void set_aside(Connection& connection, const DamagedRows& damaged) {
       " ORDER BY task_id, robot_id FOR NO KEY UPDATE",
       damaged.paths);
   connection.query(
-      "WITH aside AS (UPDATE path SET damaged_ms = $2 WHERE id = ANY($1) AND damaged_ms IS NULL"
+      "WITH quarantined AS (UPDATE path SET damaged_ms = $2 WHERE id = ANY($1) AND damaged_ms IS "
+      "NULL"
       "  RETURNING task_id, robot_id, retired_ms),"
-      " lost AS (SELECT task_id, robot_id, count(*) AS paths FROM aside WHERE retired_ms IS NULL"
+      " lost AS (SELECT task_id, robot_id, count(*) AS paths FROM quarantined WHERE retired_ms IS "
+      "NULL"
       "  GROUP BY task_id, robot_id)"
       " UPDATE experience SET changed_in = pg_current_xact_id(), generation = generation + 1, "
       "paths = experience.paths - lost.paths"

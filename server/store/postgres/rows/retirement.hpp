@@ -34,6 +34,6 @@ RetireSome retirement_in(Connection& connection);
 /// Quarantines paths, and scenes until a report brings them again under their ids. Takes paths out
 /// of the counts and of every reading, and raises the generation; a quarantined path stays so, a
 /// retired one was out of the counts before. In a writing transaction.
-void set_aside(Connection& connection, const DamagedRows& damaged);
+void quarantine(Connection& connection, const DamagedRows& damaged);
 
 }  // namespace kinship::store::postgres

@@ -45,18 +45,18 @@ Database::Database(const std::filesystem::path& file, Access access) {
 
 Database::~Database() = default;
 
+std::string in_quarantine(std::string_view table) {
+  const std::string name(table);
+  return "EXISTS (SELECT 1 FROM quarantine WHERE of_table = '" + name +
+         "' AND quarantine.id = " + name + ".id)";
+}
+
 const Dialect& Database::dialect() const noexcept {
   static constexpr Dialect kDialect = {
       .newest_attempts_first = "id DESC",
-      .is_quarantined_path =
-          "EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id)",
-      .is_quarantined_scene =
-          "EXISTS (SELECT 1 FROM set_aside WHERE kind = 3 AND set_aside.id = scene.id)",
-      .is_quarantined_distribution =
-          "EXISTS (SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)",
       .quarantine_distribution =
-          "INSERT INTO set_aside (kind, id, noticed_ms, reason) VALUES (4, $1, $2, 'checksum')"
-          " ON CONFLICT (kind, id) DO NOTHING",
+          "INSERT INTO quarantine (of_table, id, noticed_ms) VALUES ('distribution', $1, $2)"
+          " ON CONFLICT (of_table, id) DO NOTHING",
       .by_task_robot = " INDEXED BY path_by_task_robot"};
   return kDialect;
 }

@@ -14,6 +14,9 @@
 
 namespace kinship::store {
 
+/// SQL that says whether a row of a table is quarantined (rows/quarantine_rows).
+std::string in_quarantine(std::string_view table);
+
 enum class Access { ReadOnly, ReadWrite, Create };
 
 class OnlineBackup;
@@ -34,6 +37,7 @@ class Database : public Session {
 
   const Dialect& dialect() const noexcept override;
   std::string is_intact(std::string_view table) override;
+  std::string is_quarantined(std::string_view table) const override { return in_quarantine(table); }
 
   /// From now on the rows that this connection writes get their checksums.
   void keep_checksums();

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 3> kLargeBlobs = {"waypoints", "scene", "
 constexpr std::array<std::string_view, 2> kLargeOfRobot = {"urdf", "mesh_solids"};
 /// An UPDATE of their rows sets some columns and keeps the others.
 constexpr std::array<std::string_view, 4> kUpdatedInPart = {"attempt", "experience", "path",
-                                                            "set_aside"};
+                                                            "quarantine"};
 
 template <typename Names>
 bool contains(const Names& names, std::string_view name) {

@@ -55,7 +55,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
   Transaction probe(*database, Transaction::Kind::Write);
   write_setting(*database, "reopened_ms", std::to_string(now_ms()));
   Batch batch(*database);
-  set_aside(batch, find_damaged_paths(*database, kNewestRowsChecked));
+  quarantine_paths(batch, find_damaged_paths(*database, kNewestRowsChecked));
   batch.raise_generations();
   probe.commit();
   files::sync_folder_of(file);

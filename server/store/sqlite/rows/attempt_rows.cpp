@@ -3,7 +3,7 @@
 #include <string>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -47,10 +47,10 @@ ReportRows find_report(Database& database, const Uuid& report_uuid) {
   ReportRows rows;
   while (query->step()) {
     const std::int64_t id = query->column_integer(0);
-    const std::optional<Aside> aside = find_aside(database, AsideKind::Attempt, id);
-    if (!aside)
+    const std::optional<QuarantinedRow> quarantined = find_quarantined(database, "attempt", id);
+    if (!quarantined)
       rows.row = id;
-    else if (!aside->replaced_by)
+    else if (!quarantined->replaced_by)
       rows.damaged.push_back(id);
   }
   return rows;

@@ -9,21 +9,16 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/robots.hpp"
 
 namespace kinship::store {
 namespace {
 
-std::string not_in_quarantine(const std::string& table) {
-  for (const AsideKind kind :
-       {AsideKind::Path, AsideKind::Attempt, AsideKind::Scene, AsideKind::Distribution})
-    if (name_of(kind, 1) == table)
-      return " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = " +
-             std::to_string(static_cast<int>(kind)) + " AND set_aside.id = " + table + ".id)";
-  return {};
+std::string and_not_quarantined(const std::string& table) {
+  return has_quarantine(table) ? " AND NOT " + in_quarantine(table) : std::string();
 }
 
 /// Contents that have a checksum of their own.
@@ -128,7 +123,7 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
   const std::string id = keys.front();
   Statement rows(database.connection(), "SELECT " + id + ", " + database.is_intact(table) +
                                             " FROM " + table + " NOT INDEXED WHERE " + id + " > ?" +
-                                            not_in_quarantine(table) + " ORDER BY " + id +
+                                            and_not_quarantined(table) + " ORDER BY " + id +
                                             " LIMIT ?");
   rows.bind_all(after_id, limit);
   RowsChecked checked{.last_id = after_id};
@@ -147,20 +142,20 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
 
 void DamageItem::apply(Batch& batch) {
   std::erase_if(rows_, [&](std::int64_t row) {
-    return check_rows(batch.database(), std::string(name_of(kind_, 1)), row - 1, 1).damaged_ids !=
+    return check_rows(batch.database(), table_, row - 1, 1).damaged_ids !=
            std::vector<std::int64_t>{row};
   });
-  if (kind_ == AsideKind::Path)
-    return set_aside(batch, rows_);
+  if (table_ == "path")
+    return quarantine_paths(batch, rows_);
   for (const std::int64_t row : rows_)
-    put_aside(batch.database(), kind_, row);
+    quarantine_row(batch.database(), table_, row);
 }
 
 std::optional<std::string> find_damaged_row(Database& database) {
   for (const auto& [table, columns] : database.checked_tables()) {
     Statement row(database.connection(), "SELECT " + name_of_row(table, columns) + " FROM " +
                                              table + " WHERE NOT " + database.is_intact(table) +
-                                             not_in_quarantine(table) + " LIMIT 1");
+                                             and_not_quarantined(table) + " LIMIT 1");
     if (row.step())
       return "table " + table + ": row " + std::string(row.column_text(0));
   }

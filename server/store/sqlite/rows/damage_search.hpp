@@ -8,7 +8,7 @@
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 
 /// The search for damage in a store's tables, in slices. Each throws SqliteError if it meets a page
 /// that SQLite cannot read.
@@ -39,15 +39,16 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
 /// Quarantines damaged rows that a reader found; if it fails, the next reader finds them again.
 class DamageItem : public WriteItem {
  public:
-  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
-      : kind_(kind), rows_(std::move(rows)) {}
+  /// \param table  one with a quarantine.
+  DamageItem(std::string table, std::vector<std::int64_t> rows)
+      : table_(std::move(table)), rows_(std::move(rows)) {}
 
   /// An index may have led to a row that is sound: each is looked at again.
   void apply(Batch& batch) override;
   void finish(const Error* /*error*/) override {}
 
  private:
-  AsideKind kind_;
+  std::string table_;
   std::vector<std::int64_t> rows_;
 };
 

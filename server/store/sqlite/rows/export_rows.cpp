@@ -8,9 +8,9 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
@@ -18,9 +18,6 @@
 
 namespace kinship::store {
 namespace {
-
-constexpr std::string_view kNotAsideAttempt =
-    "AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id) ";
 
 void append_ids(Statement& query, std::vector<std::int64_t>& ids) {
   while (query.step())
@@ -35,8 +32,8 @@ std::vector<std::int64_t> next_of(Database& database, const std::vector<Experien
   for (const ExperienceKey& key : keys) {
     const auto query = database.cached(
         "SELECT id FROM attempt INDEXED BY attempt_by_task_robot "
-        "WHERE task_id = ? AND robot_id = ? AND id > ? " +
-        std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
+        "WHERE task_id = ? AND robot_id = ? AND id > ? AND NOT " +
+        in_quarantine("attempt") + " ORDER BY id LIMIT ?");
     query->bind_all(key.task_id, key.robot_id, after_id, count);
     append_ids(*query, ids);
   }
@@ -49,8 +46,8 @@ std::vector<std::int64_t> next_of(Database& database, const std::vector<Experien
 std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
                                       std::int64_t count) {
   std::vector<std::int64_t> ids;
-  const auto query = database.cached("SELECT id FROM attempt WHERE id > ? " +
-                                     std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
+  const auto query = database.cached("SELECT id FROM attempt WHERE id > ? AND NOT " +
+                                     in_quarantine("attempt") + " ORDER BY id LIMIT ?");
   query->bind_all(after_id, count);
   append_ids(*query, ids);
   return ids;
@@ -122,8 +119,7 @@ std::optional<Attempt> read_candidate(Database& database, std::int64_t id, Damag
   if (!row)
     return std::nullopt;
   if (row->path_id) {
-    const std::optional<std::int64_t> path_id =
-        row_in_use(database, AsideKind::Path, *row->path_id);
+    const std::optional<std::int64_t> path_id = row_in_use(database, "path", *row->path_id);
     if (!path_id || is_retired(database, {row->task_id, row->robot_id}, *path_id))
       return std::nullopt;
   }
@@ -142,9 +138,9 @@ bool is_dropped(Database& database, std::int64_t path_id) {
 
 /// By its path: the list of retirements may have lost entries in a repair.
 bool is_path_retired(Database& database, const ExperienceKey& key, std::int64_t path_id) {
-  const std::int64_t id = row_in_use(database, AsideKind::Path, path_id).value_or(path_id);
-  if (const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id))
-    return aside->retired;
+  const std::int64_t id = row_in_use(database, "path", path_id).value_or(path_id);
+  if (const std::optional<QuarantinedRow> quarantined = find_quarantined(database, "path", id))
+    return quarantined->retired;
   return is_retired(database, key, id) && !is_dropped(database, id);
 }
 

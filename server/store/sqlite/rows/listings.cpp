@@ -10,7 +10,7 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
@@ -18,9 +18,10 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kNotAsidePath =
-    "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) "
-    "ORDER BY id DESC LIMIT ";
+/// The end of a SELECT of paths.
+std::string newest_not_quarantined(const char* limit) {
+  return "NOT " + in_quarantine("path") + " ORDER BY id DESC LIMIT " + limit;
+}
 
 void append_path_ids(Statement& query, std::vector<std::int64_t>& ids) {
   while (query.step())
@@ -38,7 +39,7 @@ std::vector<std::int64_t> paths_before(Database& database, const std::vector<Exp
         "robot_id = ?2 AND id < ?3 AND retired_ms IS NULL UNION ALL "
         "SELECT id FROM path INDEXED BY path_retired WHERE task_id = ?1 AND robot_id = ?2 "
         "AND id < ?3 AND retired_ms IS NOT NULL) AS path WHERE " +
-        std::string(kNotAsidePath) + "?4");
+        newest_not_quarantined("?4"));
     query->bind_all(key.task_id, key.robot_id, before_id, count);
     append_path_ids(*query, ids);
   }
@@ -53,7 +54,7 @@ std::vector<std::int64_t> all_paths_before(Database& database, std::int64_t befo
                                            std::int64_t count) {
   std::vector<std::int64_t> ids;
   const auto query =
-      database.cached("SELECT id FROM path WHERE id < ?1 AND " + std::string(kNotAsidePath) + "?2");
+      database.cached("SELECT id FROM path WHERE id < ?1 AND " + newest_not_quarantined("?2"));
   query->bind_all(before_id, count);
   append_path_ids(*query, ids);
   return ids;
@@ -125,8 +126,7 @@ Page<DistributionSummary> page_of_distributions(Database& database, const PairFi
       "FROM distribution JOIN robot ON robot.id = distribution.robot_id"
       " JOIN task ON task.id = distribution.task_id WHERE distribution.id < $1 AND " +
       are_intact(database, {"distribution", "robot", "task"}) + " AND NOT " +
-      std::string(database.dialect().is_quarantined_distribution) +
-      filter.condition(database, "distribution", parameters) +
+      in_quarantine("distribution") + filter.condition(database, "distribution", parameters) +
       " ORDER BY distribution.id DESC LIMIT $2";
   return read_page<DistributionSummary>(
       database.query_with(sql, parameters), rows, read_distribution_summary<Row>,
@@ -156,7 +156,7 @@ void count_rows(Database& database, StoreStatus& status) {
   count(status.attempts, "attempts", "SELECT coalesce(sum(attempts), 0) FROM experience");
   count(status.distributions, "distributions",
         "SELECT (SELECT count(*) FROM distribution) - "
-        "(SELECT count(*) FROM set_aside WHERE kind = 4)");
+        "(SELECT count(*) FROM quarantine WHERE of_table = 'distribution')");
   count(status.distribution_bytes, "sizes of distributions",
         "SELECT coalesce(sum(bytes), 0) FROM distribution_use "
         "INDEXED BY distribution_use_by_time");
@@ -165,11 +165,10 @@ void count_rows(Database& database, StoreStatus& status) {
         "SELECT (SELECT page_count FROM pragma_page_count) *"
         " (SELECT page_size FROM pragma_page_size)");
   status.schema_version = static_cast<std::uint32_t>(schema);
-  for (const AsideCount& aside : count_aside(database))
-    // Distributions are fitted again; a path that lost its attempt is in use.
-    if (aside.kind != AsideKind::Distribution && aside.kind != AsideKind::Orphan)
-      status.message += std::to_string(aside.rows) + " damaged " +
-                        std::string(name_of(aside.kind, aside.rows)) + " set aside; ";
+  for (const QuarantineCount& quarantined : count_quarantined(database))
+    if (quarantined.table != "distribution")  // these are fitted again
+      status.message += std::to_string(quarantined.rows) + " damaged " + quarantined.table +
+                        (quarantined.rows == 1 ? "" : "s") + " in quarantine; ";
 }
 
 }  // namespace kinship::store

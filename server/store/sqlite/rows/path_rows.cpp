@@ -5,16 +5,13 @@
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/path_content.hpp"
 
 namespace kinship::store {
 namespace {
-
-constexpr std::string_view kNotAside =
-    " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
 
 /// Runs a function that reads one row. \return false if the row cannot be read.
 template <typename Read>
@@ -68,11 +65,11 @@ std::optional<ExperienceKey> key_in_use(Database& database, std::int64_t id) {
 }
 
 /// Takes a path that is in use out of it.
-void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id) {
+void quarantine_path_in_use(Batch& batch, const ExperienceKey& key, std::int64_t id) {
   Database& database = batch.database();
-  const bool was_aside = find_aside(database, AsideKind::Path, id).has_value();
-  put_aside(database, AsideKind::Path, id);
-  if (was_aside)
+  const bool was_quarantined = find_quarantined(database, "path", id).has_value();
+  quarantine_row(database, "path", id);
+  if (was_quarantined)
     return;
   uncount_paths(database, key, 1);
   batch.paths_changed(key.task_id, key.robot_id);
@@ -93,8 +90,8 @@ void take_path(Database& database, std::int64_t id, PathsRead& read) {
 
 std::vector<std::int64_t> newest_paths(Database& database, std::int64_t count) {
   std::vector<std::int64_t> ids;
-  const auto query = database.cached("SELECT id FROM path WHERE TRUE" + std::string(kNotAside) +
-                                     "ORDER BY id DESC LIMIT ?");
+  const auto query = database.cached("SELECT id FROM path WHERE NOT " + in_quarantine("path") +
+                                     " ORDER BY id DESC LIMIT ?");
   query->bind(1, count);
   while (query->step())
     ids.push_back(query->column_integer(0));
@@ -140,23 +137,23 @@ SameContent find_same(Database& database, const ExperienceKey& key, const Digest
   }
   SameContent same;
   for (const std::int64_t id : ids) {
-    const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
-    if (!aside && is_readable(database, id) && has_content(database, id, key, content))
+    const std::optional<QuarantinedRow> quarantined = find_quarantined(database, "path", id);
+    if (!quarantined && is_readable(database, id) && has_content(database, id, key, content))
       same.readable = id;
-    else if (!aside)
+    else if (!quarantined)
       same.damaged.push_back(id);
-    else if (!aside->replaced_by && !aside->retired)
-      same.set_aside.push_back(id);
+    else if (!quarantined->replaced_by && !quarantined->retired)
+      same.quarantined.push_back(id);
   }
   return same;
 }
 
 bool is_receipt_backed(Database& database, const ExperienceKey& key, std::int64_t id) {
-  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Path, id);
+  const std::optional<std::int64_t> row = row_in_use(database, "path", id);
   if (row && is_readable(database, *row))
     return true;
-  const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
-  return (aside && aside->retired) || is_retired(database, key, row.value_or(id));
+  const std::optional<QuarantinedRow> quarantined = find_quarantined(database, "path", id);
+  return (quarantined && quarantined->retired) || is_retired(database, key, row.value_or(id));
 }
 
 bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id) {
@@ -188,8 +185,8 @@ std::set<KeptPath> select_largest(Database& database, const ExperienceKey& key,
                                   std::uint64_t limit) {
   const auto query = database.cached(
       "SELECT content_sha256, id FROM path INDEXED BY path_by_content "
-      "WHERE robot_id = ? AND task_id = ? AND retired_ms IS NULL" +
-      std::string(kNotAside) + "ORDER BY content_sha256 DESC LIMIT ?");
+      "WHERE robot_id = ? AND task_id = ? AND retired_ms IS NULL AND NOT " +
+      in_quarantine("path") + " ORDER BY content_sha256 DESC LIMIT ?");
   query->bind_all(key.robot_id, key.task_id, static_cast<std::int64_t>(limit));
   std::set<KeptPath> largest;
   while (query->step())
@@ -218,34 +215,34 @@ std::int64_t insert_path(Database& database, const NewPath& path,
 
 PathsRead select_path(Database& database, std::int64_t id) {
   PathsRead read;
-  if (const auto row = row_in_use(database, AsideKind::Path, id))
+  if (const auto row = row_in_use(database, "path", id))
     take_path(database, *row, read);
   return read;
 }
 
-void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
+void quarantine_paths(Batch& batch, const std::vector<std::int64_t>& paths) {
   Database& database = batch.database();
   for (const std::int64_t path : paths) {
-    if (find_aside(database, AsideKind::Path, path))
+    if (find_quarantined(database, "path", path))
       continue;
     if (const auto key = key_in_use(database, path))
-      put_path_aside(batch, *key, path);
+      quarantine_path_in_use(batch, *key, path);
     else
-      put_aside(database, AsideKind::Path, path);
+      quarantine_row(database, "path", path);
   }
 }
 
 void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id) {
   if (is_in_use(batch.database(), key, id))
-    put_path_aside(batch, key, id);
-  retire_aside(batch.database(), id);
+    quarantine_path_in_use(batch, key, id);
+  retire_quarantined(batch.database(), id);
 }
 
 void write_damaged(Database& database, const ExperienceKey& key, const DamagedPath& path) {
   if (path.replaced_by || is_in_use(database, key, path.id))
-    put_aside(database, AsideKind::Path, path.id, path.replaced_by);
+    quarantine_row(database, "path", path.id, path.replaced_by);
   if (!path.replaced_by)
-    retire_aside(database, path.id);
+    retire_quarantined(database, path.id);
 }
 
 void drop_path(Database& database, const ExperienceKey& key, std::int64_t id) {

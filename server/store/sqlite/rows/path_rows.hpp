@@ -44,7 +44,7 @@ std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey
 /// Quarantines paths: takes them out of the counts and of every reading, and raises the generation.
 /// A quarantined path stays so; a retired one was out of the counts before. Their rows are not
 /// touched.
-void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
+void quarantine_paths(Batch& batch, const std::vector<std::int64_t>& paths);
 /// Quarantines a path as retired, because its row could not be written.
 void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
 

@@ -12,9 +12,9 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/tables/tasks.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -83,7 +83,8 @@ void read_paths(Database& database, const PreparedAttempt& prepared, std::uint64
                 BatchState& state, Pair& pair) {
   const Uuid& uuid = prepared.attempt.report_uuid;
   state.path_ids = {kNewPathId};
-  if (!state.reports.contains(uuid) && (state.unreadable.contains(uuid) || has_orphans(database)))
+  if (!state.reports.contains(uuid) &&
+      (state.unreadable.contains(uuid) || has_lost_attempts(database)))
     if (const auto retired = find_retired(database, pair.key, uuid)) {
       state.retired_paths[uuid] = *retired;
       return;
@@ -151,7 +152,7 @@ void write_changes(Batch& batch, const BatchChanges& changes, const ReportReadin
     attempt.path_id = row_of(attempt.path_id);
     const std::int64_t id = insert_attempt(database, attempt, scene_id, now_ms);
     for (const std::int64_t damaged : read.rows.damaged)
-      put_aside(database, AsideKind::Attempt, damaged, id);
+      quarantine_row(database, "attempt", damaged, id);
     if (attempt.status == AttemptStatus::DuplicateContent)
       note_same_content(database, *attempt.path_id, attempt.from->attempt.report_uuid);
   }

@@ -8,7 +8,7 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/values/audit_texts.hpp"
@@ -38,22 +38,22 @@ void append_from_attempts(Database& database, const ExperienceKey& key, std::int
   const auto query = database.cached(
       "SELECT report_uuid FROM attempt INDEXED BY attempt_by_task_robot "
       "WHERE task_id = ?1 AND robot_id = ?2 AND (path_id = ?3 OR path_id IN "
-      "(SELECT id FROM set_aside WHERE kind = 1 AND replaced_by = ?3)) AND " +
+      "(SELECT id FROM quarantine WHERE of_table = 'path' AND replaced_by = ?3)) AND " +
       database.is_intact("attempt"));
   query->bind_all(key.task_id, key.robot_id, path_id);
   append_reports(*query, reports);
 }
 
 bool stands_for_others(Database& database, std::int64_t path_id) {
-  const auto query =
-      database.cached("SELECT 1 FROM set_aside WHERE kind = 1 AND replaced_by = ? LIMIT 1");
+  const auto query = database.cached(
+      "SELECT 1 FROM quarantine WHERE of_table = 'path' AND replaced_by = ? LIMIT 1");
   return query->bind(1, path_id).step();
 }
 
 // Paths that are not retired, also damaged ones.
 constexpr std::string_view kNotRetired =
-    " AND retired_ms IS NULL AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND"
-    " set_aside.id = path.id AND set_aside.retired_ms IS NOT NULL) ";
+    " AND retired_ms IS NULL AND NOT EXISTS (SELECT 1 FROM quarantine WHERE of_table = 'path' AND"
+    " quarantine.id = path.id AND quarantine.retired_ms IS NOT NULL) ";
 
 /// \return whether it was not among them before.
 bool note_retired_report(Database& database, const Uuid& report_uuid) {
@@ -90,9 +90,9 @@ void note_retired_path(Database& database, const ExperienceKey& key, std::int64_
 void retire(Batch& batch, const ExperienceKey& key, std::int64_t id) {
   Database& database = batch.database();
   note_retired_path(database, key, id);
-  const bool aside = find_aside(database, AsideKind::Path, id).has_value();
-  if (aside)
-    retire_aside(database, id);
+  const bool quarantined = find_quarantined(database, "path", id).has_value();
+  if (quarantined)
+    retire_quarantined(database, id);
   else if (database.try_change("UPDATE path SET retired_ms = $1 WHERE id = $2", now_ms(), id))
     uncount_paths(database, key, 1);
   else
@@ -138,10 +138,9 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid, const Audi
   retired.task = attempt.attempt.task;
   const std::int64_t before = audit == nullptr ? 0 : count_paths_of(database, retired.task);
   const ExperienceKey key{attempt.task_id, attempt.robot_id};
-  const std::int64_t id =
-      row_in_use(database, AsideKind::Path, *attempt.path_id).value_or(*attempt.path_id);
-  const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
-  if (!(aside && aside->retired) && !is_retired(database, key, id)) {
+  const std::int64_t id = row_in_use(database, "path", *attempt.path_id).value_or(*attempt.path_id);
+  const std::optional<QuarantinedRow> quarantined = find_quarantined(database, "path", id);
+  if (!(quarantined && quarantined->retired) && !is_retired(database, key, id)) {
     retire(batch, key, id);
     retired.paths = 1;
     add_robot(retired, attempt.attempt.robot);

@@ -1,7 +1,7 @@
 #include "server/store/sqlite/rows/scene_rows.hpp"
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/scene_blob.hpp"
 
@@ -37,10 +37,10 @@ bool can_read_scene(Database& database, std::int64_t id) {
 SceneRows find_scene(Database& database, const Digest& content) {
   SceneRows rows;
   for (const std::int64_t id : ids_of(database, Bytes(content.bytes))) {
-    const std::optional<Aside> aside = find_aside(database, AsideKind::Scene, id);
-    if (!aside && can_read_scene(database, id))
+    const std::optional<QuarantinedRow> quarantined = find_quarantined(database, "scene", id);
+    if (!quarantined && can_read_scene(database, id))
       rows.readable = id;
-    else if (!aside || !aside->replaced_by)
+    else if (!quarantined || !quarantined->replaced_by)
       rows.damaged.push_back(id);
   }
   return rows;
@@ -60,17 +60,17 @@ std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::i
       .run();
   const std::int64_t id = database.last_insert_id();
   for (const std::int64_t old : damaged)
-    put_aside(database, AsideKind::Scene, old, id);
+    quarantine_row(database, "scene", old, id);
   return id;
 }
 
 SceneRead select_current_scene(Database& database, std::int64_t id) {
-  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Scene, id);
+  const std::optional<std::int64_t> row = row_in_use(database, "scene", id);
   return row ? select_scene(database, *row) : SceneRead();
 }
 
 bool is_scene_readable(Database& database, std::int64_t id) {
-  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Scene, id);
+  const std::optional<std::int64_t> row = row_in_use(database, "scene", id);
   return row && can_read_scene(database, *row);
 }
 

@@ -38,14 +38,6 @@ std::size_t bytes_read(Database& database) {
          static_cast<std::size_t>(database.integer("PRAGMA page_size"));
 }
 
-std::optional<AsideKind> kind_of(const std::string& table) {
-  for (const AsideKind kind :
-       {AsideKind::Path, AsideKind::Attempt, AsideKind::Scene, AsideKind::Distribution})
-    if (name_of(kind, 1) == table)
-      return kind;
-  return std::nullopt;
-}
-
 }  // namespace
 
 Scrub::Scrub(ReaderPool& readers, Writer& writer, ScrubOptions options)
@@ -144,8 +136,8 @@ bool Scrub::search_rows(Database& database, const std::string& table) {
   last_id_ = part.last_id;
   for (const std::string& row : part.damaged)
     found_.push_back("row " + row + " (checksum)");
-  if (const auto kind = kind_of(table); kind && !part.damaged_ids.empty())
-    writer_->submit(std::make_unique<DamageItem>(*kind, std::move(part.damaged_ids)));
+  if (has_quarantine(table) && !part.damaged_ids.empty())
+    writer_->submit(std::make_unique<DamageItem>(table, std::move(part.damaged_ids)));
   return part.is_last;
 }
 

@@ -49,15 +49,12 @@ Rule rule_of_sums(const std::string& mode, int code, const std::string& counted)
               differs("_checks_of_solved")};
 }
 
-std::string not_aside(const std::string& table, int kind) {
-  return "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = " + std::to_string(kind) +
-         " AND set_aside.id = " + table + ".id)";
-}
+std::string not_quarantined(const std::string& table) { return "NOT " + in_quarantine(table); }
 
 /// Of paths beside their attempts, and of the sums over these.
 void add_rules_of_attempts(std::vector<Rule>& rules, const std::string& counted) {
-  const std::string path_kept = not_aside("path", 1);
-  const std::string attempt_kept = not_aside("attempt", 2);
+  const std::string path_kept = not_quarantined("path");
+  const std::string attempt_kept = not_quarantined("attempt");
   rules.push_back({"path",
                    "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
                    "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
@@ -67,7 +64,7 @@ void add_rules_of_attempts(std::vector<Rule>& rules, const std::string& counted)
   rules.push_back({"evicted_distribution",
                    "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
                    "FROM evicted_distribution JOIN distribution USING (digest) WHERE " +
-                       not_aside("distribution", 4)});
+                       not_quarantined("distribution")});
   rules.push_back({"path",
                    "SELECT 'path ' || path.id || ': has another scene than its attempt' "
                    "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
@@ -90,29 +87,29 @@ void add_rules_of_room(std::vector<Rule>& rules, const std::string& counted) {
            counted +
            ") + (SELECT count(*) FROM path WHERE path.task_id = experience.task_id "
            "AND path.robot_id = experience.robot_id AND retired_ms IS NOT NULL AND " +
-           std::string(kIsDropped) + " AND " + not_aside("path", 1) +
+           std::string(kIsDropped) + " AND " + not_quarantined("path") +
            ") AS found FROM experience) WHERE dropped < found"});
   rules.push_back(
       {"distribution",
        "SELECT 'distribution ' || id || ': nothing says when it was used' FROM distribution "
        "WHERE id NOT IN (SELECT id FROM distribution_use) AND " +
-           not_aside("distribution", 4)});
+           not_quarantined("distribution")});
   rules.push_back({"distribution_use",
                    "SELECT 'distribution ' || id || ': used, but not there' FROM distribution_use "
                    "WHERE id NOT IN (SELECT id FROM distribution)"});
 }
 
 std::vector<Rule> make_rules() {
-  const std::string path_kept = not_aside("path", 1);
-  const std::string attempt_kept = not_aside("attempt", 2);
+  const std::string path_kept = not_quarantined("path");
+  const std::string attempt_kept = not_quarantined("attempt");
   const std::string in_use = path_kept + " AND retired_ms IS NULL";
   // An attempt that came again stands there twice.
   const std::string counted =
-      "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id"
+      "NOT EXISTS (SELECT 1 FROM quarantine WHERE of_table = 'attempt' AND quarantine.id = "
+      "attempt.id"
       " AND replaced_by IS NOT NULL)";
   // A repair may have left it without.
-  const std::string is_orphan =
-      "EXISTS (SELECT 1 FROM set_aside WHERE kind = 5 AND set_aside.id = path.id)";
+  const std::string lost_its_attempt = "path.id IN (SELECT path_id FROM lost_attempt)";
   std::vector<Rule> rules = {
       {"path",
        "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
@@ -120,7 +117,7 @@ std::vector<Rule> make_rules() {
        "LEFT JOIN attempt ON attempt.report_uuid = path.report_uuid AND " +
            counted + " WHERE " + path_kept +
            " AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id) AND " + attempt_kept +
-           " AND NOT " + is_orphan},
+           " AND NOT " + lost_its_attempt},
       {"attempt",
        "SELECT 'attempt ' || attempt.id || ': its path is missing' FROM attempt "
        "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL "
@@ -238,9 +235,9 @@ void Checker::count_tables() {
   }
   guarded("path", [&] {
     check_.damaged_paths = static_cast<std::uint64_t>(
-        database_->integer("SELECT count(*) FROM set_aside WHERE kind = 1"));
+        database_->integer("SELECT count(*) FROM quarantine WHERE of_table = 'path'"));
     check_.retired_paths = static_cast<std::uint64_t>(database_->integer(
-        "SELECT count(*) FROM path WHERE retired_ms IS NOT NULL AND " + not_aside("path", 1)));
+        "SELECT count(*) FROM path WHERE retired_ms IS NOT NULL AND " + not_quarantined("path")));
   });
   check_.bytes = static_cast<std::uint64_t>(database_->integer("PRAGMA page_count") *
                                             database_->integer("PRAGMA page_size"));

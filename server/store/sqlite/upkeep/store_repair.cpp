@@ -12,8 +12,8 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
-#include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/sqlite/upkeep/schema_recovery.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -59,12 +59,11 @@ class Salvager {
   std::optional<std::int64_t> copy_from(const std::string& name, std::int64_t first);
   std::optional<std::int64_t> next_readable(const std::string& name, std::int64_t id) const;
   void keep_revision(Bytes digest, std::int64_t revision) const;
-  void set_bad_content_aside() const;
+  void quarantine_bad_content() const;
   void add_placeholder_tasks() const;
   void add_placeholder_robots();
   void add_placeholder_scenes();
   void add_placeholder_paths();
-  void note_orphans() const;
   void make_experience() const;
   void count_lost(const std::string& table, const std::string& index);
   void lose(const std::string& table, const Pair& pair, std::uint64_t rows);
@@ -175,12 +174,11 @@ void Salvager::keep_revision(Bytes digest, std::int64_t revision) const {
 }
 
 /// Rows that are as they were written, whose waypoints or bodies are not.
-void Salvager::set_bad_content_aside() const {
-  for (const auto& [table, kind] :
-       {std::pair("path", AsideKind::Path), std::pair("scene", AsideKind::Scene)})
+void Salvager::quarantine_bad_content() const {
+  for (const char* const table : {"path", "scene"})
     for (const std::int64_t id :
          check_rows(*target_, table, 0, std::numeric_limits<std::int64_t>::max()).damaged_ids)
-      put_aside(*target_, kind, id);
+      quarantine_row(*target_, table, id);
 }
 
 std::string Salvager::text_of(const std::string& sql, std::int64_t id) const {
@@ -226,8 +224,8 @@ void Salvager::add_placeholder_robots() {
   });
   Statement lost(target_->connection(),
                  "SELECT robot_id, coalesce((SELECT dof FROM path AS p "
-                 "WHERE p.robot_id = used.robot_id AND NOT EXISTS (SELECT 1 FROM set_aside "
-                 "WHERE kind = 1 AND set_aside.id = p.id) LIMIT 1), 1) FROM "
+                 "WHERE p.robot_id = used.robot_id AND NOT EXISTS (SELECT 1 FROM quarantine "
+                 "WHERE of_table = 'path' AND quarantine.id = p.id) LIMIT 1), 1) FROM "
                  "(SELECT robot_id FROM path UNION SELECT robot_id FROM attempt) AS used "
                  "WHERE robot_id NOT IN (SELECT id FROM robot)");
   while (lost.step()) {
@@ -272,7 +270,7 @@ void Salvager::add_placeholder_scenes() {
             " VALUES (?, ?, 0, 1, 1, 0, x'00')")
         ->bind_all(id, Bytes(content.bytes))
         .run();
-    put_aside(*target_, AsideKind::Scene, id);
+    quarantine_row(*target_, "scene", id);
     ++count;
   }
   if (count > 0)
@@ -304,11 +302,11 @@ void Salvager::add_placeholder_paths() {
     insert->bind_all(id, pair.first, pair.second, lost.column_blob(3), Bytes(content.bytes),
                      lost.column_integer(4), std::int64_t{retired.contains(id) ? 1 : 0});
     insert->bind_column(8, lost, 5).run();
-    if (target_->changed_rows() == 0 || find_aside(*target_, AsideKind::Path, id))
+    if (target_->changed_rows() == 0 || find_quarantined(*target_, "path", id))
       continue;
-    put_aside(*target_, AsideKind::Path, id);
+    quarantine_row(*target_, "path", id);
     if (retired.contains(id))
-      retire_aside(*target_, id);
+      retire_quarantined(*target_, id);
     ++lost_paths_[pair];
   }
   for (const auto& [pair, rows] : lost_paths_)
@@ -319,27 +317,16 @@ void Salvager::add_placeholder_paths() {
 void Salvager::count_lost(const std::string& table, const std::string& index) {
   std::map<Pair, std::uint64_t> lost;
   const bool paths = table == "path";
-  for_each_of_source("SELECT task_id, robot_id, id FROM " + table + " INDEXED BY " + index +
-                         (paths ? " WHERE retired_ms IS NULL"
-                                : " WHERE NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2"
-                                  " AND set_aside.id = attempt.id)"),
-                     [&](const Statement& row) {
-                       const auto found =
-                           target_->cached("SELECT 1 FROM " + table + " WHERE id = ?");
-                       if (!found->bind(1, row.column_integer(2)).step())
-                         ++lost[{row.column_integer(0), row.column_integer(1)}];
-                     });
+  for_each_of_source(
+      "SELECT task_id, robot_id, id FROM " + table + " INDEXED BY " + index +
+          (paths ? " WHERE retired_ms IS NULL" : " WHERE NOT " + in_quarantine("attempt")),
+      [&](const Statement& row) {
+        const auto found = target_->cached("SELECT 1 FROM " + table + " WHERE id = ?");
+        if (!found->bind(1, row.column_integer(2)).step())
+          ++lost[{row.column_integer(0), row.column_integer(1)}];
+      });
   for (const auto& [pair, rows] : lost)
     lose(table, pair, rows);
-}
-
-void Salvager::note_orphans() const {
-  target_->execute(
-      "INSERT OR IGNORE INTO set_aside (kind, id, noticed_ms, replaced_by, retired_ms, reason)"
-      " SELECT 5, id, 1, NULL, NULL, 'lost in a repair' FROM path "
-      "WHERE NOT EXISTS (SELECT 1 FROM set_aside AS aside WHERE kind = 1 AND aside.id = path.id) "
-      "AND NOT EXISTS (SELECT 1 FROM attempt WHERE attempt.report_uuid = path.report_uuid "
-      "AND attempt.path_id = path.id)");
 }
 
 void Salvager::make_experience() const {
@@ -373,14 +360,14 @@ void Salvager::make_experience() const {
       " AND status = 1 AND path_id IS NULL) + (SELECT count(*) FROM path "
       "WHERE path.task_id = experience.task_id AND path.robot_id = experience.robot_id"
       " AND retired_ms IS NOT NULL AND " +
-      std::string(kIsDropped) +
-      " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id)))");
+      std::string(kIsDropped) + " AND NOT " + in_quarantine("path") + "))");
   target_->execute(
       "UPDATE experience SET generation = 1 + max(generation, (SELECT count(*) FROM path "
       "WHERE path.task_id = experience.task_id AND path.robot_id = experience.robot_id)),"
       " paths = (SELECT count(*) FROM path WHERE path.task_id = experience.task_id"
-      " AND path.robot_id = experience.robot_id AND retired_ms IS NULL AND NOT EXISTS"
-      " (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id)),"
+      " AND path.robot_id = experience.robot_id AND retired_ms IS NULL AND NOT " +
+      in_quarantine("path") +
+      "),"
       " attempts = (SELECT count(*) FROM attempt WHERE attempt.task_id = experience.task_id"
       " AND attempt.robot_id = experience.robot_id)");
   for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)}) {
@@ -406,24 +393,24 @@ Salvaged Salvager::run(const Progress& progress) {
   }
   // An attempt that came again stands there twice; the new row is enough.
   for_each_of_source(
-      "SELECT id FROM set_aside WHERE kind = 2 AND " + source_->is_intact("set_aside"),
+      "SELECT id FROM quarantine WHERE of_table = 'attempt' AND " +
+          source_->is_intact("quarantine"),
       [&](const Statement& row) {
         target_->cached("DELETE FROM attempt WHERE id = ?")->bind(1, row.column_integer(0)).run();
       });
   for_each_of_source(
-      "SELECT kind, id, replaced_by, retired_ms IS NOT NULL FROM set_aside WHERE kind IN (1, 3)"
-      " AND " +
-          source_->is_intact("set_aside"),
+      "SELECT of_table, id, replaced_by, retired_ms IS NOT NULL FROM quarantine"
+      " WHERE of_table IN ('path', 'scene') AND " +
+          source_->is_intact("quarantine"),
       [&](const Statement& row) {
-        const auto kind = static_cast<AsideKind>(row.column_integer(0));
         std::optional<std::int64_t> by;
         if (!row.column_is_null(2))
           by = row.column_integer(2);
-        put_aside(*target_, kind, row.column_integer(1), by);
+        quarantine_row(*target_, row.column_text(0), row.column_integer(1), by);
         if (row.column_integer(3) != 0)
-          retire_aside(*target_, row.column_integer(1));
+          retire_quarantined(*target_, row.column_integer(1));
       });
-  set_bad_content_aside();
+  quarantine_bad_content();
   add_placeholder_tasks();
   add_placeholder_robots();
   for (const char* const small : {"robot_held_joint", "robot_never_colliding", "robot_geometry",
@@ -433,7 +420,7 @@ Salvaged Salvager::run(const Progress& progress) {
   add_placeholder_scenes();
   count_lost("path", "path_by_task_robot");
   count_lost("attempt", "attempt_by_task_robot");
-  note_orphans();
+  note_lost_attempts(*target_);
   make_experience();
   for_each_of_source(
       "SELECT value FROM setting WHERE key = 'revision_floor' AND " + source_->is_intact("setting"),

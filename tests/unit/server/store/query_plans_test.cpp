@@ -62,7 +62,7 @@ class Recorder {
 /// others grow with robots and tasks), or sorts.
 bool is_costly(const std::string& step) {
   for (const char* const name :
-       {"path", "attempt", "newest", "scene", "distribution ", "set_aside", "audit"})
+       {"path", "attempt", "newest", "scene", "distribution ", "quarantine", "audit"})
     if (step.starts_with("SCAN " + std::string(name)))
       return true;
   return step.find("TEMP B-TREE") != std::string::npos;

@@ -108,7 +108,7 @@ TEST_F(StoreDamage, AResentReportWhosePathIsDamagedIsStoredAnew) {
   EXPECT_EQ(report(attempt(1)).status, ReceiptStatus::Duplicate);
   EXPECT_TRUE(store_->find_attempt(attempt(2).report_uuid)->path);
   EXPECT_EQ(store_->status().paths, 3U);
-  EXPECT_EQ(store_->status().message.find("set aside"), std::string::npos);
+  EXPECT_EQ(store_->status().message.find("quarantine"), std::string::npos);
   store_.reset();
   EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
 }
@@ -179,7 +179,7 @@ TEST_F(StoreDamage, UnderACapWhatIsResentIsKeptIfItWouldHaveBeen) {
     edit("UPDATE path SET T_task_base = NULL WHERE id = " + std::to_string(path.id));
     open(capped);
     EXPECT_EQ(paths().size(), kCap - 1);
-    drain();  // it is set aside
+    drain();  // it is quarantined
     EXPECT_EQ(report(attempt(number++)).status, ReceiptStatus::Stored) << "there is room";
     for (int i = 0; i < 20; ++i)
       report(attempt(number++));
@@ -214,7 +214,7 @@ TEST_F(StoreDamage, ARepairKeepsWhatIsKeptAndKnowsWhatIsNot) {
   EXPECT_EQ(store_->status().dropped_paths, kReports - kCap);
   for (std::uint64_t number = 1; number <= kReports; ++number)
     EXPECT_EQ(report(attempt(number)).status, ReceiptStatus::Duplicate);
-  EXPECT_EQ(store_->status().message.find("set aside"), std::string::npos)
+  EXPECT_EQ(store_->status().message.find("quarantine"), std::string::npos)
       << store_->status().message;
 }
 
@@ -231,7 +231,7 @@ TEST_F(StoreDamage, ADamagedPathIsSetAsideNamedAndMendedByAResend) {
   EXPECT_EQ(readable, 199U);
   drain();
   EXPECT_EQ(store_->status().paths, readable);
-  EXPECT_NE(store_->status().message.find("1 damaged path set aside"), std::string::npos)
+  EXPECT_NE(store_->status().message.find("1 damaged path in quarantine"), std::string::npos)
       << store_->status().message;
   std::size_t stored = 0;
   for (const Receipt& receipt : test::report(*store_, attempts))

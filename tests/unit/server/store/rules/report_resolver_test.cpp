@@ -66,7 +66,7 @@ TEST_F(ReportResolverTest, AStoredPathGoesForASmallerOne) {
 TEST_F(ReportResolverTest, ADamagedPathIsReplacedByTheReportThatBringsItsContent) {
   const PreparedAttempt& again = add(1, 1);
   pair().paths = 1;
-  pair().contents[again.path->content] = {.readable = {}, .damaged = {7}, .set_aside = {}};
+  pair().contents[again.path->content] = {.readable = {}, .damaged = {7}, .quarantined = {}};
   EarlierReport earlier = came_before(again);
   earlier.path_id = 7;
   earlier.is_path_backed = false;
@@ -88,7 +88,7 @@ TEST_F(ReportResolverTest, ADamagedPathIsReplacedByTheReportThatBringsItsContent
 TEST_F(ReportResolverTest, AllDamagedPathsOfAContentAreReplacedAndCountedOnce) {
   const PreparedAttempt& only = add(1, 1);
   pair().paths = 1;
-  pair().contents[only.path->content] = {.readable = {}, .damaged = {7}, .set_aside = {5}};
+  pair().contents[only.path->content] = {.readable = {}, .damaged = {7}, .quarantined = {5}};
   const BatchChanges made = resolve();
   ASSERT_EQ(made.damaged.size(), 2U);
   for (const DamagedPath& path : made.damaged)
@@ -101,7 +101,7 @@ TEST_F(ReportResolverTest, ADamagedPathBeyondTheCapIsNotReplaced) {
   Digest smallest;  // all zero
   pair().paths = 1;
   pair().largest.insert({smallest, 8, 0});
-  pair().contents[again.path->content] = {.readable = {}, .damaged = {}, .set_aside = {7}};
+  pair().contents[again.path->content] = {.readable = {}, .damaged = {}, .quarantined = {7}};
   EarlierReport earlier = came_before(again);
   earlier.path_id = 7;
   earlier.is_path_backed = false;
@@ -120,7 +120,7 @@ TEST_F(ReportResolverTest, ADamagedPathBeyondTheCapIsNotReplaced) {
 TEST_F(ReportResolverTest, AReportWhoseRowIsDamagedIsWrittenAnewAndCountedOnce) {
   const PreparedAttempt& only = add(1, 1);
   state_.unreadable.insert(only.attempt.report_uuid);
-  pair().contents[only.path->content] = {.readable = 7, .damaged = {}, .set_aside = {}};
+  pair().contents[only.path->content] = {.readable = 7, .damaged = {}, .quarantined = {}};
   const BatchChanges made = resolve();
   EXPECT_EQ(made.receipts[0].status, ReceiptStatus::Stored);
   ASSERT_EQ(made.attempts.size(), 1U);
