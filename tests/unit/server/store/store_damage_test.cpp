@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -12,6 +13,7 @@
 #include "server/store/maintenance.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/random_values.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -77,14 +79,49 @@ class StoreDamage : public testing::Test {
     flip(page, page == 1 ? kHeaderOfFileBytes : 0);
   }
   /// Of the closed store: a bit of a page's content.
-  void flip(std::uint64_t page, std::uint64_t place = 4000) const {
+  void flip(std::uint64_t page, std::uint64_t place = 4000, int bit = 4) const {
     std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
     const auto offset = static_cast<std::streamoff>((page - 1) * kPageSize + place);
     stream.seekg(offset);
     const int byte = stream.get();
     stream.seekp(offset);
-    stream.put(static_cast<char>(byte ^ 4));
+    stream.put(static_cast<char>(byte ^ bit));
     ASSERT_TRUE(stream.good());
+  }
+  /// Where a leaf of a table has the id of its last row: its last byte. The last row is the one
+  /// whose entry ends the array of cells; its id follows the size of its content, both as varints.
+  std::uint64_t place_of_last_id(std::uint64_t page) const {
+    constexpr std::size_t kCells = 3, kArray = 8;
+    std::ifstream stream(file_, std::ios::binary);
+    stream.seekg(static_cast<std::streamoff>((page - 1) * kPageSize));
+    std::array<char, kPageSize> bytes{};
+    stream.read(bytes.data(), bytes.size());
+    const auto number_at = [&](std::size_t at) {
+      return static_cast<std::size_t>(static_cast<unsigned char>(bytes.at(at))) * 256 +
+             static_cast<unsigned char>(bytes.at(at + 1));
+    };
+    std::size_t at = number_at(kArray + 2 * (number_at(kCells) - 1));
+    const auto end_of_varint = [&](std::size_t from) {
+      while (static_cast<unsigned char>(bytes.at(from)) >= 0x80U)
+        ++from;
+      return from;
+    };
+    at = end_of_varint(at) + 1;
+    return end_of_varint(at);
+  }
+  std::string first_finding_of_scrub() {
+    std::promise<std::string> said;
+    open({.scrub_bytes_per_s = 1'000'000'000,
+          .log = [&, first = true](std::string_view line) mutable {
+            if (line.starts_with("damaged: ") && std::exchange(first, false))
+              said.set_value(std::string(line));
+          }});
+    auto line = said.get_future();
+    if (line.wait_for(std::chrono::seconds(20)) != std::future_status::ready) {
+      ADD_FAILURE() << "the scrub found nothing";
+      return {};
+    }
+    return line.get();
   }
   StoreCheck check() const {
     return check_store(file_, [](double) {});
@@ -369,6 +406,40 @@ TEST_F(StorePoison, EightClientsOfItCostAHealthyOneLittle) {
 
 // The search for damage.
 
+// A search goes on by ids: behind the last one, whatever it has become, it has to end.
+TEST_F(StoreDamage, ASearchEndsBehindARowWhoseIdIsDamaged) {
+  test::RandomValues random(5);
+  AuditEntry audit;
+  audit.verb = "backup";
+  for (std::uint64_t number = 0; number < 3; ++number) {
+    Attempt reported = attempt(number);
+    reported.scene = random.recorded_scene();
+    test::report(*store_, {reported});
+    store_->add_audit(audit);
+  }
+  store_.reset();
+  const fs::path sound = directory_ / "sound.db";
+  fs::copy_file(file_, sound);
+  for (const std::string table : {"task", "scene", "robot", "audit", "path", "attempt"}) {
+    const std::uint64_t page = leaves_of(table).back();
+    const std::uint64_t place = place_of_last_id(page);
+    for (const int bit : {1, 2, 4, 8, 16, 32, 64}) {
+      SCOPED_TRACE(table + ", bit " + std::to_string(bit));
+      flip(page, place, bit);
+      EXPECT_GT(check().problems, 0U);
+      if (bit == 1 || bit == 64) {
+        EXPECT_NE(first_finding_of_scrub().find("table " + table + ": "), std::string::npos);
+        store_.reset();
+      }
+      static_cast<void>(repair_store(file_, [](double) {}));
+      EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+      for (const char* const sidecar : {"-wal", "-shm", ".high-water-mark"})
+        fs::remove(file_.string() + sidecar);
+      fs::copy_file(sound, file_, fs::copy_options::overwrite_existing);
+    }
+  }
+}
+
 TEST_F(StoreDamage, TheScrubFindsDamageThatNobodyReadsAndNamesIt) {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 0; number < 100; ++number)
@@ -376,15 +447,7 @@ TEST_F(StoreDamage, TheScrubFindsDamageThatNobodyReadsAndNamesIt) {
   test::report(*store_, std::move(attempts));
   store_.reset();
   break_page(leaves_of("attempt_by_task_robot").at(0));
-  std::promise<std::string> said;
-  open(
-      {.scrub_bytes_per_s = 1'000'000'000, .log = [&, first = true](std::string_view line) mutable {
-         if (std::exchange(first, false))
-           said.set_value(std::string(line));
-       }});
-  auto line = said.get_future();
-  ASSERT_EQ(line.wait_for(std::chrono::seconds(20)), std::future_status::ready);
-  const std::string words = line.get();
+  const std::string words = first_finding_of_scrub();
   EXPECT_NE(words.find("table attempt: "), std::string::npos) << words;
   const StoreStatus status = store_->status();
   EXPECT_NE(status.message.find("kinshipd repair"), std::string::npos) << status.message;
