@@ -412,8 +412,11 @@ TEST_F(StoreDamage, ASearchEndsBehindARowWhoseIdIsDamaged) {
   test::RandomValues random(5);
   AuditEntry audit;
   audit.verb = "backup";
+  const RobotRecord second = test::make_robot("second", 2);
+  static_cast<void>(store_->register_robot(second));
   for (std::uint64_t number = 0; number < 3; ++number) {
     Attempt reported = attempt(number);
+    reported.task = number == 2 ? "bin" : "shelf";
     reported.scene = random.recorded_scene();
     test::report(*store_, {reported});
     store_->add_audit(audit);
@@ -431,7 +434,8 @@ TEST_F(StoreDamage, ASearchEndsBehindARowWhoseIdIsDamaged) {
       EXPECT_NE(first_finding_of_scrub().find("table " + table + ": "), std::string::npos);
       store_.reset();
       static_cast<void>(repair_store(file_, [](double) {}));
-      open();  // a lost robot is registered again
+      open();
+      static_cast<void>(store_->register_robot(second));  // it may be lost
       store_.reset();
       EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
       for (const char* const sidecar : {"-wal", "-shm", ".high-water-mark"})
