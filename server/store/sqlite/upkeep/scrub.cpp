@@ -38,6 +38,23 @@ std::size_t bytes_read(Database& database) {
          static_cast<std::size_t>(database.integer("PRAGMA page_size"));
 }
 
+/// Ends the statements of a connection early once `stop` is set; they throw.
+class Interruptible {
+ public:
+  Interruptible(Database& database, std::atomic<bool>& stop) : database_(&database) {
+    constexpr int kInstructions = 10'000;  // of SQLite's machine: well below a millisecond
+    sqlite3_progress_handler(
+        &database.connection(), kInstructions,
+        [](void* is_set) { return *static_cast<std::atomic<bool>*>(is_set) ? 1 : 0; }, &stop);
+  }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+  ~Interruptible() { sqlite3_progress_handler(&database_->connection(), 0, nullptr, nullptr); }
+
+ private:
+  Database* database_;
+};
+
 }  // namespace
 
 Scrub::Scrub(ReaderPool& readers, Writer& writer, ScrubOptions options)
@@ -80,7 +97,7 @@ void Scrub::run() {
     }
     log_news();
     std::unique_lock lock(mutex_);
-    if (wake_.wait_for(lock, pause, [this] { return stopping_; }))
+    if (wake_.wait_for(lock, pause, [this] { return stopping_.load(); }))
       return;
   }
 }
@@ -92,6 +109,7 @@ std::chrono::milliseconds Scrub::step() {
     static_cast<void>(bytes_read(*database));
     if (table_ == 0 && last_id_ == 0 && !is_structure_checked_)
       tables_ = tables_of(*database);
+    const Interruptible until_stopped(*database, stopping_);
     search(*database);
     bytes = bytes_read(*database);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -30,9 +31,8 @@ struct ScrubProgress {
 
 /// A thread of low priority that searches a store for damage repeatedly: table by table, the
 /// structure of a table in one slice, then its rows in slices of 1000, with pauses that bound the
-/// rate. Damaged paths,
-/// attempts, scenes and distributions go into quarantine. A slice reads one snapshot, and so delays
-/// checkpoints for as long.
+/// rate. Damaged paths, attempts, scenes and distributions go into quarantine. A slice reads one
+/// snapshot, and so delays checkpoints for as long.
 class Scrub {
  public:
   /// \param readers, writer  outlive it.
@@ -71,7 +71,7 @@ class Scrub {
   std::condition_variable wake_;
   ScrubProgress progress_;                       // guarded by mutex_, like all below
   std::map<std::string, std::string> findings_;  // by table
-  bool stopping_ = false;
+  std::atomic<bool> stopping_ = false;           // written under mutex_
 
   std::thread thread_;  // last: starts when all the rest is there
 };
