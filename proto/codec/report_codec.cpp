@@ -84,16 +84,16 @@ BatchBytes batch_bytes(const kinship_wire_Attempt& wire) {
   return bytes;
 }
 
-void check_mark(std::string_view what, std::size_t bytes, Rules& rules) {
-  rules.at_most(what, bytes, kMaxHistoryMarkBytes);
+void check_token(std::string_view what, std::size_t bytes, Rules& rules) {
+  rules.at_most(what, bytes, kMaxConsistencyTokenBytes);
 }
 
-void write_mark(const HistoryMark& mark, Arena& arena, dds_sequence_octet& wire) {
-  arena.resize(wire, mark.size());
-  std::copy(mark.begin(), mark.end(), wire._buffer);
+void write_token(const ConsistencyToken& token, Arena& arena, dds_sequence_octet& wire) {
+  arena.resize(wire, token.size());
+  std::copy(token.begin(), token.end(), wire._buffer);
 }
 
-HistoryMark read_mark(const dds_sequence_octet& wire) {
+ConsistencyToken read_token(const dds_sequence_octet& wire) {
   const auto bytes = elements(wire);
   return {bytes.begin(), bytes.end()};
 }
@@ -108,7 +108,7 @@ void check_batch(const BatchBytes& bytes, Rules& rules) {
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
   Rules rules;
   rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
-  check_mark("known_mark", request.known_mark.size(), rules);
+  check_token("known_token", request.known_token.size(), rules);
   BatchBytes bytes;
   for (const Attempt& attempt : request.attempts) {
     rules.name(find_fault(attempt));
@@ -121,7 +121,7 @@ Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const Repor
   message.arena->resize(message.wire.attempts, request.attempts.size());
   for (std::size_t i = 0; i < request.attempts.size(); ++i)
     write_attempt(request.attempts[i], *message.arena, message.wire.attempts._buffer[i]);
-  write_mark(request.known_mark, *message.arena, message.wire.known_mark);
+  write_token(request.known_token, *message.arena, message.wire.known_token);
   return limited(std::move(message));
 }
 
@@ -129,11 +129,11 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
   const auto attempts = elements(wire.attempts);
   Rules rules;
   rules.at_most("attempts of a batch", attempts.size(), kMaxAttemptsPerBatch);
-  check_mark("known_mark", elements(wire.known_mark).size(), rules);
+  check_token("known_token", elements(wire.known_token).size(), rules);
   if (rules.broken())
     return *rules.broken();
   ReportRequest request;
-  request.known_mark = read_mark(wire.known_mark);
+  request.known_token = read_token(wire.known_token);
   request.attempts.reserve(attempts.size());
   BatchBytes bytes;
   for (const kinship_wire_Attempt& entry : attempts) {
@@ -154,7 +154,7 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
 Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportReply& reply) {
   Rules rules;
   rules.at_most("receipts", reply.receipts.size(), kMaxAttemptsPerBatch);
-  check_mark("history_mark", reply.history_mark.size(), rules);
+  check_token("consistency_token", reply.consistency_token.size(), rules);
   if (rules.broken())
     return *rules.broken();
   Message<kinship_wire_ReportReply> message(head);
@@ -168,7 +168,7 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
     // One odd message must not hold back the receipts of its neighbours.
     wire.message = message.arena->text(cut_text(receipt.message, kMaxMessageBytes));
   }
-  write_mark(reply.history_mark, *message.arena, message.wire.history_mark);
+  write_token(reply.consistency_token, *message.arena, message.wire.consistency_token);
   message.wire.retry_after_ms = retry_after_ms(reply.retry_after);
   message.wire.message = message.arena->text(cut_text(reply.message, kMaxMessageBytes));
   return limited(std::move(message));
@@ -177,12 +177,12 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
 Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
   Reader reader;
   reader.rules.at_most("receipts", wire.receipts._length, kMaxAttemptsPerBatch);
-  check_mark("history_mark", elements(wire.history_mark).size(), reader.rules);
+  check_token("consistency_token", elements(wire.consistency_token).size(), reader.rules);
   if (reader.rules.broken())
     return *reader.rules.broken();
   ReportReply reply;
   reply.store_epoch = read_uuid(wire.store_epoch);
-  reply.history_mark = read_mark(wire.history_mark);
+  reply.consistency_token = read_token(wire.consistency_token);
   reply.retry_after = read_retry_after(wire.retry_after_ms);
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
   for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {

@@ -55,8 +55,8 @@ struct Receipt {
 };
 
 /// A consistency token: a point of a store's history, authenticated by the store's key. A client
-/// keeps it and returns it unchanged. At most kMaxHistoryMarkBytes; empty: none.
-using HistoryMark = std::vector<std::uint8_t>;
+/// keeps it and returns it unchanged. At most kMaxConsistencyTokenBytes; empty: none.
+using ConsistencyToken = std::vector<std::uint8_t>;
 
 /// A batch of attempts; an empty one requests the store's epoch.
 struct ReportRequest {
@@ -64,14 +64,14 @@ struct ReportRequest {
   /// At the server only: answers to attempts of the batch that broke a rule of the contract and are
   /// therefore not among `attempts`. They become part of the reply.
   std::vector<Receipt> refused;
-  HistoryMark known_mark = {};  ///< the newest that the client received
+  ConsistencyToken known_token = {};  ///< the newest that the client received
 };
 
 struct ReportReply {
   Uuid store_epoch;
   std::vector<Receipt> receipts;  ///< at most one per attempt, found by UUID; missing: try again
   /// Covers all durable data; empty from older servers, and if there is none.
-  HistoryMark history_mark = {};
+  ConsistencyToken consistency_token = {};
   RetryAfter retry_after{0};  ///< when to resend attempts without a final receipt
   std::string message = {};   ///< why attempts have no receipt
 };
