@@ -7,7 +7,7 @@
 namespace kinship::codec {
 namespace {
 
-std::optional<Error> check(const AdminReply& reply) {
+std::optional<Error> validate(const AdminReply& reply) {
   Rules rules;
   rules.at_most("rows", reply.rows.size(), kMaxPageRows)
       .text("next_cursor", reply.next_cursor, kMaxCursorBytes)
@@ -24,7 +24,7 @@ std::optional<Error> check(const AdminReply& reply) {
 
 }  // namespace
 
-std::optional<Error> check(const AdminRequest& request) {
+std::optional<Error> validate(const AdminRequest& request) {
   return Rules()
       .text("argument", request.argument, kMaxTaskBytes)
       .text("robot", request.robot, kMaxTaskBytes)
@@ -37,7 +37,7 @@ std::optional<Error> check(const AdminRequest& request) {
 }
 
 Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminRequest& request) {
-  if (const auto error = check(request))
+  if (const auto error = validate(request))
     return *error;
   Message<kinship_wire_AdminRequest> message(head);
   Arena& arena = *message.arena;
@@ -64,13 +64,13 @@ Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
   request.deadline = std::chrono::milliseconds(wire.deadline_ms);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(request))
+  if (const auto error = validate(request))
     return *error;
   return request;
 }
 
 Result<Message<kinship_wire_AdminReply>> encode(const Head& head, const AdminReply& reply) {
-  if (const auto error = check(reply))
+  if (const auto error = validate(reply))
     return *error;
   Message<kinship_wire_AdminReply> message(head);
   Arena& arena = *message.arena;
@@ -101,7 +101,7 @@ Result<AdminReply> decode(const kinship_wire_AdminReply& wire) {
   reply.retry_after = read_retry_after(wire.retry_after_ms);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(reply))
+  if (const auto error = validate(reply))
     return *error;
   return reply;
 }

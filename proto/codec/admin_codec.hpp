@@ -8,7 +8,7 @@
 namespace kinship::codec {
 
 /// The rule of the contract that a request breaks, if any.
-std::optional<Error> check(const AdminRequest& request);
+std::optional<Error> validate(const AdminRequest& request);
 
 Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminRequest& request);
 Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire);

@@ -120,7 +120,7 @@ void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
 
 }  // namespace
 
-std::optional<Error> check(const Distribution& distribution) {
+std::optional<Error> validate(const Distribution& distribution) {
   Rules rules;
   rules.name(check_task(distribution.task))
       .text("profile", distribution.profile, kMaxProfileBytes)

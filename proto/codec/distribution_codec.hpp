@@ -8,7 +8,7 @@
 /// The part of the fetch codec that handles distributions.
 namespace kinship::codec {
 
-/// \param distribution  checked by check(const Distribution&).
+/// \param distribution  checked by validate(const Distribution&).
 void write_distribution(const Distribution& distribution, Arena& arena,
                         kinship_wire_Distribution& wire);
 

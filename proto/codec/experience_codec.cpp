@@ -63,7 +63,7 @@ PosePath read_path(const kinship_wire_PosePath& wire, Reader& reader) {
 
 }  // namespace
 
-std::optional<Error> check(const TaskExperience& experience) {
+std::optional<Error> validate(const TaskExperience& experience) {
   Rules rules;
   rules.that(experience.revision != 0, "experience: revision 0")
       .at_most("experience: paths", experience.paths.size(), kMaxExperiencePaths)

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMaxMilliseconds = std::numeric_limits<std::uint32_t>::max();
 
-std::optional<Error> check(const FetchReply& reply) {
+std::optional<Error> validate(const FetchReply& reply) {
   const bool may_have_one =
       reply.status == FetchStatus::Ready || reply.status == FetchStatus::Failed;
   Rules rules;
@@ -27,17 +27,17 @@ std::optional<Error> check(const FetchReply& reply) {
                kMaxMilliseconds)
       .text("message", reply.message, kMaxMessageBytes);
   if (reply.distribution)
-    rules.name(codec::check(*reply.distribution));
+    rules.name(codec::validate(*reply.distribution));
   if (reply.experience)
-    rules.name(codec::check(*reply.experience));
+    rules.name(codec::validate(*reply.experience));
   if (reply.rehearsal)
-    rules.name(codec::check(*reply.rehearsal));
+    rules.name(codec::validate(*reply.rehearsal));
   return rules.broken();
 }
 
 }  // namespace
 
-std::optional<Error> check(const FetchRequest& request) {
+std::optional<Error> validate(const FetchRequest& request) {
   Rules rules;
   rules.name(check_task(request.task))
       .not_empty("profile", request.profile)
@@ -56,7 +56,7 @@ std::optional<Error> check(const FetchRequest& request) {
 }
 
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request) {
-  if (const auto error = check(request))
+  if (const auto error = validate(request))
     return *error;
   Message<kinship_wire_FetchRequest> message(head);
   Arena& arena = *message.arena;
@@ -91,13 +91,13 @@ Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire) {
   request.rehearsed = wire.rehearsed;
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(request))
+  if (const auto error = validate(request))
     return *error;
   return request;
 }
 
 Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchReply& reply) {
-  if (const auto error = check(reply))
+  if (const auto error = validate(reply))
     return *error;
   Message<kinship_wire_FetchReply> message(head);
   Arena& arena = *message.arena;
@@ -134,7 +134,7 @@ Result<FetchReply> decode(const kinship_wire_FetchReply& wire) {
     reply.rehearsal = read_rehearsal(rehearsal[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(reply))
+  if (const auto error = validate(reply))
     return *error;
   return reply;
 }

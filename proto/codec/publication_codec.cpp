@@ -29,11 +29,11 @@ void check_line(std::string_view what, std::string_view text, std::size_t limit,
 
 }  // namespace
 
-std::optional<Error> check(const Announcement& announcement) {
+std::optional<Error> validate(const Announcement& announcement) {
   return Rules().name(check_task(announcement.task)).broken();
 }
 
-std::optional<Error> check(const Event& event) {
+std::optional<Error> validate(const Event& event) {
   Rules rules;
   check_line("task", event.task, kMaxTaskBytes, rules);
   check_line("robot", event.robot, kMaxLabelBytes, rules);
@@ -42,7 +42,7 @@ std::optional<Error> check(const Event& event) {
 }
 
 Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement) {
-  if (const auto error = check(announcement))
+  if (const auto error = validate(announcement))
     return *error;
   Message<kinship_wire_Announcement> message;
   auto& wire = message.wire;
@@ -64,7 +64,7 @@ Result<Announcement> decode(const kinship_wire_Announcement& wire) {
   announcement.task = reader.text("task", wire.task, kMaxTaskBytes);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(announcement))
+  if (const auto error = validate(announcement))
     return *error;
   return announcement;
 }
@@ -90,7 +90,7 @@ Result<Event> decode(const kinship_wire_Event& wire) {
   event.text = reader.text("text", wire.text, kMaxEventBytes);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(event))
+  if (const auto error = validate(event))
     return *error;
   return event;
 }

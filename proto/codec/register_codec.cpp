@@ -9,7 +9,7 @@
 namespace kinship::codec {
 namespace {
 
-std::optional<Error> check(const RegisterReply& reply) {
+std::optional<Error> validate(const RegisterReply& reply) {
   Rules rules;
   rules.at_most("dof", reply.dof, kMaxDof)
       .text("solver", reply.solver, kMaxPlannerBytes)
@@ -64,7 +64,7 @@ MeshSolids read_mesh_solids(const kinship_wire_RegisterRequest& wire, Reader& re
 
 }  // namespace
 
-std::optional<Error> check(const RobotDescription& description) {
+std::optional<Error> validate(const RobotDescription& description) {
   Rules rules;
   rules.name(check_label(description.label))
       .not_empty("urdf", description.urdf)
@@ -93,7 +93,7 @@ std::optional<Error> check(const RobotDescription& description) {
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
                                                      const RobotDescription& description) {
-  if (const auto error = check(description))
+  if (const auto error = validate(description))
     return *error;
   Message<kinship_wire_RegisterRequest> message(head);
   Arena& arena = *message.arena;
@@ -144,13 +144,13 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
   description.mesh_solids = read_mesh_solids(wire, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(description))
+  if (const auto error = validate(description))
     return *error;
   return description;
 }
 
 Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const RegisterReply& reply) {
-  if (const auto error = check(reply))
+  if (const auto error = validate(reply))
     return *error;
   Message<kinship_wire_RegisterReply> message(head);
   auto& wire = message.wire;
@@ -189,7 +189,7 @@ Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
   reply.retry_after = read_retry_after(wire.retry_after_ms);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(reply))
+  if (const auto error = validate(reply))
     return *error;
   return reply;
 }

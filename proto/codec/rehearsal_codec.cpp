@@ -18,7 +18,7 @@ constexpr const char* kOfRehearsal = " of a rehearsal";
 
 }  // namespace
 
-std::optional<Error> check(const Rehearsal& rehearsal) {
+std::optional<Error> validate(const Rehearsal& rehearsal) {
   Rules rules;
   check_fields(rehearsal, rules, kOfRehearsal);
   for (const GuideCost& cost : rehearsal.costs)

@@ -10,7 +10,7 @@ namespace kinship::codec {
 
 void write_rehearsal(const Rehearsal& rehearsal, Arena& arena, kinship_wire_Rehearsal& wire);
 
-/// Broken rules of its fields are recorded in the reader; check() tests the others.
+/// Broken rules of its fields are recorded in the reader; validate() tests the others.
 Rehearsal read_rehearsal(const kinship_wire_Rehearsal& wire, Reader& reader);
 
 }  // namespace kinship::codec

@@ -72,7 +72,7 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
     attempt.scene = read_scene(scene[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = find_fault(attempt))
+  if (const auto error = validate(attempt))
     return *error;
   return attempt;
 }
@@ -111,7 +111,7 @@ Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const Repor
   check_token("known_token", request.known_token.size(), rules);
   BatchBytes bytes;
   for (const Attempt& attempt : request.attempts) {
-    rules.name(find_fault(attempt));
+    rules.name(validate(attempt));
     bytes = bytes + batch_bytes(attempt);
   }
   check_batch(bytes, rules);

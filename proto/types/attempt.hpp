@@ -80,7 +80,7 @@ struct Attempt {
 
 /// The rule of the contract that an attempt breaks, if any. The server checks that the robot is
 /// known and the path within its limits.
-std::optional<Error> find_fault(const Attempt& attempt);
+std::optional<Error> validate(const Attempt& attempt);
 
 /// Bytes of attempts that count against the limits of a batch.
 struct BatchBytes {

@@ -13,7 +13,7 @@ namespace kinship::store {
 namespace {
 
 std::optional<std::string> reason_against(const Attempt& attempt) {
-  if (const std::optional<Error> error = find_fault(attempt))
+  if (const std::optional<Error> error = validate(attempt))
     return error->message;
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   const PlanningRecord& record = attempt.record;

@@ -44,7 +44,7 @@ std::vector<Uuid> report_uuids(const std::vector<ReplicatedReport>& reports);
 /// The body of the same report from another machine.
 Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine);
 
-/// \return the reason if it cannot be stored: that of find_fault(), or a counter over 2^63.
+/// \return the reason if it cannot be stored: that of validate(), or a counter over 2^63.
 Result<PreparedAttempt> prepare(Attempt attempt);
 /// The same for a report from another store, with the body that its robot sent.
 Result<PreparedAttempt> prepare(ReplicatedReport report);

@@ -14,7 +14,7 @@ constexpr std::uint64_t kSeed = 34;
 RobotDescription robot() { return test::RandomValues(kSeed).robot_description(); }
 
 std::string complaint(const RobotDescription& description) {
-  const auto error = check(description);
+  const auto error = validate(description);
   return error ? error->message : "";
 }
 

@@ -21,7 +21,7 @@ Attempt solved_attempt(Eigen::Index dof, Eigen::Index waypoints) {
 }
 
 std::string complaint(const Attempt& attempt) {
-  const auto error = find_fault(attempt);
+  const auto error = validate(attempt);
   return error ? error->message : "";
 }
 
