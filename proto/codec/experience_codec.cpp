@@ -78,8 +78,7 @@ std::optional<Error> validate(const TaskExperience& experience) {
   return rules.broken();
 }
 
-void write_experience(const TaskExperience& experience, Arena& arena,
-                      kinship_wire_TaskExperience& wire) {
+void write_part(const TaskExperience& experience, Arena& arena, kinship_wire_TaskExperience& wire) {
   wire.revision = experience.revision;
   wire.paths_known = experience.paths_known;
   arena.resize(wire.paths, experience.paths.size());
@@ -87,21 +86,20 @@ void write_experience(const TaskExperience& experience, Arena& arena,
     write_path(experience.paths[i], arena, wire.paths._buffer[i]);
 }
 
-TaskExperience read_experience(const kinship_wire_TaskExperience& wire, Reader& reader) {
-  TaskExperience experience;
+void read_part(const kinship_wire_TaskExperience& wire, Reader& reader,
+               TaskExperience& experience) {
   experience.revision = wire.revision;
   experience.paths_known = wire.paths_known;
   const auto paths = elements(wire.paths);
   reader.rules.at_most("experience: paths", paths.size(), kMaxExperiencePaths);
   if (reader.rules.broken())
-    return experience;
+    return;
   experience.paths.reserve(paths.size());
   for (const kinship_wire_PosePath& path : paths) {
     experience.paths.push_back(read_path(path, reader));
     if (reader.rules.broken())
       break;
   }
-  return experience;
 }
 
 }  // namespace kinship::codec

@@ -1,8 +1,6 @@
 #include "proto/codec/register_codec.hpp"
 
-#include "proto/codec/reader.hpp"
-#include "proto/codec/retry_after.hpp"
-#include "proto/codec/writer.hpp"
+#include "proto/codec/fields.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/recorded_scene.hpp"
 
@@ -11,13 +9,7 @@ namespace {
 
 std::optional<Error> validate(const RegisterReply& reply) {
   Rules rules;
-  rules.at_most("dof", reply.dof, kMaxDof)
-      .text("solver", reply.solver, kMaxPlannerBytes)
-      .text("message", reply.message, kMaxMessageBytes)
-      .at_most("same_arms", reply.same_arms.size(), kMaxSameArms);
-  for (const std::string& label : reply.same_arms)
-    rules.text("same_arms", label, kMaxLabelBytes);
-  rules.text("geometry", reply.geometry, kMaxMessageBytes);
+  check_fields(reply, rules);
   return rules.broken();
 }
 
@@ -50,15 +42,14 @@ MeshSolids read_mesh_solids(const kinship_wire_RegisterRequest& wire, Reader& re
   constexpr std::uint32_t kLastKind = std::variant_size_v<Shape> - 1;
   for (const auto& element : elements(wire.mesh_solids)) {
     LinkSolid solid;
-    solid.link = reader.text("mesh_solids", element.link, kMaxLinkNameBytes);
+    solid.link = read_text(element.link);
     const std::uint32_t kind = reader.enumerator("mesh_solids: shape", element.shape, kLastKind);
     solid.shape = to_shape({kind, {element.size[0], element.size[1], element.size[2]}});
     solid.T_link_shape = reader.pose("mesh_solids", element.pose);
     mesh_solids.solids.push_back(std::move(solid));
   }
   for (const auto& pair : elements(wire.unfiltered))
-    mesh_solids.unfiltered.emplace_back(reader.text("unfiltered", pair.first, kMaxLinkNameBytes),
-                                        reader.text("unfiltered", pair.second, kMaxLinkNameBytes));
+    mesh_solids.unfiltered.emplace_back(read_text(pair.first), read_text(pair.second));
   return mesh_solids;
 }
 
@@ -121,10 +112,10 @@ Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
 Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
   Reader reader;
   RobotDescription description;
-  description.label = reader.text("label", wire.label, kMaxLabelBytes);
-  description.urdf = reader.text("urdf", wire.urdf, kMaxUrdfBytes);
-  description.base_link = reader.text("base_link", wire.base_link, kMaxLinkNameBytes);
-  description.tip_link = reader.text("tip_link", wire.tip_link, kMaxLinkNameBytes);
+  description.label = read_text(wire.label);
+  description.urdf = read_text(wire.urdf);
+  description.base_link = read_text(wire.base_link);
+  description.tip_link = read_text(wire.tip_link);
   description.T_tip_transfer = reader.pose("T_tip_transfer", wire.T_tip_transfer);
   std::copy(std::begin(wire.task_axes), std::end(wire.task_axes),
             description.task_axes.matters.begin());
@@ -133,14 +124,12 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
   if (reader.rules.broken())
     return *reader.rules.broken();
   for (const auto& held : elements(wire.held_joints)) {
-    const std::string joint = reader.text("held joint", held.joint, kMaxLinkNameBytes);
+    const std::string joint = read_text(held.joint);
     if (!description.held_joints.emplace(joint, held.position).second)
       reader.rules.that(false, "held joint '" + joint + "': is there twice");
   }
   for (const auto& pair : elements(wire.never_colliding))
-    description.never_colliding.emplace_back(
-        reader.text("never_colliding", pair.first, kMaxLinkNameBytes),
-        reader.text("never_colliding", pair.second, kMaxLinkNameBytes));
+    description.never_colliding.emplace_back(read_text(pair.first), read_text(pair.second));
   description.mesh_solids = read_mesh_solids(wire, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
@@ -150,48 +139,11 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
 }
 
 Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const RegisterReply& reply) {
-  if (const auto error = validate(reply))
-    return *error;
-  Message<kinship_wire_RegisterReply> message(head);
-  auto& wire = message.wire;
-  wire.status = static_cast<std::uint32_t>(reply.status);
-  write_digest(reply.robot, wire.robot);
-  wire.dof = reply.dof;
-  wire.solver = message.arena->text(reply.solver);
-  wire.message = message.arena->text(reply.message);
-  message.arena->resize(wire.same_arms, reply.same_arms.size());
-  for (std::size_t i = 0; i < reply.same_arms.size(); ++i)
-    wire.same_arms._buffer[i] = message.arena->text(reply.same_arms[i]);
-  wire.geometry_grade = static_cast<std::uint32_t>(reply.geometry_grade);
-  wire.took_geometry = reply.took_geometry;
-  wire.geometry = message.arena->text(reply.geometry);
-  wire.retry_after_ms = retry_after_ms(reply.retry_after);
-  return message;
+  return encode_fields(reply, Message<kinship_wire_RegisterReply>(head), validate);
 }
 
 Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
-  Reader reader;
-  RegisterReply reply;
-  reply.status = reader.enumerator("status", wire.status, RegisterStatus::Refused);
-  reply.robot = read_digest(wire.robot);
-  reply.dof = wire.dof;
-  reply.solver = reader.text("solver", wire.solver, kMaxPlannerBytes);
-  reply.message = reader.text("message", wire.message, kMaxMessageBytes);
-  reader.rules.at_most("same_arms", wire.same_arms._length, kMaxSameArms);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  for (const char* label : elements(wire.same_arms))
-    reply.same_arms.push_back(reader.text("same_arms", label, kMaxLabelBytes));
-  reply.geometry_grade =
-      reader.enumerator("geometry_grade", wire.geometry_grade, GeometryGrade::Exact);
-  reply.took_geometry = wire.took_geometry;
-  reply.geometry = reader.text("geometry", wire.geometry, kMaxMessageBytes);
-  reply.retry_after = read_retry_after(wire.retry_after_ms);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  if (const auto error = validate(reply))
-    return *error;
-  return reply;
+  return decode_fields<RegisterReply>(wire, validate);
 }
 
 }  // namespace kinship::codec

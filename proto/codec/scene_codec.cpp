@@ -29,7 +29,7 @@ Shape read_shape(const kinship_wire_SceneSolid& wire, Reader& reader) {
 /// name, shape and pose of a solid, as SceneObject and HeldObject begin.
 template <typename Thing>
 Thing read_solid(const kinship_wire_SceneSolid& wire, Reader& reader) {
-  std::string name = reader.text("scene: a name", wire.name, kMaxLinkNameBytes);
+  std::string name = read_text(wire.name);
   Shape shape = read_shape(wire, reader);
   const Eigen::Isometry3d T = reader.pose("scene: '" + name + "'", wire.pose);
   return {std::move(name), shape, T, wire.approximate};
@@ -92,9 +92,7 @@ RecordedScene read_scene(const kinship_wire_RecordedScene& wire, Reader& reader)
   for (const kinship_wire_SceneSolid& solid : elements(wire.held))
     scene.held.push_back(read_solid<HeldObject>(solid, reader));
   for (const kinship_wire_SolidPair& pair : elements(wire.allowed_collisions))
-    scene.allowed_collisions.emplace_back(
-        reader.text("scene: allowed_collisions", pair.first, kMaxLinkNameBytes),
-        reader.text("scene: allowed_collisions", pair.second, kMaxLinkNameBytes));
+    scene.allowed_collisions.emplace_back(read_text(pair.first), read_text(pair.second));
   if (const auto constraint = elements(wire.constraint); !constraint.empty())
     scene.constraint = read_region(constraint[0], reader);
   return scene;

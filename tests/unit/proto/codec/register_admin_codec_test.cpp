@@ -101,7 +101,7 @@ TEST(AdminCodec, DeadlineOfARequestComesBackAndIsLimited) {
   EXPECT_EQ(decode(encode({}, request)->wire)->deadline, std::chrono::hours(1));
   request.deadline += std::chrono::milliseconds(1);
   EXPECT_EQ(encode({}, request).error().message,
-            "deadline (ms): 3600001 is not between 0 and 3600000");
+            "deadline_ms: 3600001 is not between 0 and 3600000");
   request.deadline = std::chrono::milliseconds(-1);
   EXPECT_FALSE(encode({}, request));
 }
