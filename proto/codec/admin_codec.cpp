@@ -18,18 +18,12 @@ std::optional<Error> validate(const AdminReply& reply) {
 
 }  // namespace
 
-std::optional<Error> validate(const AdminRequest& request) {
-  Rules rules;
-  check_fields(request, rules);
-  return rules.broken();
-}
-
 Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminRequest& request) {
-  return encode_fields(request, Message<kinship_wire_AdminRequest>(head), validate);
+  return encode_fields(request, Message<kinship_wire_AdminRequest>(head));
 }
 
 Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
-  return decode_fields<AdminRequest>(wire, validate);
+  return decode_fields<AdminRequest>(wire);
 }
 
 Result<Message<kinship_wire_AdminReply>> encode(const Head& head, const AdminReply& reply) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "proto/codec/arena.hpp"
@@ -42,6 +43,10 @@ struct WireMember<Digest> {
 template <>
 struct WireMember<Uuid> {
   using Type = std::uint8_t[16];
+};
+template <>
+struct WireMember<Eigen::Isometry3d> {
+  using Type = double[7];
 };
 template <>
 struct WireMember<std::optional<Digest>> {
@@ -101,6 +106,21 @@ constexpr std::size_t size_of_message(const Table& fields, std::size_t end) {
   return place_after<Wire>(end);
 }
 
+/// Two names.
+using NamePair = std::pair<std::string, std::string>;
+
+template <typename Wire>
+requires requires(Wire wire) { wire.second; }
+void write_part(const NamePair& names, Arena& arena, Wire& wire) {
+  wire = {arena.text(names.first), arena.text(names.second)};
+}
+
+template <typename Wire>
+requires requires(Wire wire) { wire.second; }
+void read_part(const Wire& wire, Reader& /*reader*/, NamePair& names) {
+  names = {read_text(wire.first), read_text(wire.second)};
+}
+
 template <Described Value, typename Wire>
 void write_fields(const Value& value, Arena& arena, Wire& wire);
 /// \param of  after a field's name in messages, e.g. " of a source".
@@ -120,6 +140,8 @@ void write_value(const T& from, const FieldRules& rules, Arena& arena, Wire& to)
     write_digest(from, to);
   } else if constexpr (std::is_same_v<T, Uuid>) {
     write_uuid(from, to);
+  } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
+    write_pose(from, to);
   } else if constexpr (std::is_same_v<T, std::optional<Digest>>) {
     if (from) {
       arena.resize(to, from->bytes.size());
@@ -178,6 +200,8 @@ T read_value(const MemberName& name, const Wire& from, const FieldRules& rules, 
     return read_digest(from);
   } else if constexpr (std::is_same_v<T, Uuid>) {
     return read_uuid(from);
+  } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
+    return reader.pose(name.text(), from);
   } else if constexpr (std::is_same_v<T, std::optional<Digest>>) {
     return reader.optional_digest(name.text(), elements(from));
   } else if constexpr (std::is_same_v<T, std::optional<Eigen::Isometry3d>>) {
@@ -241,10 +265,19 @@ Value read_fields(const Wire& wire, Reader& reader, const std::string& of) {
 template <typename Value>
 using Check = std::optional<Error> (*)(const Value&);
 
+/// The check of a value without rules between its fields.
+template <Described Value>
+std::optional<Error> validate_fields(const Value& value) {
+  Rules rules;
+  check_fields(value, rules);
+  return rules.broken();
+}
+
 /// The message of a value with a table, if it fits into a sample.
 template <typename Wire, Described Value>
-Result<Message<Wire>> encode_fields(const Value& value, Message<Wire> message,
-                                    std::type_identity_t<Check<Value>> check) {
+Result<Message<Wire>> encode_fields(
+    const Value& value, Message<Wire> message,
+    std::type_identity_t<Check<Value>> check = validate_fields<Value>) {
   if (const auto error = check(value))
     return *error;
   write_fields(value, *message.arena, message.wire);
@@ -253,7 +286,7 @@ Result<Message<Wire>> encode_fields(const Value& value, Message<Wire> message,
 
 /// The value with a table that a message carries.
 template <Described Value, typename Wire>
-Result<Value> decode_fields(const Wire& wire, Check<Value> check) {
+Result<Value> decode_fields(const Wire& wire, Check<Value> check = validate_fields<Value>) {
   Reader reader;
   Value value = read_fields<Value>(wire, reader);
   if (!reader.rules.broken())

@@ -22,10 +22,6 @@ std::string one_line(std::string_view text, std::size_t max_bytes) {
 
 }  // namespace
 
-std::optional<Error> validate(const Announcement& announcement) {
-  return Rules().name(check_task(announcement.task)).broken();
-}
-
 std::optional<Error> validate(const Event& event) {
   Rules rules;
   check_fields(event, rules);
@@ -37,11 +33,11 @@ std::optional<Error> validate(const Event& event) {
 }
 
 Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement) {
-  return encode_fields(announcement, Message<kinship_wire_Announcement>(), validate);
+  return encode_fields(announcement, Message<kinship_wire_Announcement>());
 }
 
 Result<Announcement> decode(const kinship_wire_Announcement& wire) {
-  return decode_fields<Announcement>(wire, validate);
+  return decode_fields<Announcement>(wire);
 }
 
 Result<Message<kinship_wire_Event>> encode(const Event& event) {

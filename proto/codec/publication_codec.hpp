@@ -7,8 +7,7 @@
 
 namespace kinship::codec {
 
-/// The rule of the contract that a publication breaks, if any.
-std::optional<Error> validate(const Announcement& announcement);
+/// The rule of the contract that an event breaks, if any.
 std::optional<Error> validate(const Event& event);
 
 Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement);

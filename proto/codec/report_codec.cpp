@@ -49,10 +49,7 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   write_placement(arena, attempt.T_task_base, wire.T_task_base);
   arena.resize(wire.record, 1);
   write_fields(attempt.record, arena, wire.record._buffer[0]);
-  if (attempt.scene) {
-    arena.resize(wire.scene, 1);
-    write_scene(*attempt.scene, arena, wire.scene._buffer[0]);
-  }
+  write_value(attempt.scene, {}, arena, wire.scene);
   if (!attempt.path)
     return;
   const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
@@ -74,8 +71,8 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   else
     reader.rules.that(false, "record: is missing");
   attempt.path = read_path(wire, reader);
-  if (const auto scene = elements(wire.scene); !scene.empty() && !reader.rules.broken())
-    attempt.scene = read_scene(scene[0], reader);
+  if (!reader.rules.broken())
+    attempt.scene = read_value<std::optional<RecordedScene>>({"scene"}, wire.scene, {}, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = validate(attempt))
@@ -99,12 +96,6 @@ Rules& check_batch(std::size_t attempts, std::size_t token, Rules& rules) {
 void check_bytes(const BatchBytes& bytes, Rules& rules) {
   rules.at_most("waypoints of a batch (bytes)", bytes.waypoints, kMaxBatchBytes)
       .at_most("scenes of a batch (bytes)", bytes.scenes, kMaxSceneBytes);
-}
-
-std::optional<Error> validate(const ReportReply& reply) {
-  Rules rules;
-  check_fields(reply, rules);
-  return rules.broken();
 }
 
 }  // namespace
@@ -157,11 +148,11 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
   for (Receipt& receipt : sent.receipts)
     receipt.message = cut_text(receipt.message, kMaxMessageBytes);
   sent.message = cut_text(reply.message, kMaxMessageBytes);
-  return encode_fields(sent, Message<kinship_wire_ReportReply>(head), validate);
+  return encode_fields(sent, Message<kinship_wire_ReportReply>(head));
 }
 
 Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
-  return decode_fields<ReportReply>(wire, validate);
+  return decode_fields<ReportReply>(wire);
 }
 
 }  // namespace kinship::codec
