@@ -150,7 +150,7 @@ TEST(ReportCodec, ABadConstraintIsRefusedByName) {
   wire.T_region_end[6] = 0;
   EXPECT_EQ(decode(message.wire)->attempts.size(), 1U);
   request.attempts[0].scene->constraint->bounds(0, 3) = 0.3;
-  EXPECT_EQ(encode({}, request).error().message,
+  EXPECT_EQ(validate(request.attempts[0])->message,
             "scene: constraint: Bw of roll: lower 0.3 exceeds upper 0.1");
   message.wire.attempts._buffer[0].scene._buffer[0].constraint._buffer = nullptr;
   EXPECT_FALSE(decode(message.wire)->attempts.at(0).scene->constraint) << "of an older client";
