@@ -23,8 +23,9 @@ Attempt solved_attempt(Eigen::Index dof, Eigen::Index waypoints) {
 /// What an attempt breaks; as a message it is then refused, too.
 std::string complaint(const Attempt& attempt) {
   const auto error = validate(attempt);
-  if (const auto message = encode({}, ReportRequest{{attempt}, {}}))
+  if (const auto message = encode({}, ReportRequest{{attempt}, {}})) {
     EXPECT_EQ(decode(message->wire)->refused.size(), error ? 1U : 0U);
+  }
   return error ? error->message : "";
 }
 
