@@ -64,7 +64,7 @@ std::string describe(const Rehearsal& rehearsal) {
 }
 
 /// Why a distribution cannot guide this robot; empty if it can.
-std::string find_fault(const Distribution& distribution, Eigen::Index dof) {
+std::string validate(const Distribution& distribution, Eigen::Index dof) {
   const std::string name = "distribution " + distribution.id.short_hex();
   if (!distribution.mixture || distribution.mixture->dimension() != dof)
     return name + " has no mixture over " + std::to_string(dof) + " joints";
@@ -120,7 +120,7 @@ GuidanceAnswer without_guidance(const FetchReply& reply, const GuidanceOptions& 
   switch (reply.status) {
     case FetchStatus::Ready:
       return refusal(NoGuidance::Failed, reply.distribution
-                                             ? find_fault(*reply.distribution, wanted.dof)
+                                             ? validate(*reply.distribution, wanted.dof)
                                              : "the server sent no distribution");
     case FetchStatus::NoExperience:
       return refusal(NoGuidance::NotFound,
@@ -169,7 +169,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
   if (wanted.chain && reply->experience && !reply->experience->paths.empty())
     known = std::make_shared<planning::ExperienceGuide>(*wanted.chain, *reply->experience);
   const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
-                         find_fault(*reply->distribution, wanted.dof).empty();
+                         validate(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known)
     return without_guidance(*reply, wanted);
   return answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known),

@@ -137,7 +137,7 @@ Result<RegisterReply> Client::register_robot(const RobotDescription& description
 void Client::report(const Attempt& attempt) {
   if (!line_->outbox)
     throw std::logic_error("Client: report() without an outbox");
-  if (const auto error = find_fault(attempt))
+  if (const auto error = validate(attempt))
     throw Failure(*error);
   line_->outbox->add(attempt);
   line_->sender->wake();

@@ -58,7 +58,7 @@ Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts,
                                      const Send& send) {
   std::vector<Receipt> receipts;
   for (const Attempt& attempt : attempts) {
-    const auto error = find_fault(attempt);
+    const auto error = validate(attempt);
     receipts.push_back(
         error ? Receipt{attempt.report_uuid, ReceiptStatus::Refused, error->message}
               : Receipt{attempt.report_uuid, ReceiptStatus::TryAgain, "no receipt in time"});

@@ -32,7 +32,7 @@ FetchRequest completed(FetchRequest request) {
   if (request.follow == 0s)
     request.follow = kLease;
   request.deadline = kServerTime;
-  if (const auto error = codec::check(request))
+  if (const auto error = codec::validate(request))
     throw Failure(*error);
   return request;
 }

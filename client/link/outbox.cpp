@@ -24,7 +24,7 @@ constexpr std::string_view kPending = "pending";
 constexpr std::string_view kRejected = "rejected";
 constexpr std::string_view kRobots = "robots";
 constexpr std::string_view kEpoch = "store_epoch";
-constexpr std::string_view kMark = "store_mark";
+constexpr std::string_view kToken = "consistency_token";
 constexpr std::string_view kSuffix = ".json";
 constexpr std::size_t kMaxFileBytes = 16'000'000;
 constexpr std::size_t kUuidTextBytes = 36;
@@ -144,7 +144,7 @@ Result<RobotDescription> Outbox::robot(const Digest& robot) const {
   return description;
 }
 
-bool Outbox::note_store(const Uuid& epoch, const HistoryMark& mark) {
+bool Outbox::note_store(const Uuid& epoch, const ConsistencyToken& token) {
   const fs::path path = folder_ / kEpoch;
   std::optional<Uuid> known;
   if (has_receipts())
@@ -157,11 +157,11 @@ bool Outbox::note_store(const Uuid& epoch, const HistoryMark& mark) {
       });
     write_durably(path, epoch.text() + "\n");  // last: if we die before, it all happens again
   }
-  if (!mark.empty() && mark != known_mark()) {
+  if (!token.empty() && token != known_token()) {
     try {
-      write_whole(folder_ / kMark, to_hex(mark) + "\n");
+      write_whole(folder_ / kToken, to_hex(token) + "\n");
     } catch (const Failure&) {
-      // A full disk must not keep receipts from being noted: an older mark says less, nothing
+      // A full disk must not keep receipts from being noted: an older token says less, nothing
       // wrong.
     }
   }
@@ -173,15 +173,15 @@ bool Outbox::has_receipts() const {
   return fs::exists(folder_ / kEpoch, error);
 }
 
-HistoryMark Outbox::known_mark() const {
-  const fs::path path = folder_ / kMark;
+ConsistencyToken Outbox::known_token() const {
+  const fs::path path = folder_ / kToken;
   std::error_code error;
   if (!fs::exists(path, error))
     return {};
   const std::string text = read_file(path, 1024);
   const std::string_view digits = std::string_view(text).substr(0, text.find('\n'));
-  HistoryMark mark(std::min(digits.size() / 2, kMaxHistoryMarkBytes));
-  return parse_hex(digits, mark) ? mark : HistoryMark{};
+  ConsistencyToken token(std::min(digits.size() / 2, kMaxConsistencyTokenBytes));
+  return parse_hex(digits, token) ? token : ConsistencyToken{};
 }
 
 void Outbox::age(std::chrono::milliseconds sending) {

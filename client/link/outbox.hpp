@@ -53,12 +53,12 @@ class Outbox {
   /// Takes the state of the server's store from a reply; to be called before its receipts are
   /// applied. If the epoch differs from the one remembered, the store was restored, replaced or
   /// rolled back, and the sent reports are pending again.
-  /// \param mark  empty: the reply has none, the one remembered stays.
+  /// \param token  empty: the reply has none, the one remembered stays.
   /// \return whether reports are pending again.
-  bool note_store(const Uuid& epoch, const HistoryMark& mark);
+  bool note_store(const Uuid& epoch, const ConsistencyToken& token);
 
-  bool has_receipts() const;       ///< whether an epoch was ever noted
-  HistoryMark known_mark() const;  ///< the newest; empty if there is none
+  bool has_receipts() const;             ///< whether an epoch was ever noted
+  ConsistencyToken known_token() const;  ///< the newest; empty if there is none
 
   /// Adds `sending` to the age of the sent reports and deletes old ones (sent_reports.hpp), as well
   /// as temporary files written more than a day ago.

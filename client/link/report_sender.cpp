@@ -183,16 +183,16 @@ bool ReportSender::probe_epoch() {
   return exchange(probe).has_value();
 }
 
-/// Sends a batch with the known mark of the store, and notes the epoch and mark in the reply.
+/// Sends a batch with the known token of the store, and notes the epoch and token in the reply.
 Result<ReportReply> ReportSender::exchange(ReportRequest& batch) {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
-  batch.known_mark = outbox_.known_mark();
+  batch.known_token = outbox_.known_token();
   Result<ReportReply> reply = send_(batch);
   if (reply)
     retry_after_ = std::max(retry_after_, reply->retry_after);
   if (!reply || reply->store_epoch == Uuid{})  // the server could not even read the batch
     return reply;
-  if (outbox_.note_store(reply->store_epoch, reply->history_mark))
+  if (outbox_.note_store(reply->store_epoch, reply->consistency_token))
     is_resending_ = true;
   servers_probed_ = servers;
   probed_ = now_();

@@ -1,14 +1,9 @@
 #pragma once
 
-#include <optional>
-
 #include "proto/codec/message.hpp"
 #include "proto/idl/admin.h"
 
 namespace kinship::codec {
-
-/// The rule of the contract that a request breaks, if any.
-std::optional<Error> check(const AdminRequest& request);
 
 Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminRequest& request);
 Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire);

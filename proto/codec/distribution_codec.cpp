@@ -1,6 +1,7 @@
 #include "proto/codec/distribution_codec.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +19,10 @@ namespace {
 constexpr std::size_t kMaxEnginesBytes = 128;
 
 constexpr const char* kOfSource = " of a source";
+
+constexpr std::size_t kLastFields = offsetof(kinship_wire_Distribution, filters);
+static_assert(size_of_message<kinship_wire_Distribution>(kLastFieldsOfDistribution, kLastFields) ==
+              sizeof(kinship_wire_Distribution));
 
 void check_evidence(std::string_view mode, const std::optional<ModeEvidence>& evidence,
                     Rules& rules) {
@@ -120,13 +125,12 @@ void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
 
 }  // namespace
 
-std::optional<Error> check(const Distribution& distribution) {
+std::optional<Error> validate(const Distribution& distribution) {
   Rules rules;
   rules.name(check_task(distribution.task))
       .text("profile", distribution.profile, kMaxProfileBytes)
       .text("engines", distribution.engines, kMaxEnginesBytes)
       .text("reason", distribution.reason, kMaxMessageBytes)
-      .text("filters", distribution.filters, kMaxMessageBytes)
       .text("evidence", distribution.advice.evidence, kMaxMessageBytes)
       .at_most("sources", distribution.sources.size(), kMaxSources)
       .between("recommended_share", distribution.advice.recommended_share, 0, 1)
@@ -136,6 +140,7 @@ std::optional<Error> check(const Distribution& distribution) {
       .not_negative("fit_time_s", distribution.fit_time_s);
   if (distribution.T_task_base)
     rules.pose("T_task_base", *distribution.T_task_base);
+  check_members(distribution, kLastFieldsOfDistribution, rules);
   for (const Source& source : distribution.sources)
     check_fields(source, rules, kOfSource);
   check_selection(distribution.selection, rules);
@@ -159,8 +164,7 @@ std::optional<Error> check(const Distribution& distribution) {
   return rules.broken();
 }
 
-void write_distribution(const Distribution& distribution, Arena& arena,
-                        kinship_wire_Distribution& wire) {
+void write_part(const Distribution& distribution, Arena& arena, kinship_wire_Distribution& wire) {
   write_digest(distribution.id, wire.id);
   wire.revision = distribution.revision;
   write_uuid(distribution.store_epoch, wire.store_epoch);
@@ -171,7 +175,7 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   wire.engines = arena.text(distribution.engines);
   wire.state = static_cast<std::uint32_t>(distribution.state);
   wire.reason = arena.text(distribution.reason);
-  write_list(distribution.sources, arena, wire.sources);
+  write_value(distribution.sources, {}, arena, wire.sources);
   wire.configurations = distribution.configurations;
   if (distribution.mixture)
     write_mixture(*distribution.mixture, arena, wire);
@@ -184,29 +188,28 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   wire.fitted_ms = distribution.fitted_ms;
   wire.transfer_time_s = distribution.transfer_time_s;
   wire.fit_time_s = distribution.fit_time_s;
-  write_selection(distribution.selection, arena, wire.selection);
-  write_optional(distribution.advice.guided, arena, wire.guided);
-  write_optional(distribution.advice.control, arena, wire.control);
+  write_part(distribution.selection, arena, wire.selection);
+  write_value(distribution.advice.guided, {}, arena, wire.guided);
+  write_value(distribution.advice.control, {}, arena, wire.control);
   wire.guided_share = distribution.advice.guided_share;
-  write_list(distribution.advice.recent, arena, wire.recent);
-  write_list(distribution.component_scores, arena, wire.component_scores);
+  write_value(distribution.advice.recent, {}, arena, wire.recent);
+  write_value(distribution.component_scores, {}, arena, wire.component_scores);
   write_cuts(distribution.cuts, arena, wire);
-  write_optional(distribution.fit, arena, wire.fit);
-  wire.filters = arena.text(distribution.filters);
+  write_value(distribution.fit, {}, arena, wire.fit);
+  write_members(distribution, kLastFieldsOfDistribution, kLastFields, arena, wire);
 }
 
-Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
-  Distribution distribution;
+void read_part(const kinship_wire_Distribution& wire, Reader& reader, Distribution& distribution) {
   distribution.id = read_digest(wire.id);
   distribution.revision = wire.revision;
   distribution.store_epoch = read_uuid(wire.store_epoch);
-  distribution.task = reader.text("task", wire.task, kMaxTaskBytes);
+  distribution.task = read_text(wire.task);
   distribution.robot = read_digest(wire.robot);
   distribution.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
-  distribution.profile = reader.text("profile", wire.profile, kMaxProfileBytes);
-  distribution.engines = reader.text("engines", wire.engines, kMaxEnginesBytes);
+  distribution.profile = read_text(wire.profile);
+  distribution.engines = read_text(wire.engines);
   distribution.state = reader.enumerator("state", wire.state, DistributionState::Thin);
-  distribution.reason = reader.text("reason", wire.reason, kMaxMessageBytes);
+  distribution.reason = read_text(wire.reason);
   distribution.configurations = wire.configurations;
   const auto limits = elements(wire.limits);
   reader.rules.at_most("sources", wire.sources._length, kMaxSources)
@@ -216,31 +219,34 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
       .at_most("limits (numbers)", limits.size(), 2 * kMaxDof)
       .that(limits.size() % 2 == 0, "limits: an odd number of numbers");
   if (reader.rules.broken())
-    return distribution;
-  distribution.sources = read_list<Source>(wire.sources, reader, kOfSource);
+    return;
+  distribution.sources =
+      read_value<std::vector<Source>>({"a source"}, wire.sources, {.limit = kMaxSources}, reader);
   distribution.limits = Eigen::Map<const Eigen::Matrix2Xd>(
       limits.data(), 2, static_cast<Eigen::Index>(limits.size() / 2));
   distribution.mixture = read_mixture(wire, limits.size() / 2, reader);
   distribution.held_out_score =
       reader.optional_number("held_out_score", elements(wire.held_out_score));
   distribution.advice.recommended_share = wire.recommended_share;
-  distribution.advice.evidence = reader.text("evidence", wire.evidence, kMaxMessageBytes);
+  distribution.advice.evidence = read_text(wire.evidence);
   distribution.fitted_ms = wire.fitted_ms;
   distribution.transfer_time_s = wire.transfer_time_s;
   distribution.fit_time_s = wire.fit_time_s;
-  distribution.selection = read_selection(wire.selection, reader);
-  distribution.advice.guided = read_optional<ModeEvidence>(wire.guided, reader);
-  distribution.advice.control = read_optional<ModeEvidence>(wire.control, reader);
+  read_part(wire.selection, reader, distribution.selection);
+  distribution.advice.guided =
+      read_value<std::optional<ModeEvidence>>({"guided"}, wire.guided, {}, reader);
+  distribution.advice.control =
+      read_value<std::optional<ModeEvidence>>({"control"}, wire.control, {}, reader);
   distribution.advice.guided_share = wire.guided_share;
-  distribution.advice.recent =
-      read_list<JudgedAttempt>(wire.recent, reader, " of a recent attempt");
+  distribution.advice.recent = read_value<std::vector<JudgedAttempt>>(
+      {"a recent attempt"}, wire.recent, {.limit = kMaxJudgedAttempts}, reader);
   for (const kinship_wire_ComponentScore& entry : elements(wire.component_scores))
     reader.rules.at_most("component_scores: components", entry.components, kMaxComponents);
-  distribution.component_scores = read_list<ComponentScore>(wire.component_scores, reader);
+  distribution.component_scores = read_value<std::vector<ComponentScore>>(
+      {"component_scores"}, wire.component_scores, {.limit = kMaxComponentScores}, reader);
   distribution.cuts = read_cuts(wire, limits.size() / 2, reader);
-  distribution.fit = read_optional<FitOrigin>(wire.fit, reader, " of a full fit");
-  distribution.filters = reader.text("filters", wire.filters, kMaxMessageBytes);
-  return distribution;
+  distribution.fit = read_value<std::optional<FitOrigin>>({"a full fit"}, wire.fit, {}, reader);
+  read_members(wire, kLastFieldsOfDistribution, kLastFields, reader, distribution);
 }
 
 }  // namespace kinship::codec

@@ -8,11 +8,10 @@
 /// The part of the fetch codec that handles distributions.
 namespace kinship::codec {
 
-/// \param distribution  checked by check(const Distribution&).
-void write_distribution(const Distribution& distribution, Arena& arena,
-                        kinship_wire_Distribution& wire);
+/// \param distribution  checked by validate(const Distribution&).
+void write_part(const Distribution& distribution, Arena& arena, kinship_wire_Distribution& wire);
 
 /// Broken rules are recorded in the reader.
-Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader);
+void read_part(const kinship_wire_Distribution& wire, Reader& reader, Distribution& distribution);
 
 }  // namespace kinship::codec

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "proto/codec/fetch_codec.hpp"
-#include "proto/codec/writer.hpp"
+#include "proto/codec/fields.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::codec {
@@ -31,7 +31,9 @@ void check_path(const PosePath& path, Rules& rules) {
     rules.pose(name_of(path.path), *bad);
 }
 
-void write_path(const PosePath& path, Arena& arena, kinship_wire_PosePath& wire) {
+}  // namespace
+
+static void write_part(const PosePath& path, Arena& arena, kinship_wire_PosePath& wire) {
   write_digest(path.source, wire.source);
   write_uuid(path.path, wire.path);
   arena.resize(wire.poses, kNumbersOfPose * path.poses.size());
@@ -41,8 +43,7 @@ void write_path(const PosePath& path, Arena& arena, kinship_wire_PosePath& wire)
       *next++ = static_cast<float>(number);
 }
 
-PosePath read_path(const kinship_wire_PosePath& wire, Reader& reader) {
-  PosePath path;
+static void read_part(const kinship_wire_PosePath& wire, Reader& reader, PosePath& path) {
   path.source = read_digest(wire.source);
   path.path = read_uuid(wire.path);
   const auto numbers = elements(wire.poses);
@@ -51,19 +52,16 @@ PosePath read_path(const kinship_wire_PosePath& wire, Reader& reader) {
                                  " numbers are not a multiple of 7");
   check_pose_count(path.path, numbers.size() / kNumbersOfPose, reader.rules);
   if (reader.rules.broken())
-    return path;
+    return;
   path.poses.reserve(numbers.size() / kNumbersOfPose);
   for (std::size_t i = 0; i < numbers.size(); i += kNumbersOfPose) {
     PoseArray pose{};
     std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(i), pose.size(), pose.begin());
     path.poses.push_back(reader.pose("experience: pose", pose));
   }
-  return path;
 }
 
-}  // namespace
-
-std::optional<Error> check(const TaskExperience& experience) {
+std::optional<Error> validate(const TaskExperience& experience) {
   Rules rules;
   rules.that(experience.revision != 0, "experience: revision 0")
       .at_most("experience: paths", experience.paths.size(), kMaxExperiencePaths)
@@ -78,30 +76,18 @@ std::optional<Error> check(const TaskExperience& experience) {
   return rules.broken();
 }
 
-void write_experience(const TaskExperience& experience, Arena& arena,
-                      kinship_wire_TaskExperience& wire) {
+void write_part(const TaskExperience& experience, Arena& arena, kinship_wire_TaskExperience& wire) {
   wire.revision = experience.revision;
   wire.paths_known = experience.paths_known;
-  arena.resize(wire.paths, experience.paths.size());
-  for (std::size_t i = 0; i < experience.paths.size(); ++i)
-    write_path(experience.paths[i], arena, wire.paths._buffer[i]);
+  write_value(experience.paths, {}, arena, wire.paths);
 }
 
-TaskExperience read_experience(const kinship_wire_TaskExperience& wire, Reader& reader) {
-  TaskExperience experience;
+void read_part(const kinship_wire_TaskExperience& wire, Reader& reader,
+               TaskExperience& experience) {
   experience.revision = wire.revision;
   experience.paths_known = wire.paths_known;
-  const auto paths = elements(wire.paths);
-  reader.rules.at_most("experience: paths", paths.size(), kMaxExperiencePaths);
-  if (reader.rules.broken())
-    return experience;
-  experience.paths.reserve(paths.size());
-  for (const kinship_wire_PosePath& path : paths) {
-    experience.paths.push_back(read_path(path, reader));
-    if (reader.rules.broken())
-      break;
-  }
-  return experience;
+  experience.paths = read_value<std::vector<PosePath>>({"experience: paths"}, wire.paths,
+                                                       {.limit = kMaxExperiencePaths}, reader);
 }
 
 }  // namespace kinship::codec

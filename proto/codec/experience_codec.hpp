@@ -8,8 +8,7 @@
 /// The experience of a task as part of a reply. For the sources of this folder only.
 namespace kinship::codec {
 
-void write_experience(const TaskExperience& experience, Arena& arena,
-                      kinship_wire_TaskExperience& wire);
-TaskExperience read_experience(const kinship_wire_TaskExperience& wire, Reader& reader);
+void write_part(const TaskExperience& experience, Arena& arena, kinship_wire_TaskExperience& wire);
+void read_part(const kinship_wire_TaskExperience& wire, Reader& reader, TaskExperience& experience);
 
 }  // namespace kinship::codec

@@ -9,10 +9,10 @@ namespace kinship::codec {
 
 /// The rule of the contract that a request, a distribution, an experience or a rehearsal breaks, if
 /// any.
-std::optional<Error> check(const FetchRequest& request);
-std::optional<Error> check(const Distribution& distribution);
-std::optional<Error> check(const TaskExperience& experience);
-std::optional<Error> check(const Rehearsal& rehearsal);
+std::optional<Error> validate(const FetchRequest& request);
+std::optional<Error> validate(const Distribution& distribution);
+std::optional<Error> validate(const TaskExperience& experience);
+std::optional<Error> validate(const Rehearsal& rehearsal);
 
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request);
 Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire);

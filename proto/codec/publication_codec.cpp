@@ -4,8 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "proto/codec/reader.hpp"
-#include "proto/codec/writer.hpp"
+#include "proto/codec/fields.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -21,78 +20,36 @@ std::string one_line(std::string_view text, std::size_t max_bytes) {
   return line;
 }
 
-void check_line(std::string_view what, std::string_view text, std::size_t limit, Rules& rules) {
-  rules.text(what, text, limit)
-      .that(std::none_of(text.begin(), text.end(), is_line_break),
-            std::string(what) + ": has more than one line");
-}
-
 }  // namespace
 
-std::optional<Error> check(const Announcement& announcement) {
-  return Rules().name(check_task(announcement.task)).broken();
-}
-
-std::optional<Error> check(const Event& event) {
+std::optional<Error> validate(const Event& event) {
   Rules rules;
-  check_line("task", event.task, kMaxTaskBytes, rules);
-  check_line("robot", event.robot, kMaxLabelBytes, rules);
-  check_line("text", event.text, kMaxEventBytes, rules);
+  check_fields(event, rules);
+  for (const auto& [what, text] :
+       {std::pair("task", &event.task), {"robot", &event.robot}, {"text", &event.text}})
+    rules.that(std::none_of(text->begin(), text->end(), is_line_break),
+               std::string(what) + ": has more than one line");
   return rules.broken();
 }
 
 Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement) {
-  if (const auto error = check(announcement))
-    return *error;
-  Message<kinship_wire_Announcement> message;
-  auto& wire = message.wire;
-  write_digest(announcement.distribution_id, wire.distribution_id);
-  wire.revision = announcement.revision;
-  write_uuid(announcement.store_epoch, wire.store_epoch);
-  write_digest(announcement.robot, wire.robot);
-  wire.task = message.arena->text(announcement.task);
-  return message;
+  return encode_fields(announcement, Message<kinship_wire_Announcement>());
 }
 
 Result<Announcement> decode(const kinship_wire_Announcement& wire) {
-  Reader reader;
-  Announcement announcement;
-  announcement.distribution_id = read_digest(wire.distribution_id);
-  announcement.revision = wire.revision;
-  announcement.store_epoch = read_uuid(wire.store_epoch);
-  announcement.robot = read_digest(wire.robot);
-  announcement.task = reader.text("task", wire.task, kMaxTaskBytes);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  if (const auto error = check(announcement))
-    return *error;
-  return announcement;
+  return decode_fields<Announcement>(wire);
 }
 
 Result<Message<kinship_wire_Event>> encode(const Event& event) {
-  Message<kinship_wire_Event> message;
-  auto& wire = message.wire;
-  wire.kind = static_cast<std::uint32_t>(event.kind);
-  wire.time_ms = event.time_ms;
-  wire.task = message.arena->text(one_line(event.task, kMaxTaskBytes));
-  wire.robot = message.arena->text(one_line(event.robot, kMaxLabelBytes));
-  wire.text = message.arena->text(one_line(event.text, kMaxEventBytes));
-  return message;
+  Event sent = event;
+  sent.task = one_line(event.task, kMaxTaskBytes);
+  sent.robot = one_line(event.robot, kMaxLabelBytes);
+  sent.text = one_line(event.text, kMaxEventBytes);
+  return encode_fields(sent, Message<kinship_wire_Event>(), validate);
 }
 
 Result<Event> decode(const kinship_wire_Event& wire) {
-  Reader reader;
-  Event event;
-  event.kind = reader.enumerator("kind", wire.kind, EventKind::Administration);
-  event.time_ms = wire.time_ms;
-  event.task = reader.text("task", wire.task, kMaxTaskBytes);
-  event.robot = reader.text("robot", wire.robot, kMaxLabelBytes);
-  event.text = reader.text("text", wire.text, kMaxEventBytes);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  if (const auto error = check(event))
-    return *error;
-  return event;
+  return decode_fields<Event>(wire, validate);
 }
 
 }  // namespace kinship::codec

@@ -7,9 +7,8 @@
 
 namespace kinship::codec {
 
-/// The rule of the contract that a publication breaks, if any.
-std::optional<Error> check(const Announcement& announcement);
-std::optional<Error> check(const Event& event);
+/// The rule of the contract that an event breaks, if any.
+std::optional<Error> validate(const Event& event);
 
 Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement);
 Result<Announcement> decode(const kinship_wire_Announcement& wire);

@@ -18,13 +18,6 @@ Uuid read_uuid(const std::uint8_t (&bytes)[16]) {
   return uuid;
 }
 
-std::string Reader::text(std::string_view what, const char* value, std::size_t limit) {
-  const std::string_view text = value ? value : "";
-  if (text.size() > limit)
-    rules.at_most(std::string(what) + " (bytes)", text.size(), limit);
-  return std::string(text.substr(0, limit));
-}
-
 std::optional<Eigen::Isometry3d> Reader::placement(std::string_view what,
                                                    std::span<const double> numbers) {
   if (numbers.empty())

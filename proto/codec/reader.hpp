@@ -23,15 +23,15 @@ auto elements(const Sequence& sequence) {
 
 Digest read_digest(const std::uint8_t (&bytes)[32]);
 Uuid read_uuid(const std::uint8_t (&bytes)[16]);
+/// A text of any length, which the check of its value limits.
+/// \param text  may be null (a shorter message left it out): reads as empty.
+inline std::string read_text(const char* text) { return text ? text : ""; }
 
 /// Converts members of an incoming message to parts of a value and records the first broken rule.
 /// Sizes are checked before memory is allocated; values returned after a broken rule are
 /// meaningless.
 class Reader {
  public:
-  /// \param value  may be null (a shorter message left it out): reads as empty.
-  std::string text(std::string_view what, const char* value, std::size_t limit);
-
   /// None or seven numbers.
   std::optional<Eigen::Isometry3d> placement(std::string_view what, std::span<const double> pose);
   Eigen::Isometry3d pose(std::string_view what, std::span<const double, 7> pose);

@@ -1,82 +1,92 @@
 #include "proto/codec/register_codec.hpp"
 
-#include "proto/codec/reader.hpp"
-#include "proto/codec/retry_after.hpp"
-#include "proto/codec/writer.hpp"
+#include <cstddef>
+
+#include "proto/codec/fields.hpp"
+#include "proto/codec/scene_codec.hpp"
 #include "proto/types/names.hpp"
-#include "proto/types/recorded_scene.hpp"
 
 namespace kinship::codec {
+
+using HeldJoints = decltype(RobotDescription::held_joints);
+
+template <>
+struct WireMember<TaskAxes> {
+  using Type = bool[6];
+};
+template <>
+struct WireMember<HeldJoints> {
+  using Type = decltype(kinship_wire_RegisterRequest::held_joints);
+};
+template <>
+struct WireMember<std::vector<NamePair>> {
+  using Type = decltype(kinship_wire_RegisterRequest::never_colliding);
+};
+
 namespace {
 
-std::optional<Error> check(const RegisterReply& reply) {
-  Rules rules;
-  rules.at_most("dof", reply.dof, kMaxDof)
-      .text("solver", reply.solver, kMaxPlannerBytes)
-      .text("message", reply.message, kMaxMessageBytes)
-      .at_most("same_arms", reply.same_arms.size(), kMaxSameArms);
-  for (const std::string& label : reply.same_arms)
-    rules.text("same_arms", label, kMaxLabelBytes);
-  rules.text("geometry", reply.geometry, kMaxMessageBytes);
-  return rules.broken();
-}
-
-void write_mesh_solids(const MeshSolids& mesh_solids, Arena& arena,
-                       kinship_wire_RegisterRequest& wire) {
-  arena.resize(wire.mesh_solids, mesh_solids.solids.size());
-  for (std::size_t i = 0; i < mesh_solids.solids.size(); ++i) {
-    const LinkSolid& solid = mesh_solids.solids[i];
-    auto& element = wire.mesh_solids._buffer[i];
-    element.link = arena.text(solid.link);
-    const ShapeNumbers numbers = to_numbers(solid.shape);
-    element.shape = static_cast<std::uint32_t>(numbers.kind);
-    std::copy(numbers.sizes.begin(), numbers.sizes.end(), std::begin(element.size));
-    const PoseArray pose = to_pose_array(solid.T_link_shape);
-    std::copy(pose.begin(), pose.end(), std::begin(element.pose));
-  }
-  arena.resize(wire.unfiltered, mesh_solids.unfiltered.size());
-  for (std::size_t i = 0; i < mesh_solids.unfiltered.size(); ++i) {
-    const auto& [first, second] = mesh_solids.unfiltered[i];
-    wire.unfiltered._buffer[i] = {arena.text(first), arena.text(second)};
-  }
-}
-
-MeshSolids read_mesh_solids(const kinship_wire_RegisterRequest& wire, Reader& reader) {
-  MeshSolids mesh_solids;
-  reader.rules.at_most("mesh_solids", elements(wire.mesh_solids).size(), kMaxMeshSolids)
-      .at_most("unfiltered", elements(wire.unfiltered).size(), kMaxCollisionPairs);
-  if (reader.rules.broken())
-    return mesh_solids;
-  constexpr std::uint32_t kLastKind = std::variant_size_v<Shape> - 1;
-  for (const auto& element : elements(wire.mesh_solids)) {
-    LinkSolid solid;
-    solid.link = reader.text("mesh_solids", element.link, kMaxLinkNameBytes);
-    const std::uint32_t kind = reader.enumerator("mesh_solids: shape", element.shape, kLastKind);
-    solid.shape = to_shape({kind, {element.size[0], element.size[1], element.size[2]}});
-    solid.T_link_shape = reader.pose("mesh_solids", element.pose);
-    mesh_solids.solids.push_back(std::move(solid));
-  }
-  for (const auto& pair : elements(wire.unfiltered))
-    mesh_solids.unfiltered.emplace_back(reader.text("unfiltered", pair.first, kMaxLinkNameBytes),
-                                        reader.text("unfiltered", pair.second, kMaxLinkNameBytes));
-  return mesh_solids;
-}
+/// The members of a request before its solids, which are one value and two members.
+constexpr std::tuple kFields{
+    Field{"label", &RobotDescription::label, {.check = check_label}},
+    Field{"urdf", &RobotDescription::urdf, {.limit = kMaxUrdfBytes}},
+    Field{"base_link", &RobotDescription::base_link, {.limit = kMaxLinkNameBytes}},
+    Field{"tip_link", &RobotDescription::tip_link, {.limit = kMaxLinkNameBytes}},
+    Field{"T_tip_transfer", &RobotDescription::T_tip_transfer},
+    Field{"task_axes", &RobotDescription::task_axes},
+    Field{"held_joints", &RobotDescription::held_joints, {.limit = kMaxHeldJoints}},
+    Field{"never_colliding", &RobotDescription::never_colliding, {.limit = kMaxCollisionPairs}}};
+constexpr std::size_t kBegin = head_bytes<kinship_wire_RegisterRequest>();
+static_assert(size_of_message<kinship_wire_RegisterRequest>(kFields, kBegin) ==
+              offsetof(kinship_wire_RegisterRequest, mesh_solids));
 
 }  // namespace
 
-std::optional<Error> check(const RobotDescription& description) {
+static void write_part(const TaskAxes& axes, Arena& /*arena*/, bool (&wire)[6]) {
+  std::copy(axes.matters.begin(), axes.matters.end(), std::begin(wire));
+}
+
+static void read_part(const bool (&wire)[6], Reader& /*reader*/, TaskAxes& axes) {
+  std::copy(std::begin(wire), std::end(wire), axes.matters.begin());
+}
+
+static void write_part(const HeldJoints& joints, Arena& arena, WireMember<HeldJoints>::Type& wire) {
+  arena.resize(wire, joints.size());
+  std::size_t i = 0;
+  for (const auto& [joint, position] : joints)
+    wire._buffer[i++] = {arena.text(joint), position};
+}
+
+static void read_part(const WireMember<HeldJoints>::Type& wire, Reader& reader,
+                      HeldJoints& joints) {
+  reader.rules.at_most("held_joints", elements(wire).size(), kMaxHeldJoints);
+  if (reader.rules.broken())
+    return;
+  for (const auto& held : elements(wire))
+    if (!joints.emplace(read_text(held.joint), held.position).second)
+      reader.rules.that(false, "held joint '" + read_text(held.joint) + "': is there twice");
+}
+
+static void write_part(const LinkSolid& solid, Arena& arena, kinship_wire_LinkSolid& wire) {
+  wire.link = arena.text(solid.link);
+  write_shape(solid.shape, wire);
+  write_pose(solid.T_link_shape, wire.pose);
+}
+
+static void read_part(const kinship_wire_LinkSolid& wire, Reader& reader, LinkSolid& solid) {
+  solid.link = read_text(wire.link);
+  solid.shape = read_shape("mesh_solids: shape", wire, reader);
+  solid.T_link_shape = reader.pose("mesh_solids", wire.pose);
+}
+
+std::optional<Error> validate(const RobotDescription& description) {
   Rules rules;
-  rules.name(check_label(description.label))
-      .not_empty("urdf", description.urdf)
+  rules.not_empty("urdf", description.urdf)
       .at_most("urdf (bytes)", description.urdf.size(), kMaxUrdfBytes)
-      .text("urdf", description.urdf, kMaxUrdfBytes)
       .not_empty("base_link", description.base_link)
-      .text("base_link", description.base_link, kMaxLinkNameBytes)
       .not_empty("tip_link", description.tip_link)
-      .text("tip_link", description.tip_link, kMaxLinkNameBytes)
       .pose("T_tip_transfer", description.T_tip_transfer)
-      .at_most("held_joints", description.held_joints.size(), kMaxHeldJoints)
-      .at_most("never_colliding", description.never_colliding.size(), kMaxCollisionPairs);
+      .at_most("held_joints", description.held_joints.size(), kMaxHeldJoints);
+  check_members(description, kFields, rules);
   if (rules.broken())
     return rules.broken();
   for (const auto& [joint, position] : description.held_joints)
@@ -93,105 +103,38 @@ std::optional<Error> check(const RobotDescription& description) {
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
                                                      const RobotDescription& description) {
-  if (const auto error = check(description))
+  if (const auto error = validate(description))
     return *error;
   Message<kinship_wire_RegisterRequest> message(head);
   Arena& arena = *message.arena;
   auto& wire = message.wire;
-  wire.label = arena.text(description.label);
-  wire.urdf = arena.text(description.urdf);
-  wire.base_link = arena.text(description.base_link);
-  wire.tip_link = arena.text(description.tip_link);
-  const PoseArray transfer = to_pose_array(description.T_tip_transfer);
-  std::copy(transfer.begin(), transfer.end(), std::begin(wire.T_tip_transfer));
-  std::copy(description.task_axes.matters.begin(), description.task_axes.matters.end(),
-            std::begin(wire.task_axes));
-  arena.resize(wire.held_joints, description.held_joints.size());
-  std::size_t i = 0;
-  for (const auto& [joint, position] : description.held_joints)
-    wire.held_joints._buffer[i++] = {arena.text(joint), position};
-  arena.resize(wire.never_colliding, description.never_colliding.size());
-  i = 0;
-  for (const auto& [first, second] : description.never_colliding)
-    wire.never_colliding._buffer[i++] = {arena.text(first), arena.text(second)};
-  write_mesh_solids(description.mesh_solids, arena, wire);
+  write_members(description, kFields, kBegin, arena, wire);
+  write_value(description.mesh_solids.solids, {}, arena, wire.mesh_solids);
+  write_value(description.mesh_solids.unfiltered, {}, arena, wire.unfiltered);
   return limited(std::move(message));
 }
 
 Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
   Reader reader;
   RobotDescription description;
-  description.label = reader.text("label", wire.label, kMaxLabelBytes);
-  description.urdf = reader.text("urdf", wire.urdf, kMaxUrdfBytes);
-  description.base_link = reader.text("base_link", wire.base_link, kMaxLinkNameBytes);
-  description.tip_link = reader.text("tip_link", wire.tip_link, kMaxLinkNameBytes);
-  description.T_tip_transfer = reader.pose("T_tip_transfer", wire.T_tip_transfer);
-  std::copy(std::begin(wire.task_axes), std::end(wire.task_axes),
-            description.task_axes.matters.begin());
-  reader.rules.at_most("held_joints", wire.held_joints._length, kMaxHeldJoints)
-      .at_most("never_colliding", wire.never_colliding._length, kMaxCollisionPairs);
+  read_members(wire, kFields, kBegin, reader, description);
+  description.mesh_solids.solids = read_value<std::vector<LinkSolid>>(
+      {"mesh_solids"}, wire.mesh_solids, {.limit = kMaxMeshSolids}, reader);
+  description.mesh_solids.unfiltered = read_value<std::vector<NamePair>>(
+      {"unfiltered"}, wire.unfiltered, {.limit = kMaxCollisionPairs}, reader);
+  if (!reader.rules.broken())
+    reader.rules.name(validate(description));
   if (reader.rules.broken())
     return *reader.rules.broken();
-  for (const auto& held : elements(wire.held_joints)) {
-    const std::string joint = reader.text("held joint", held.joint, kMaxLinkNameBytes);
-    if (!description.held_joints.emplace(joint, held.position).second)
-      reader.rules.that(false, "held joint '" + joint + "': is there twice");
-  }
-  for (const auto& pair : elements(wire.never_colliding))
-    description.never_colliding.emplace_back(
-        reader.text("never_colliding", pair.first, kMaxLinkNameBytes),
-        reader.text("never_colliding", pair.second, kMaxLinkNameBytes));
-  description.mesh_solids = read_mesh_solids(wire, reader);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  if (const auto error = check(description))
-    return *error;
   return description;
 }
 
 Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const RegisterReply& reply) {
-  if (const auto error = check(reply))
-    return *error;
-  Message<kinship_wire_RegisterReply> message(head);
-  auto& wire = message.wire;
-  wire.status = static_cast<std::uint32_t>(reply.status);
-  write_digest(reply.robot, wire.robot);
-  wire.dof = reply.dof;
-  wire.solver = message.arena->text(reply.solver);
-  wire.message = message.arena->text(reply.message);
-  message.arena->resize(wire.same_arms, reply.same_arms.size());
-  for (std::size_t i = 0; i < reply.same_arms.size(); ++i)
-    wire.same_arms._buffer[i] = message.arena->text(reply.same_arms[i]);
-  wire.geometry_grade = static_cast<std::uint32_t>(reply.geometry_grade);
-  wire.took_geometry = reply.took_geometry;
-  wire.geometry = message.arena->text(reply.geometry);
-  wire.retry_after_ms = retry_after_ms(reply.retry_after);
-  return message;
+  return encode_fields(reply, Message<kinship_wire_RegisterReply>(head));
 }
 
 Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
-  Reader reader;
-  RegisterReply reply;
-  reply.status = reader.enumerator("status", wire.status, RegisterStatus::Refused);
-  reply.robot = read_digest(wire.robot);
-  reply.dof = wire.dof;
-  reply.solver = reader.text("solver", wire.solver, kMaxPlannerBytes);
-  reply.message = reader.text("message", wire.message, kMaxMessageBytes);
-  reader.rules.at_most("same_arms", wire.same_arms._length, kMaxSameArms);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  for (const char* label : elements(wire.same_arms))
-    reply.same_arms.push_back(reader.text("same_arms", label, kMaxLabelBytes));
-  reply.geometry_grade =
-      reader.enumerator("geometry_grade", wire.geometry_grade, GeometryGrade::Exact);
-  reply.took_geometry = wire.took_geometry;
-  reply.geometry = reader.text("geometry", wire.geometry, kMaxMessageBytes);
-  reply.retry_after = read_retry_after(wire.retry_after_ms);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  if (const auto error = check(reply))
-    return *error;
-  return reply;
+  return decode_fields<RegisterReply>(wire);
 }
 
 }  // namespace kinship::codec

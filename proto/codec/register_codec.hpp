@@ -9,7 +9,7 @@ namespace kinship::codec {
 
 /// The rule of the contract that a robot description breaks, if any. Its URDF is checked by
 /// robots/kinematics.
-std::optional<Error> check(const RobotDescription& description);
+std::optional<Error> validate(const RobotDescription& description);
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
                                                      const RobotDescription& description);

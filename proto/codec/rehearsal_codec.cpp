@@ -18,7 +18,7 @@ constexpr const char* kOfRehearsal = " of a rehearsal";
 
 }  // namespace
 
-std::optional<Error> check(const Rehearsal& rehearsal) {
+std::optional<Error> validate(const Rehearsal& rehearsal) {
   Rules rules;
   check_fields(rehearsal, rules, kOfRehearsal);
   for (const GuideCost& cost : rehearsal.costs)
@@ -29,12 +29,12 @@ std::optional<Error> check(const Rehearsal& rehearsal) {
   return rules.broken();
 }
 
-void write_rehearsal(const Rehearsal& rehearsal, Arena& arena, kinship_wire_Rehearsal& wire) {
+void write_part(const Rehearsal& rehearsal, Arena& arena, kinship_wire_Rehearsal& wire) {
   write_fields(rehearsal, arena, wire);
 }
 
-Rehearsal read_rehearsal(const kinship_wire_Rehearsal& wire, Reader& reader) {
-  return read_fields<Rehearsal>(wire, reader, kOfRehearsal);
+void read_part(const kinship_wire_Rehearsal& wire, Reader& reader, Rehearsal& rehearsal) {
+  rehearsal = read_fields<Rehearsal>(wire, reader, kOfRehearsal);
 }
 
 }  // namespace kinship::codec

@@ -1,12 +1,18 @@
 #include "proto/codec/report_codec.hpp"
 
+#include <stdexcept>
+
 #include "proto/codec/fields.hpp"
-#include "proto/codec/retry_after.hpp"
 #include "proto/codec/scene_codec.hpp"
 #include "proto/types/names.hpp"
-#include "proto/types/number_text.hpp"
 
 namespace kinship::codec {
+
+template <>
+struct WireMember<std::vector<Receipt>> {
+  using Type = decltype(kinship_wire_ReportReply::receipts);
+};
+
 namespace {
 
 /// A path from dof and waypoints, or none; sizes are checked before it is made.
@@ -24,15 +30,15 @@ std::optional<Path> read_path(const kinship_wire_Attempt& wire, Reader& reader) 
                                                     std::to_string(wire.dof))
       .that(count >= 2, "waypoints: " + std::to_string(count) + ", must be at least 2")
       .at_most("waypoints", count, kMaxWaypoints);
-  for (std::size_t i = 0; i < numbers.size() && !reader.rules.broken(); ++i)
-    if (!std::isfinite(numbers[i]))
-      reader.rules.that(false, "waypoint " + std::to_string(i / wire.dof + 1) + ", joint " +
-                                   std::to_string(i % wire.dof + 1) + ": " +
-                                   number_text(numbers[i]) + " is not finite");
   if (reader.rules.broken())
     return std::nullopt;
-  return Path(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), wire.dof,
-                                                static_cast<Eigen::Index>(count)));
+  try {
+    return Path(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), wire.dof,
+                                                  static_cast<Eigen::Index>(count)));
+  } catch (const std::invalid_argument& error) {  // the class knows its own invariant
+    reader.rules.that(false, error.what());
+    return std::nullopt;
+  }
 }
 
 void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& wire) {
@@ -43,10 +49,7 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   write_placement(arena, attempt.T_task_base, wire.T_task_base);
   arena.resize(wire.record, 1);
   write_fields(attempt.record, arena, wire.record._buffer[0]);
-  if (attempt.scene) {
-    arena.resize(wire.scene, 1);
-    write_scene(*attempt.scene, arena, wire.scene._buffer[0]);
-  }
+  write_value(attempt.scene, {}, arena, wire.scene);
   if (!attempt.path)
     return;
   const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
@@ -60,19 +63,19 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   Attempt attempt;
   attempt.report_uuid = read_uuid(wire.report_uuid);
   attempt.robot = read_digest(wire.robot);
-  attempt.machine = reader.text("machine", wire.machine, kMaxMachineBytes);
-  attempt.task = reader.text("task", wire.task, kMaxTaskBytes);
+  attempt.machine = read_text(wire.machine);
+  attempt.task = read_text(wire.task);
   attempt.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
   if (const auto record = elements(wire.record); !record.empty())
     attempt.record = read_fields<PlanningRecord>(record[0], reader);
   else
     reader.rules.that(false, "record: is missing");
   attempt.path = read_path(wire, reader);
-  if (const auto scene = elements(wire.scene); !scene.empty() && !reader.rules.broken())
-    attempt.scene = read_scene(scene[0], reader);
+  if (!reader.rules.broken())
+    attempt.scene = read_value<std::optional<RecordedScene>>({"scene"}, wire.scene, {}, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = find_fault(attempt))
+  if (const auto error = validate(attempt))
     return *error;
   return attempt;
 }
@@ -84,21 +87,13 @@ BatchBytes batch_bytes(const kinship_wire_Attempt& wire) {
   return bytes;
 }
 
-void check_mark(std::string_view what, std::size_t bytes, Rules& rules) {
-  rules.at_most(what, bytes, kMaxHistoryMarkBytes);
+/// Limits of a batch besides those of each attempt.
+Rules& check_batch(std::size_t attempts, std::size_t token, Rules& rules) {
+  return rules.at_most("attempts of a batch", attempts, kMaxAttemptsPerBatch)
+      .at_most("known_token", token, kMaxConsistencyTokenBytes);
 }
 
-void write_mark(const HistoryMark& mark, Arena& arena, dds_sequence_octet& wire) {
-  arena.resize(wire, mark.size());
-  std::copy(mark.begin(), mark.end(), wire._buffer);
-}
-
-HistoryMark read_mark(const dds_sequence_octet& wire) {
-  const auto bytes = elements(wire);
-  return {bytes.begin(), bytes.end()};
-}
-
-void check_batch(const BatchBytes& bytes, Rules& rules) {
+void check_bytes(const BatchBytes& bytes, Rules& rules) {
   rules.at_most("waypoints of a batch (bytes)", bytes.waypoints, kMaxBatchBytes)
       .at_most("scenes of a batch (bytes)", bytes.scenes, kMaxSceneBytes);
 }
@@ -107,39 +102,35 @@ void check_batch(const BatchBytes& bytes, Rules& rules) {
 
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
   Rules rules;
-  rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
-  check_mark("known_mark", request.known_mark.size(), rules);
+  check_batch(request.attempts.size(), request.known_token.size(), rules);
   BatchBytes bytes;
-  for (const Attempt& attempt : request.attempts) {
-    rules.name(find_fault(attempt));
+  for (const Attempt& attempt : request.attempts)
     bytes = bytes + batch_bytes(attempt);
-  }
-  check_batch(bytes, rules);
+  check_bytes(bytes, rules);
   if (rules.broken())
     return *rules.broken();
   Message<kinship_wire_ReportRequest> message(head);
   message.arena->resize(message.wire.attempts, request.attempts.size());
   for (std::size_t i = 0; i < request.attempts.size(); ++i)
     write_attempt(request.attempts[i], *message.arena, message.wire.attempts._buffer[i]);
-  write_mark(request.known_mark, *message.arena, message.wire.known_mark);
+  write_value(request.known_token, {}, *message.arena, message.wire.known_token);
   return limited(std::move(message));
 }
 
 Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
   const auto attempts = elements(wire.attempts);
+  const auto token = elements(wire.known_token);
   Rules rules;
-  rules.at_most("attempts of a batch", attempts.size(), kMaxAttemptsPerBatch);
-  check_mark("known_mark", elements(wire.known_mark).size(), rules);
-  if (rules.broken())
+  if (check_batch(attempts.size(), token.size(), rules).broken())
     return *rules.broken();
   ReportRequest request;
-  request.known_mark = read_mark(wire.known_mark);
+  request.known_token.assign(token.begin(), token.end());
   request.attempts.reserve(attempts.size());
   BatchBytes bytes;
   for (const kinship_wire_Attempt& entry : attempts) {
     bytes = bytes + batch_bytes(entry);
     Rules batch;
-    check_batch(bytes, batch);
+    check_bytes(bytes, batch);
     Result<Attempt> attempt =
         batch.broken() ? Result<Attempt>(*batch.broken()) : read_attempt(entry);
     if (attempt)
@@ -152,50 +143,16 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
 }
 
 Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportReply& reply) {
-  Rules rules;
-  rules.at_most("receipts", reply.receipts.size(), kMaxAttemptsPerBatch);
-  check_mark("history_mark", reply.history_mark.size(), rules);
-  if (rules.broken())
-    return *rules.broken();
-  Message<kinship_wire_ReportReply> message(head);
-  write_uuid(reply.store_epoch, message.wire.store_epoch);
-  message.arena->resize(message.wire.receipts, reply.receipts.size());
-  for (std::size_t i = 0; i < reply.receipts.size(); ++i) {
-    const Receipt& receipt = reply.receipts[i];
-    kinship_wire_Receipt& wire = message.wire.receipts._buffer[i];
-    write_uuid(receipt.report_uuid, wire.report_uuid);
-    wire.status = static_cast<std::uint32_t>(receipt.status);
-    // One odd message must not hold back the receipts of its neighbours.
-    wire.message = message.arena->text(cut_text(receipt.message, kMaxMessageBytes));
-  }
-  write_mark(reply.history_mark, *message.arena, message.wire.history_mark);
-  message.wire.retry_after_ms = retry_after_ms(reply.retry_after);
-  message.wire.message = message.arena->text(cut_text(reply.message, kMaxMessageBytes));
-  return limited(std::move(message));
+  ReportReply sent = reply;
+  // One odd message must not hold back the receipts of its neighbours.
+  for (Receipt& receipt : sent.receipts)
+    receipt.message = cut_text(receipt.message, kMaxMessageBytes);
+  sent.message = cut_text(reply.message, kMaxMessageBytes);
+  return encode_fields(sent, Message<kinship_wire_ReportReply>(head));
 }
 
 Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
-  Reader reader;
-  reader.rules.at_most("receipts", wire.receipts._length, kMaxAttemptsPerBatch);
-  check_mark("history_mark", elements(wire.history_mark).size(), reader.rules);
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  ReportReply reply;
-  reply.store_epoch = read_uuid(wire.store_epoch);
-  reply.history_mark = read_mark(wire.history_mark);
-  reply.retry_after = read_retry_after(wire.retry_after_ms);
-  reply.message = reader.text("message", wire.message, kMaxMessageBytes);
-  for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {
-    Receipt receipt;
-    receipt.report_uuid = read_uuid(entry.report_uuid);
-    receipt.status = reader.enumerator("status", entry.status, ReceiptStatus::UnknownRobot);
-    receipt.message = reader.text("message", entry.message, kMaxMessageBytes);
-    reader.rules.text("message", receipt.message, kMaxMessageBytes);
-    reply.receipts.push_back(std::move(receipt));
-  }
-  if (reader.rules.broken())
-    return *reader.rules.broken();
-  return reply;
+  return decode_fields<ReportReply>(wire);
 }
 
 }  // namespace kinship::codec

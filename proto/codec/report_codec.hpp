@@ -5,7 +5,8 @@
 
 namespace kinship::codec {
 
-/// \return InvalidInput or TooLarge if an attempt breaks a rule or the batch is too large.
+/// \param request  its attempts are valid (validate(Attempt)).
+/// \return TooLarge if the batch is.
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request);
 
 /// Attempts that break a rule become refused receipts; the others are not affected. \return an

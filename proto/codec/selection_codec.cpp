@@ -23,7 +23,7 @@ Rules& check_selection(const Selection& selection, Rules& rules) {
             "since (ms): " + std::to_string(selection.since_ms) + " is negative");
 }
 
-void write_selection(const Selection& selection, Arena& arena, SelectionMember& wire) {
+void write_part(const Selection& selection, Arena& arena, SelectionMember& wire) {
   if (selection == Selection{})
     return;
   arena.resize(wire, 1);
@@ -36,11 +36,10 @@ void write_selection(const Selection& selection, Arena& arena, SelectionMember& 
   entry.since_ms = selection.since_ms;
 }
 
-Selection read_selection(const SelectionMember& wire, Reader& reader) {
-  Selection selection;
+void read_part(const SelectionMember& wire, Reader& reader, Selection& selection) {
   const auto entries = elements(wire);
   if (entries.empty())
-    return selection;
+    return;
   const kinship_wire_Selection& entry = entries[0];
   const auto bytes = elements(entry.sources);
   reader.rules
@@ -50,7 +49,7 @@ Selection read_selection(const SelectionMember& wire, Reader& reader) {
       .at_most("sources of the selection", bytes.size() / kDigestBytes, kMaxSelectedSources)
       .between("weighting", entry.weighting, 0, 1 + static_cast<double>(Weighting::Paths));
   if (reader.rules.broken())
-    return selection;
+    return;
   selection.sources.resize(bytes.size() / kDigestBytes);
   for (std::size_t i = 0; i < selection.sources.size(); ++i)
     std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(kDigestBytes * i), kDigestBytes,
@@ -58,8 +57,6 @@ Selection read_selection(const SelectionMember& wire, Reader& reader) {
   if (entry.weighting > 0)
     selection.weighting = static_cast<Weighting>(entry.weighting - 1);
   selection.since_ms = entry.since_ms;
-  check_selection(selection, reader.rules);
-  return selection;
 }
 
 }  // namespace kinship::codec

@@ -12,7 +12,7 @@ namespace kinship::codec {
 using SelectionMember = decltype(kinship_wire_FetchRequest::selection);
 
 Rules& check_selection(const Selection& selection, Rules& rules);
-void write_selection(const Selection& selection, Arena& arena, SelectionMember& wire);
-Selection read_selection(const SelectionMember& wire, Reader& reader);
+void write_part(const Selection& selection, Arena& arena, SelectionMember& wire);
+void read_part(const SelectionMember& wire, Reader& reader, Selection& selection);
 
 }  // namespace kinship::codec

@@ -28,6 +28,11 @@ void write_numbers(Arena& arena, const double* numbers, std::size_t size, Sequen
   std::copy_n(numbers, size, sequence._buffer);
 }
 
+inline void write_pose(const Eigen::Isometry3d& T, double (&numbers)[7]) {
+  const PoseArray pose = to_pose_array(T);
+  std::copy(pose.begin(), pose.end(), std::begin(numbers));
+}
+
 template <typename Sequence>
 void write_placement(Arena& arena, const std::optional<Eigen::Isometry3d>& T, Sequence& sequence) {
   if (!T)

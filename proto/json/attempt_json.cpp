@@ -56,7 +56,7 @@ NamedAttempt read(const Reader& reader, Waypoints rule) {
   if (const auto scene = reader.find("scene"))
     attempt.scene = read_recorded_scene(*scene);
   const bool is_dropped = !attempt.path && attempt.record.outcome == Outcome::Solved;
-  if (const auto error = is_dropped ? std::nullopt : find_fault(attempt))
+  if (const auto error = is_dropped ? std::nullopt : validate(attempt))
     throw Failure(*error);
   return named;
 }

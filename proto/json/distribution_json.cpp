@@ -39,8 +39,7 @@ constexpr std::tuple kFit{Field{"state", &Distribution::state},
                           Field{"fitted_ms", &Distribution::fitted_ms},
                           Field{"transfer_time_s", &Distribution::transfer_time_s, {.min = 0}},
                           Field{"fit_time_s", &Distribution::fit_time_s, {.min = 0}},
-                          Field{"fit", &Distribution::fit},
-                          Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
+                          Field{"fit", &Distribution::fit}};
 
 /// Refuses a count that exceeds another one.
 void require_at_most(const Reader& object, std::string_view member, std::uint64_t limit) {
@@ -170,6 +169,7 @@ Distribution read_distribution(const Reader& reader, MixturePart mixture) {
       selected.end())
     reader.at("selection").refuse("sources must be ascending and distinct");
   read_members(reader, kFit, distribution);
+  read_members(reader, kLastFieldsOfDistribution, distribution);
   if (const std::optional<FitOrigin>& fit = distribution.fit) {
     require_at_most(reader.at("fit"), "full_revision", fit->from_revision);
     require_at_most(reader.at("fit"), "new_paths", fit->paths);
@@ -199,6 +199,7 @@ OrderedJson distribution_object(const Distribution& distribution) {
   object["held_out_score"] = json_of(distribution.held_out_score);
   add_members(distribution.advice, kAdvice, object);
   add_members(distribution, kFit, object);
+  add_members(distribution, kLastFieldsOfDistribution, object);
   return object;
 }
 

@@ -49,7 +49,7 @@ TaskSpaceRegion read_region(const Reader& reader) {
   region.T_task_region = reader.at("T0_w").pose();
   region.T_region_end = reader.at("Tw_e").pose();
   region.bounds = read_bounds(reader.at("Bw"));
-  if (const auto fault = find_fault(region))
+  if (const auto fault = validate(region))
     reader.refuse(*fault);
   return region;
 }

@@ -13,7 +13,7 @@ BatchBytes batch_bytes(const Attempt& attempt) {
   return bytes;
 }
 
-std::optional<Error> find_fault(const Attempt& attempt) {
+std::optional<Error> validate(const Attempt& attempt) {
   Rules rules;
   rules.that(attempt.report_uuid != Uuid{}, "report_uuid: is zero")
       .name(check_machine(attempt.machine))

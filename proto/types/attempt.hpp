@@ -78,9 +78,11 @@ struct Attempt {
   std::optional<RecordedScene> scene;  ///< optional
 };
 
-/// The rule of the contract that an attempt breaks, if any. The server checks that the robot is
-/// known and the path within its limits.
-std::optional<Error> find_fault(const Attempt& attempt);
+/// The rule of the contract that an attempt breaks, if any. Attempts are checked where they enter a
+/// program: by Client::report() and deliver(), by the readers of files and messages, and by a store
+/// that takes them from another store. The server checks that the robot is known and the path
+/// within its limits.
+std::optional<Error> validate(const Attempt& attempt);
 
 /// Bytes of attempts that count against the limits of a batch.
 struct BatchBytes {

@@ -5,13 +5,17 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "proto/types/admin_verb.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
 #include "proto/types/mesh_solids.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/selection.hpp"
@@ -24,6 +28,8 @@ namespace kinship {
 /// Time after which to repeat a request that the server could not serve now. Above 0 the reply is
 /// not final, whatever its status: a later one may differ. At most kMaxRetryAfter_ms.
 using RetryAfter = std::chrono::milliseconds;
+inline constexpr FieldRules kRetryAfterRules{
+    .min = 0, .max = kMaxRetryAfter_ms, .is_clamped = true};
 
 enum class RegisterStatus { Registered, Known, Refused };
 
@@ -42,6 +48,23 @@ struct RegisterReply {
   RetryAfter retry_after{0};  ///< above 0: Refused only for now
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<RegisterReply>{
+    Field{"status", &RegisterReply::status, {.max = static_cast<double>(RegisterStatus::Refused)}},
+    Field{"robot", &RegisterReply::robot},
+    Field{"dof", &RegisterReply::dof, between(0, kMaxDof)},
+    Field{"solver", &RegisterReply::solver, {.limit = kMaxPlannerBytes}},
+    Field{"message", &RegisterReply::message, {.limit = kMaxMessageBytes}},
+    Field{"same_arms",
+          &RegisterReply::same_arms,
+          {.limit = kMaxSameArms, .element_limit = kMaxLabelBytes}},
+    Field{"geometry_grade",
+          &RegisterReply::geometry_grade,
+          {.max = static_cast<double>(GeometryGrade::Exact)}},
+    Field{"took_geometry", &RegisterReply::took_geometry},
+    Field{"geometry", &RegisterReply::geometry, {.limit = kMaxMessageBytes}},
+    Field{"retry_after_ms", &RegisterReply::retry_after, kRetryAfterRules}};
+
 enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, UnknownRobot };
 
 /// The server's answer to one attempt. Stored, Duplicate and Recorded follow a durable commit;
@@ -54,9 +77,15 @@ struct Receipt {
   std::string message;
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<Receipt>{
+    Field{"report_uuid", &Receipt::report_uuid},
+    Field{"status", &Receipt::status, {.max = static_cast<double>(ReceiptStatus::UnknownRobot)}},
+    Field{"message", &Receipt::message, {.limit = kMaxMessageBytes}}};
+
 /// A consistency token: a point of a store's history, authenticated by the store's key. A client
-/// keeps it and returns it unchanged. At most kMaxHistoryMarkBytes; empty: none.
-using HistoryMark = std::vector<std::uint8_t>;
+/// keeps it and returns it unchanged. At most kMaxConsistencyTokenBytes; empty: none.
+using ConsistencyToken = std::vector<std::uint8_t>;
 
 /// A batch of attempts; an empty one requests the store's epoch.
 struct ReportRequest {
@@ -64,17 +93,26 @@ struct ReportRequest {
   /// At the server only: answers to attempts of the batch that broke a rule of the contract and are
   /// therefore not among `attempts`. They become part of the reply.
   std::vector<Receipt> refused;
-  HistoryMark known_mark = {};  ///< the newest that the client received
+  ConsistencyToken known_token = {};  ///< the newest that the client received
 };
 
 struct ReportReply {
   Uuid store_epoch;
   std::vector<Receipt> receipts;  ///< at most one per attempt, found by UUID; missing: try again
   /// Covers all durable data; empty from older servers, and if there is none.
-  HistoryMark history_mark = {};
+  ConsistencyToken consistency_token = {};
   RetryAfter retry_after{0};  ///< when to resend attempts without a final receipt
   std::string message = {};   ///< why attempts have no receipt
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<ReportReply>{
+    Field{"store_epoch", &ReportReply::store_epoch},
+    Field{"receipts", &ReportReply::receipts, {.limit = kMaxAttemptsPerBatch}},
+    Field{
+        "consistency_token", &ReportReply::consistency_token, {.limit = kMaxConsistencyTokenBytes}},
+    Field{"retry_after_ms", &ReportReply::retry_after, kRetryAfterRules},
+    Field{"message", &ReportReply::message, {.limit = kMaxMessageBytes}}};
 
 struct FetchRequest {
   std::string task;
@@ -91,6 +129,20 @@ struct FetchRequest {
   bool rehearsed = false;
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<FetchRequest>{
+    Field{"task", &FetchRequest::task, {.check = check_task}},
+    Field{"robot", &FetchRequest::robot},
+    Field{"T_task_base", &FetchRequest::T_task_base},
+    Field{"profile", &FetchRequest::profile, {.limit = kMaxProfileBytes}},
+    Field{"minimum_generation", &FetchRequest::minimum_generation},
+    Field{"deadline_ms", &FetchRequest::deadline, between(0, kMaxFetchDeadline_ms)},
+    Field{"selection", &FetchRequest::selection},
+    Field{"follow_s", &FetchRequest::follow, between(0, kMaxFollow_s)},
+    Field{"experience_bytes", &FetchRequest::experience_bytes, between(0, kMaxExperienceBytes)},
+    Field{"known_experience", &FetchRequest::known_experience},
+    Field{"rehearsed", &FetchRequest::rehearsed}};
+
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
 
 struct FetchReply {
@@ -105,6 +157,16 @@ struct FetchReply {
   std::optional<Rehearsal> rehearsal = {};
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<FetchReply>{
+    Field{"status", &FetchReply::status, {.max = static_cast<double>(FetchStatus::Failed)}},
+    Field{"distribution", &FetchReply::distribution},
+    Field{"retry_after_ms", &FetchReply::retry_after,
+          between(0, std::numeric_limits<std::uint32_t>::max())},
+    Field{"message", &FetchReply::message, {.limit = kMaxMessageBytes}},
+    Field{"experience", &FetchReply::experience},
+    Field{"rehearsal", &FetchReply::rehearsal}};
+
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;
   std::string argument = {};  ///< object of the verb: rule_of(verb).argument
@@ -114,6 +176,16 @@ struct AdminRequest {
   std::uint32_t limit = 100;              ///< rows a page
   std::chrono::milliseconds deadline{0};  ///< of ShowJob: longest wait for the end
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<AdminRequest>{
+    Field{"verb", &AdminRequest::verb, {.max = static_cast<double>(kLastVerb)}},
+    Field{"argument", &AdminRequest::argument, {.limit = kMaxTaskBytes}},
+    Field{"robot", &AdminRequest::robot, {.limit = kMaxTaskBytes}},
+    Field{"task", &AdminRequest::task, {.limit = kMaxTaskBytes}},
+    Field{"cursor", &AdminRequest::cursor, {.limit = kMaxCursorBytes}},
+    Field{"limit", &AdminRequest::limit, between(1, kMaxPageRows)},
+    Field{"deadline_ms", &AdminRequest::deadline, between(0, kMaxFetchDeadline_ms)}};
 
 enum class AdminStatus { Ok, NotFound, Refused, Failed };
 
@@ -125,5 +197,14 @@ struct AdminReply {
   bool last_row_continues = false;  ///< the next page begins with the rest of the last row
   RetryAfter retry_after{0};        ///< above 0: Failed only for now
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<AdminReply>{
+    Field{"status", &AdminReply::status, {.max = static_cast<double>(AdminStatus::Failed)}},
+    Field{"rows", &AdminReply::rows, {.limit = kMaxPageRows, .element_limit = kMaxPageBytes}},
+    Field{"next_cursor", &AdminReply::next_cursor, {.limit = kMaxCursorBytes}},
+    Field{"message", &AdminReply::message, {.limit = kMaxMessageBytes}},
+    Field{"last_row_continues", &AdminReply::last_row_continues},
+    Field{"retry_after_ms", &AdminReply::retry_after, kRetryAfterRules}};
 
 }  // namespace kinship

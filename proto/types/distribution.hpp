@@ -75,4 +75,8 @@ struct Distribution {
   std::string filters = {};
 };
 
+/// The last fields of a distribution in messages, documents and blobs alike; new ones come here.
+inline constexpr std::tuple kLastFieldsOfDistribution{
+    Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
+
 }  // namespace kinship

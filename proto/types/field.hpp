@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -17,10 +18,12 @@ namespace kinship {
 struct FieldRules {
   double min = std::numeric_limits<double>::lowest();  ///< of a number
   double max = std::numeric_limits<double>::max();
-  std::size_t limit = 0;  ///< bytes of a text, elements of a list
+  std::size_t limit = 0;          ///< bytes of a text, elements of a list
+  std::size_t element_limit = 0;  ///< bytes of each text of a list
   /// A further check of a text, defined elsewhere.
   std::optional<Error> (*check)(std::string_view text) = nullptr;
   bool may_be_missing = false;  ///< in a JSON document
+  bool is_clamped = false;      ///< a duration beyond its limits is taken to them in messages
   int since = 1;                ///< the first format of stored blobs that has it
   /// In a digest: left out if it has its default, else this word replaces it. Empty: its value is
   /// always included.
@@ -61,18 +64,28 @@ template <typename T>
 inline constexpr bool kIsList = false;
 template <typename T>
 inline constexpr bool kIsList<std::vector<T>> = true;
+template <typename T>
+inline constexpr bool kIsDuration = false;
+template <typename Count, typename Unit>
+inline constexpr bool kIsDuration<std::chrono::duration<Count, Unit>> = true;
+
+/// Calls visit(field) for each field of a table.
+template <typename... Fields, typename Visit>
+constexpr void for_each_field(const std::tuple<Fields...>& table, Visit visit) {
+  std::apply([&visit](const auto&... field) { (visit(field), ...); }, table);
+}
 
 /// Calls visit(field) for each field of a value.
 template <Described Value, typename Visit>
 constexpr void for_each_field(Visit visit) {
-  std::apply([&visit](const auto&... field) { (visit(field), ...); }, kFieldsOf<Value>);
+  for_each_field(kFieldsOf<Value>, visit);
 }
 
-/// The newest format that added a field of the value.
-template <Described Value>
-constexpr int newest_format() {
+/// The newest format that added a field of a table.
+template <typename... Fields>
+constexpr int newest_format(const std::tuple<Fields...>& table) {
   int newest = 1;
-  for_each_field<Value>([&newest](const auto& field) {
+  for_each_field(table, [&newest](const auto& field) {
     newest = field.rules.since > newest ? field.rules.since : newest;
   });
   return newest;

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stdexcept>
-#include <utility>
 
 namespace kinship {
 
@@ -12,11 +10,9 @@ namespace kinship {
 class Path {
  public:
   /// \param waypoints  dof x n, one column per waypoint, joint units.
-  /// \throws std::invalid_argument if the invariant does not hold.
-  explicit Path(Eigen::MatrixXd waypoints) : waypoints_(std::move(waypoints)) {
-    if (waypoints_.rows() < 1 || waypoints_.cols() < 2 || !waypoints_.allFinite())
-      throw std::invalid_argument("Path: need >= 1 joint, >= 2 waypoints, finite values");
-  }
+  /// \throws std::invalid_argument if the invariant does not hold, naming the first number that is
+  ///         not finite.
+  explicit Path(Eigen::MatrixXd waypoints);
 
   Eigen::Index dof() const noexcept { return waypoints_.rows(); }
   Eigen::Index size() const noexcept { return waypoints_.cols(); }  ///< number of waypoints

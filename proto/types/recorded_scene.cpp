@@ -62,7 +62,7 @@ std::optional<Error> check_thing(const std::string& name, const Shape& shape,
 
 std::optional<Error> check_constraint(const TaskSpaceRegion& region) {
   const std::string who = "scene: constraint: ";
-  if (const auto fault = find_fault(region))
+  if (const auto fault = validate(region))
     return Error{ErrorCode::InvalidInput, who + *fault};
   for (const auto& [name, T] :
        {std::pair("T0_w: ", &region.T_task_region), std::pair("Tw_e: ", &region.T_region_end)})

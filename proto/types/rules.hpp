@@ -9,6 +9,7 @@
 
 #include "proto/types/failure.hpp"
 #include "proto/types/field.hpp"
+#include "proto/types/names.hpp"
 
 namespace kinship {
 
@@ -36,17 +37,30 @@ class Rules {
   std::optional<Error> broken_;
 };
 
-/// Checks the limits of each field, and of the fields of each element of a list.
-/// \param of  after its name in messages, e.g. " of a source".
 template <Described Value>
-void check_fields(const Value& value, Rules& rules, const std::string& of = "") {
-  for_each_field<Value>([&]<typename Of, typename T>(const Field<Of, T>& field) {
+void check_fields(const Value& value, Rules& rules, const std::string& of = "");
+
+/// Checks the limits of each field of a table, and of each element of a list.
+/// \param of  after its name in messages, e.g. " of a source".
+template <typename Value, typename Table>
+void check_members(const Value& value, const Table& fields, Rules& rules,
+                   const std::string& of = "") {
+  for_each_field(fields, [&]<typename Of, typename T>(const Field<Of, T>& field) {
     const auto what = [&] { return std::string(field.name) + of; };
     const FieldRules& limits = field.rules;
     if constexpr (std::is_same_v<T, std::string>) {
-      rules.text(what(), value.*field.member, limits.limit);
-      if (limits.check)
-        rules.name(limits.check(value.*field.member));
+      rules.name(limits.check ? limits.check(value.*field.member)
+                              : check_text(what(), value.*field.member, limits.limit));
+    } else if constexpr (kIsDuration<T>) {
+      if (!limits.is_clamped)
+        rules.between(what(), static_cast<double>((value.*field.member).count()), limits.min,
+                      limits.max);
+    } else if constexpr (std::is_integral_v<T>) {
+      if (limits.max < std::numeric_limits<double>::max())
+        rules.between(what(), static_cast<double>(value.*field.member), limits.min, limits.max);
+    } else if constexpr (std::is_same_v<T, std::optional<Eigen::Isometry3d>>) {
+      if (value.*field.member)
+        rules.pose(what(), *(value.*field.member));
     } else if constexpr (std::is_floating_point_v<T>) {
       if (limits.max < std::numeric_limits<T>::max())
         rules.between(what(), value.*field.member, limits.min, limits.max);
@@ -57,9 +71,18 @@ void check_fields(const Value& value, Rules& rules, const std::string& of = "") 
     } else if constexpr (kIsList<T>) {
       rules.at_most(what(), (value.*field.member).size(), limits.limit);
       for (const auto& element : value.*field.member)
-        check_fields(element, rules, " of " + what());
+        if constexpr (std::is_same_v<T, std::vector<std::string>>)
+          rules.text(what(), element, limits.element_limit);
+        else if constexpr (Described<typename T::value_type>)
+          check_fields(element, rules, " of " + what());
     }
   });
+}
+
+/// The same of all fields of a value.
+template <Described Value>
+void check_fields(const Value& value, Rules& rules, const std::string& of) {
+  check_members(value, kFieldsOf<Value>, rules, of);
 }
 
 }  // namespace kinship

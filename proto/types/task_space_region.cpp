@@ -23,7 +23,7 @@ const char* displacement_name(Eigen::Index coordinate) {
   return kNames.at(static_cast<std::size_t>(coordinate));
 }
 
-std::optional<std::string> find_fault(const TaskSpaceRegion& region) {
+std::optional<std::string> validate(const TaskSpaceRegion& region) {
   if (!is_rigid(region.T_task_region))
     return "T0_w is not a rigid transform";
   if (!is_rigid(region.T_region_end))

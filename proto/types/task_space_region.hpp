@@ -25,6 +25,6 @@ const char* displacement_name(Eigen::Index coordinate);
 
 /// The first fault of a region, as text with its value: bounds that are NaN, crossed or exclude
 /// everything, a pose that is not finite or not rigid.
-std::optional<std::string> find_fault(const TaskSpaceRegion& region);
+std::optional<std::string> validate(const TaskSpaceRegion& region);
 
 }  // namespace kinship

@@ -17,7 +17,7 @@ namespace {
 constexpr double kUnitTolerance = 1e-9;
 constexpr double kDigestGrid = 1e-9;
 
-std::optional<std::string> find_fault(std::string_view what, const Eigen::Isometry3d& T) {
+std::optional<std::string> validate(std::string_view what, const Eigen::Isometry3d& T) {
   const std::string name(what);
   if (!T.matrix().allFinite())
     return name + ": pose is not finite";
@@ -31,9 +31,9 @@ std::optional<std::string> find_fault(std::string_view what, const Eigen::Isomet
   return std::nullopt;
 }
 
-std::optional<std::string> find_fault(const Joint& joint) {
+std::optional<std::string> validate(const Joint& joint) {
   const std::string name = "joint '" + joint.name + "'";
-  if (auto fault = find_fault(name, joint.T_previous_joint))
+  if (auto fault = validate(name, joint.T_previous_joint))
     return fault;
   if (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > kUnitTolerance)
     return name + ": axis has length " + number_text(joint.axis.norm()) + ", must be 1";
@@ -58,8 +58,8 @@ std::pair<double, double> limits_of(const MimicJoint& mimic, const Joint& source
 }
 
 /// \param index  of the moving joint; the chain's joints are without fault.
-std::optional<std::string> find_fault(const MimicJoint& mimic, const std::vector<Joint>& joints,
-                                      int index) {
+std::optional<std::string> validate(const MimicJoint& mimic, const std::vector<Joint>& joints,
+                                    int index) {
   const std::string name = "joint '" + mimic.joint.name + "'";
   if (mimic.source < 0 || mimic.source >= static_cast<int>(joints.size()))
     return name + ": mimics joint " + std::to_string(mimic.source) + " of " +
@@ -80,14 +80,14 @@ std::optional<std::string> find_fault(const MimicJoint& mimic, const std::vector
            ": where it stands would depend on full turns, which is not supported; hold it";
   Joint joint = mimic.joint;
   joint.type = JointType::Continuous;  // without limits of its own
-  return find_fault(joint);
+  return validate(joint);
 }
 
-std::optional<std::string> find_fault(const std::vector<ChainLink>& links, int moving_joints) {
+std::optional<std::string> validate(const std::vector<ChainLink>& links, int moving_joints) {
   for (int i = 0; i < static_cast<int>(links.size()); ++i) {
     const ChainLink& link = links[static_cast<std::size_t>(i)];
     const std::string name = "link '" + link.name + "'";
-    if (auto fault = find_fault(name, link.T_joint_link))
+    if (auto fault = validate(name, link.T_joint_link))
       return fault;
     if (link.joint < -1 || link.joint >= moving_joints)
       return name + ": joint index " + std::to_string(link.joint) + " is not below " +
@@ -109,31 +109,31 @@ void add(Sha256& sha, const Eigen::Isometry3d& T) {
 
 }  // namespace
 
-std::optional<std::string> find_fault(const ChainParts& parts) {
+std::optional<std::string> validate(const ChainParts& parts) {
   if (parts.joints.empty())
     return "chain: no moving joint";
   if (parts.joints.size() > kMaxDof)
     return "chain: " + std::to_string(parts.joints.size()) + " moving joints exceed " +
            std::to_string(kMaxDof);
   for (const Joint& joint : parts.joints)
-    if (auto fault = find_fault(joint))
+    if (auto fault = validate(joint))
       return fault;
-  if (auto fault = find_fault("tip link '" + parts.tip_link + "'", parts.T_last_tip))
+  if (auto fault = validate("tip link '" + parts.tip_link + "'", parts.T_last_tip))
     return fault;
-  if (auto fault = find_fault("transfer frame", parts.T_tip_transfer))
+  if (auto fault = validate("transfer frame", parts.T_tip_transfer))
     return fault;
   const auto& matters = parts.task_axes.matters;
   if (std::none_of(matters.begin(), matters.end(), [](bool axis) { return axis; }))
     return "task axes: none matters, need at least one";
   int moving_joints = static_cast<int>(parts.joints.size());
   for (const MimicJoint& mimic : parts.mimics)
-    if (auto fault = find_fault(mimic, parts.joints, moving_joints++))
+    if (auto fault = validate(mimic, parts.joints, moving_joints++))
       return fault;
-  return find_fault(parts.links, moving_joints);
+  return validate(parts.links, moving_joints);
 }
 
 Chain::Chain(ChainParts parts) : parts_(std::move(parts)) {
-  if (const auto fault = find_fault(parts_))
+  if (const auto fault = validate(parts_))
     throw std::invalid_argument("Chain: " + *fault);
   lower_.resize(dof());
   upper_.resize(dof());

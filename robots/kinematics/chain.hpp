@@ -60,7 +60,7 @@ struct ChainParts {
 };
 
 /// The first fault that keeps parts from being a Chain, as text with its value and the limit.
-std::optional<std::string> find_fault(const ChainParts& parts);
+std::optional<std::string> validate(const ChainParts& parts);
 
 /// A kinematic chain from a base link to a tip link with a transfer frame: the model of a robot.
 ///
@@ -72,7 +72,7 @@ std::optional<std::string> find_fault(const ChainParts& parts);
 class Chain {
  public:
   /// The limits of continuous joints are set to -pi and pi.
-  /// \throws std::invalid_argument with find_fault() if the invariant does not hold.
+  /// \throws std::invalid_argument with validate() if the invariant does not hold.
   explicit Chain(ChainParts parts);
 
   /// Its parts, to make a similar chain.

@@ -368,7 +368,7 @@ ChainParts read_parts(const RobotDescription& description) {
   const std::set<std::string> on_chain = names_of(joints);
   const HeldJoints held(*model, description.held_joints, on_chain);
   TreeWalk(held, joints, parts).walk(*model);
-  if (const auto fault = find_fault(parts))
+  if (const auto fault = validate(parts))
     throw refused(*fault);
   return parts;
 }

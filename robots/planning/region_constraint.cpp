@@ -51,7 +51,7 @@ RegionConstraint::RegionConstraint(const kinematics::Chain& chain, const TaskSpa
                                    const Eigen::Isometry3d& T_task_base,
                                    const Eigen::Matrix2Xd& bounds)
     : region_bounds_(with_angles_in_a_turn(region.bounds)), bounds_(bounds) {
-  if (const auto fault = find_fault(region))
+  if (const auto fault = validate(region))
     throw std::invalid_argument("RegionConstraint: " + *fault);
   if (bounds.cols() != chain.dof())
     throw std::invalid_argument("RegionConstraint: bounds and chain differ in size");

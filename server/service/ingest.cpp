@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "server/service/check_attempt.hpp"
+#include "server/service/validate_attempt.hpp"
 
 namespace kinship::service {
 namespace {
@@ -155,8 +155,7 @@ void Ingest::check(Batch& batch) {
   for (std::size_t i = 0; i < batch.attempts.size(); ++i) {
     const Attempt& attempt = batch.attempts[i];
     const Result<runtime::RobotRegistry::RobotPointer> robot = robots_.find(attempt.robot);
-    const std::optional<Error> error =
-        robot ? check_attempt(attempt, *robot.value()) : robot.error();
+    const std::optional<Error> error = robot ? validate(attempt, *robot.value()) : robot.error();
     if (error) {
       batch.receipts[i] = {attempt.report_uuid, status_of(robot.has_value(), *error),
                            error->message};

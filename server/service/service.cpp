@@ -192,13 +192,13 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
 
 void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done,
                      const std::string& client) {
-  if (!store_->may_have_lost(request.known_mark))
+  if (!store_->may_have_lost(request.known_token))
     return take_in(std::move(request), std::move(done), client);
-  // No answer if it fails: a newer mark in it would make the client forget the lost one.
+  // No answer if it fails: a newer token in it would make the client forget the lost one.
   auto run = [this, request = std::move(request), done, client]() mutable {
     try {
-      if (store_->has_lost(request.known_mark))
-        begin_epoch(request.known_mark);
+      if (store_->has_lost(request.known_token))
+        begin_epoch(request.known_token);
     } catch (const std::exception& exception) {
       return options_.log(std::string("store: rolled back, no new epoch yet: ") + exception.what());
     }
@@ -208,14 +208,14 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
                                {.run = std::move(run), .abandon = {}, .client = client})) {
     if (stop_source_.stop_requested())
       return;
-    ReportReply busy;  // without the store's epoch and mark: the client keeps those it has
+    ReportReply busy;  // without the store's epoch and token: the client keeps those it has
     busy.message = "the server is busy";
     busy.retry_after = kRetryAfter;
     done(busy);
   }
 }
 
-void Service::begin_epoch(const HistoryMark& lost) {
+void Service::begin_epoch(const ConsistencyToken& lost) {
   if (!store_->begin_epoch_if_lost(lost))
     return;  // another client was first
   const std::string what = "the store was rolled back behind receipts of clients: epoch " +
@@ -233,7 +233,7 @@ void Service::take_in(ReportRequest request, std::function<void(const ReportRepl
       [this, refused = std::move(request.refused), done = std::move(done),
        began = options_.clock.now()](const std::vector<Receipt>& receipts, RetryAfter retry_after) {
         store::StorePoint point = store_->point();
-        ReportReply reply{point.epoch, receipts, std::move(point.mark), retry_after};
+        ReportReply reply{point.epoch, receipts, std::move(point.token), retry_after};
         reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
         count_refused(reply.receipts);
         measures_.count(reply.receipts, options_.clock.now() - began);

@@ -162,7 +162,7 @@ class Service {
   Administration::Parts administration_parts();
   void take_in(ReportRequest request, std::function<void(const ReportReply&)> done,
                const std::string& client);
-  void begin_epoch(const HistoryMark& lost);
+  void begin_epoch(const ConsistencyToken& lost);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
   struct Registration;

@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "server/service/check_attempt.hpp"
 #include "server/service/service.hpp"
+#include "server/service/validate_attempt.hpp"
 
 namespace kinship::service {
 
@@ -26,7 +26,7 @@ void Service::start_forwarder() {
   forwarder.hooks.tasks_in_use = [this] { return used_tasks_.lately(options_.clock.unix_ms()); };
   forwarder.hooks.check = [this](const Attempt& attempt) -> std::optional<Error> {
     const Result<runtime::RobotRegistry::RobotPointer> robot = robots_.find(attempt.robot);
-    return robot ? check_attempt(attempt, *robot.value()) : robot.error();
+    return robot ? validate(attempt, *robot.value()) : robot.error();
   };
   forwarder.hooks.commit = [this](std::vector<store::ReplicatedReport> reports,
                                   store::Store::ReportsDone done) {

@@ -42,7 +42,7 @@ Exchange::Exchange(store::Store& site, store::Store& memory, Positions& position
 
 /// Tells a memory that it lost acknowledged reports, as clients tell a server.
 void Exchange::begin() {
-  if (memory_.has_lost(positions_.mark) && memory_.begin_epoch_if_lost(positions_.mark))
+  if (memory_.has_lost(positions_.token) && memory_.begin_epoch_if_lost(positions_.token))
     options_.log("the memory above was rolled back behind what it acknowledged");
   if (!positions_.begin(site_.epoch(), memory_.epoch()))
     return;
@@ -206,7 +206,7 @@ bool Exchange::carry_up(const std::stop_token& stop) {
   positions_.up = page.cursor;
   positions_.passed += page.looked_at;
   if (page.reports.new_there > 0)
-    positions_.mark = memory_.point().mark;
+    positions_.token = memory_.point().token;
   up_due_ = page.has_more ? TimePoint() : look_again();
   return page.looked_at > 0;
 }

@@ -11,24 +11,24 @@ constexpr std::string_view kPrefix = "sites.";
 constexpr std::string_view kTask = "sites.down.task.";
 constexpr std::string_view kRefused = "sites.refused.";
 
-std::string hex(const HistoryMark& mark) {
+std::string hex(const ConsistencyToken& token) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text;
-  for (const std::uint8_t byte : mark) {
+  for (const std::uint8_t byte : token) {
     text += kDigits[byte >> 4U];
     text += kDigits[byte & 15U];
   }
   return text;
 }
 
-HistoryMark mark_of(std::string_view text) {
-  HistoryMark mark;
+ConsistencyToken token_of(std::string_view text) {
+  ConsistencyToken token;
   for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
     std::uint8_t byte = 0;
     std::from_chars(text.data() + i, text.data() + i + 2, byte, 16);
-    mark.push_back(byte);
+    token.push_back(byte);
   }
-  return mark;
+  return token;
 }
 
 /// "number text": the two of them; 0 if there is no number.
@@ -49,7 +49,7 @@ std::string text_of(const std::map<std::string, std::string>& texts, std::string
 
 Positions::Positions(store::Store& site) : site_(&site), saved_(site.notes(kPrefix)) {
   epochs_ = text_of(saved_, "epochs");
-  mark = mark_of(text_of(saved_, "mark"));
+  token = token_of(text_of(saved_, "token"));
   up_retired = text_of(saved_, "up.retired");
   down_retired = text_of(saved_, "down.retired");
   std::tie(passed, up) = numbered<std::uint64_t>(text_of(saved_, "up"));
@@ -75,7 +75,7 @@ bool Positions::begin(const Uuid& site_epoch, const Uuid& memory_epoch) {
   up_retired.clear();
   down_retired.clear();
   passed = 0;
-  mark.clear();
+  token.clear();
   while (!refused_.empty())
     accept(Uuid(refused_.begin()->first));
   for (auto& [name, task] : tasks)
@@ -112,7 +112,7 @@ std::map<std::string, std::string> Positions::texts() const {
     texts.emplace(std::string(kPrefix) + std::string(name), std::move(text));
   };
   put("epochs", epochs_);
-  put("mark", hex(mark));
+  put("token", hex(token));
   put("up", std::to_string(passed) + " " + up);
   put("up.retired", up_retired);
   put("down.retired", down_retired);

@@ -37,7 +37,7 @@ class Positions {
 
   std::string up, up_retired, down_retired;  ///< cursors
   std::uint64_t passed = 0;                  ///< reports of this site before `up`
-  HistoryMark mark;                          ///< the newest from the memory
+  ConsistencyToken token;                    ///< the newest from the memory
   std::map<std::string, Task> tasks;
 
   /// Records tasks as used here now; precise to the hour, so that not every call is a write.

@@ -121,7 +121,7 @@ struct RemovedRobot {
 /// point lies on its history.
 struct StorePoint {
   Uuid epoch;
-  HistoryMark mark;  ///< of the newest attempt that is durable
+  ConsistencyToken token;  ///< of the newest attempt that is durable
 };
 
 struct StoreStatus {
@@ -174,14 +174,14 @@ class Store {
   virtual Uuid epoch() const = 0;
   virtual StorePoint point() const = 0;
 
-  /// Whether a mark, a client's consistency token, is of this epoch and the store has lost reports
-  /// that it had then. Marks that this store never made are not lost. May read a shared store; if
-  /// that fails the mark counts as not lost.
-  virtual bool has_lost(const HistoryMark& mark) const = 0;
+  /// Whether a token is of this epoch and the store has lost reports that it had then. Tokens that
+  /// this store never made are not lost. May read a shared store; if that fails the token counts as
+  /// not lost.
+  virtual bool has_lost(const ConsistencyToken& token) const = 0;
   /// Whether has_lost() may be true. From memory.
-  virtual bool may_have_lost(const HistoryMark& mark) const { return has_lost(mark); }
-  /// Begins a new epoch if a mark is lost, durable on return. \return whether it began.
-  virtual bool begin_epoch_if_lost(const HistoryMark& mark) = 0;
+  virtual bool may_have_lost(const ConsistencyToken& token) const { return has_lost(token); }
+  /// Begins a new epoch if a token is lost, durable on return. \return whether it began.
+  virtual bool begin_epoch_if_lost(const ConsistencyToken& token) = 0;
   virtual StoreStatus status() const = 0;
 
   /// Durable on return. Known: the digest is registered already (its label and text stay). A

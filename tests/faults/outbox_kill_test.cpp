@@ -126,7 +126,7 @@ int fill_up(const std::filesystem::path& folder) {
     if (!outbox.read(uuid))
       return 4;
   // Receipts are noted all the same: what is sent needs no room.
-  outbox.note_store(epoch, HistoryMark(40, 1));
+  outbox.note_store(epoch, ConsistencyToken(40, 1));
   for (const Uuid& uuid : pending)
     outbox.mark_sent(uuid);
   return outbox.pending_count() == 0 ? 0 : 5;

@@ -276,7 +276,7 @@ RegisterReply every_register_reply() {
 ReportRequest every_report_request() {
   ReportRequest request;
   request.attempts = {every_attempt(), every_unsolved_attempt()};
-  request.known_mark = {3, 1, 4, 1, 5};
+  request.known_token = {3, 1, 4, 1, 5};
   return request;
 }
 
@@ -291,7 +291,7 @@ ReportReply every_report_reply() {
     receipt.message = next.text("message");
     reply.receipts.push_back(receipt);
   }
-  reply.history_mark = {2, 7, 1, 8};
+  reply.consistency_token = {2, 7, 1, 8};
   reply.retry_after = std::chrono::milliseconds(next.count());
   reply.message = next.text("message");
   return reply;

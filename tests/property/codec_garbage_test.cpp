@@ -277,7 +277,7 @@ TEST(CodecGarbage, SpoiledAttemptIsRefusedOrKeepsTheRules) {
     const auto read = decode(message.wire).value_or_throw();
     EXPECT_EQ(read.attempts.size() + read.refused.size(), 2U);
     for (const Attempt& attempt : read.attempts)
-      EXPECT_FALSE(find_fault(attempt));
+      EXPECT_FALSE(validate(attempt));
     refused += read.refused.size();
   }
   EXPECT_GT(refused, static_cast<std::size_t>(5 * kCases));
@@ -296,7 +296,7 @@ TEST(CodecGarbage, SpoiledDistributionIsRefusedOrKeepsTheRules) {
     vandal.spoil(message.wire.distribution._buffer[0]);
     const auto read = decode(message.wire);
     if (read)
-      EXPECT_FALSE(check(*read->distribution));
+      EXPECT_FALSE(validate(*read->distribution));
     else
       ++refused;
   }
@@ -316,7 +316,7 @@ TEST(CodecGarbage, SpoiledSelectionIsRefusedOrKeepsTheRules) {
     vandal.spoil(message.wire.selection._buffer[0]);
     const auto read = decode(message.wire);
     if (read)
-      EXPECT_FALSE(check(*read));
+      EXPECT_FALSE(validate(*read));
     else
       ++refused;
   }
@@ -335,7 +335,7 @@ TEST(CodecGarbage, SpoiledRehearsalIsRefusedOrKeepsTheRules) {
     vandal.spoil(message.wire.rehearsal._buffer[0]);
     const auto read = decode(message.wire);
     if (read)
-      EXPECT_FALSE(check(*read->rehearsal));
+      EXPECT_FALSE(validate(*read->rehearsal));
     else
       ++refused;
   }
@@ -353,8 +353,8 @@ TEST(CodecGarbage, SpoiledPublicationIsRefusedOrKeepsTheRules) {
     vandal.spoil(announcement.wire);
     const auto read_event = decode(event.wire);
     const auto read_announcement = decode(announcement.wire);
-    EXPECT_FALSE(read_event && check(*read_event));
-    EXPECT_FALSE(read_announcement && check(*read_announcement));
+    EXPECT_FALSE(read_event && validate(*read_event));
+    EXPECT_FALSE(read_announcement && check_task(read_announcement->task));
     refused += static_cast<int>(!read_event) + static_cast<int>(!read_announcement);
   }
   EXPECT_GT(refused, 10 * kCases);

@@ -53,8 +53,8 @@ class PostgresStore : public SqlStore {
   Uuid epoch() const override { return history_.epoch(); }
   StorePoint point() const override { return history_.point(); }
 
-  bool has_lost(const HistoryMark& mark) const override {
-    const std::optional<LogPosition> unconfirmed = history_.find_unconfirmed(mark);
+  bool has_lost(const ConsistencyToken& token) const override {
+    const std::optional<LogPosition> unconfirmed = history_.find_unconfirmed(token);
     if (!unconfirmed)
       return false;
     try {
@@ -65,13 +65,13 @@ class PostgresStore : public SqlStore {
     }
   }
 
-  bool may_have_lost(const HistoryMark& mark) const override {
-    return history_.find_unconfirmed(mark).has_value();
+  bool may_have_lost(const ConsistencyToken& token) const override {
+    return history_.find_unconfirmed(token).has_value();
   }
 
-  bool begin_epoch_if_lost(const HistoryMark& mark) override {
+  bool begin_epoch_if_lost(const ConsistencyToken& token) override {
     const auto begun = writes_.write(
-        [&](Connection& connection) { return history_.begin_epoch_if_lost(connection, mark); });
+        [&](Connection& connection) { return history_.begin_epoch_if_lost(connection, token); });
     if (begun)
       history_.adopt(*begun);
     return begun.has_value();

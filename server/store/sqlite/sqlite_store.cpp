@@ -65,10 +65,10 @@ class SqliteStore : public SqlStore {
 
   Uuid epoch() const override { return history_.epoch(); }
   StorePoint point() const override { return history_.point(); }
-  bool has_lost(const HistoryMark& mark) const override { return history_.has_lost(mark); }
+  bool has_lost(const ConsistencyToken& token) const override { return history_.has_lost(token); }
 
-  bool begin_epoch_if_lost(const HistoryMark& mark) override {
-    auto item = std::make_unique<History::Renewal>(history_, mark);
+  bool begin_epoch_if_lost(const ConsistencyToken& token) override {
+    auto item = std::make_unique<History::Renewal>(history_, token);
     auto result = item->result();
     writer_->submit(std::move(item));
     return result.get();

@@ -9,7 +9,7 @@ namespace kinship::store {
 namespace {
 
 constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kSignatureBytes = 16;
-constexpr std::size_t kMarkBytes = kUuidBytes + kPositionBytes + kSignatureBytes;
+constexpr std::size_t kTokenBytes = kUuidBytes + kPositionBytes + kSignatureBytes;
 
 /// HMAC (RFC 2104) with SHA-256, whose block has 64 bytes.
 Digest hmac(const Digest& key, std::span<const std::uint8_t> message) {
@@ -35,25 +35,26 @@ Digest random_key() {
   return key;
 }
 
-HistoryMark sign(const Digest& key, const Uuid& epoch, const LogPosition& point) {
-  HistoryMark mark(point.run.bytes.begin(), point.run.bytes.end());
+ConsistencyToken sign(const Digest& key, const Uuid& epoch, const LogPosition& point) {
+  ConsistencyToken token(point.run.bytes.begin(), point.run.bytes.end());
   for (std::size_t i = 0; i < kPositionBytes; ++i)
-    mark.push_back(static_cast<std::uint8_t>(point.position >> (8 * i)));
+    token.push_back(static_cast<std::uint8_t>(point.position >> (8 * i)));
   std::vector<std::uint8_t> message(epoch.bytes.begin(), epoch.bytes.end());
-  message.insert(message.end(), mark.begin(), mark.end());
+  message.insert(message.end(), token.begin(), token.end());
   const Digest whole = hmac(key, message);
-  mark.insert(mark.end(), whole.bytes.begin(), whole.bytes.begin() + kSignatureBytes);
-  return mark;
+  token.insert(token.end(), whole.bytes.begin(), whole.bytes.begin() + kSignatureBytes);
+  return token;
 }
 
-std::optional<LogPosition> verify(const Digest& key, const Uuid& epoch, const HistoryMark& mark) {
-  if (mark.size() != kMarkBytes)
+std::optional<LogPosition> verify(const Digest& key, const Uuid& epoch,
+                                  const ConsistencyToken& token) {
+  if (token.size() != kTokenBytes)
     return std::nullopt;
   LogPosition point;
-  std::copy_n(mark.begin(), kUuidBytes, point.run.bytes.begin());
+  std::copy_n(token.begin(), kUuidBytes, point.run.bytes.begin());
   for (std::size_t i = 0; i < kPositionBytes; ++i)
-    point.position |= static_cast<std::uint64_t>(mark[kUuidBytes + i]) << (8 * i);
-  if (sign(key, epoch, point) != mark)
+    point.position |= static_cast<std::uint64_t>(token[kUuidBytes + i]) << (8 * i);
+  if (sign(key, epoch, point) != token)
     return std::nullopt;
   return point;
 }

@@ -25,9 +25,10 @@ Digest random_key();
 /// position, its first 16 bytes) that only this store can make: a client cannot forge a point at
 /// which the store never was.
 /// \param key  of the store, secret.
-HistoryMark sign(const Digest& key, const Uuid& epoch, const LogPosition& point);
+ConsistencyToken sign(const Digest& key, const Uuid& epoch, const LogPosition& point);
 
-/// \return empty unless the mark was signed with this key in this epoch.
-std::optional<LogPosition> verify(const Digest& key, const Uuid& epoch, const HistoryMark& mark);
+/// \return empty unless the token was signed with this key in this epoch.
+std::optional<LogPosition> verify(const Digest& key, const Uuid& epoch,
+                                  const ConsistencyToken& token);
 
 }  // namespace kinship::store

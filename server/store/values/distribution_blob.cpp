@@ -1,5 +1,6 @@
 #include "server/store/values/distribution_blob.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -11,7 +12,8 @@ namespace kinship::store {
 namespace {
 
 // Written first. Each addition of a format stands at its fields.
-constexpr int kDistributionFormat = newest_format<Source>();
+constexpr int kDistributionFormat =
+    std::max(newest_format(kFieldsOf<Source>), newest_format(kLastFieldsOfDistribution));
 
 constexpr std::tuple kBegin{Field{"id", &Distribution::id},
                             Field{"task", &Distribution::task},
@@ -33,8 +35,7 @@ constexpr std::tuple kMade{Field{"fitted_ms", &Distribution::fitted_ms},
 constexpr std::tuple kEnd{
     Field{"selection", &Distribution::selection},
     Field{"component_scores", &Distribution::component_scores, {.limit = kMaxComponentScores}},
-    Field{"cuts", &Distribution::cuts, {.limit = kMaxDof}}, Field{"fit", &Distribution::fit},
-    Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes}}};
+    Field{"cuts", &Distribution::cuts, {.limit = kMaxDof}}, Field{"fit", &Distribution::fit}};
 
 /// Rules beyond sizes and enumerators.
 void check_choice(const Distribution& distribution) {
@@ -80,6 +81,7 @@ Distribution read_distribution(ByteReader& in) {
   if (in.integer() != 0)
     distribution.mixture = read_mixture(in);
   read_members(in, known, kEnd, distribution);
+  read_members(in, known, kLastFieldsOfDistribution, distribution);
   if (!in.at_end())
     throw std::out_of_range("distribution: bytes left over");
   check_choice(distribution);
@@ -98,6 +100,7 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
   if (distribution.mixture)
     add_mixture(out, *distribution.mixture);
   add_members(out, distribution, kEnd);
+  add_members(out, distribution, kLastFieldsOfDistribution);
   return out.bytes();
 }
 

@@ -12,16 +12,21 @@
 namespace kinship::store {
 namespace {
 
-std::optional<std::string> reason_against(const Attempt& attempt) {
-  if (const std::optional<Error> error = find_fault(attempt))
-    return error->message;
+/// Integers of a database have a sign.
+std::optional<std::string> reason_against(const PlanningRecord& record) {
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  const PlanningRecord& record = attempt.record;
-  for (const std::uint64_t counter :
-       {record.collision_checks, record.projections, record.distribution_revision})
-    if (counter > kLargest)
-      return "counter " + std::to_string(counter) + " exceeds " + std::to_string(kLargest);
-  return std::nullopt;
+  std::optional<std::string> reason;
+  for_each_field<PlanningRecord>([&]<typename Of, typename T>(const Field<Of, T>& field) {
+    if constexpr (std::is_same_v<T, std::uint64_t>)
+      if (record.*field.member > kLargest)
+        reason = std::string(field.name) + " " + std::to_string(record.*field.member) +
+                 " exceeds " + std::to_string(kLargest);
+  });
+  return reason;
+}
+
+Error refusal(const Attempt& attempt, const std::string& reason) {
+  return {ErrorCode::InvalidInput, "attempt " + attempt.report_uuid.text() + ": " + reason};
 }
 
 double length_of(const Eigen::MatrixXd& waypoints) {
@@ -82,9 +87,8 @@ Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine)
 }
 
 Result<PreparedAttempt> prepare(Attempt attempt) {
-  if (auto reason = reason_against(attempt))
-    return Error{ErrorCode::InvalidInput,
-                 "attempt " + attempt.report_uuid.text() + ": " + std::move(*reason)};
+  if (const std::optional<std::string> reason = reason_against(attempt.record))
+    return refusal(attempt, *reason);
   std::optional<PreparedPath> path;
   if (attempt.path) {
     const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
@@ -102,6 +106,8 @@ Result<PreparedAttempt> prepare(Attempt attempt) {
 }
 
 Result<PreparedAttempt> prepare(ReplicatedReport report) {
+  if (const std::optional<Error> error = validate(report.attempt))
+    return refusal(report.attempt, error->message);
   Result<PreparedAttempt> result = prepare(std::move(report.attempt));
   if (!result)
     return result;

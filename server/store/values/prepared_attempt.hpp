@@ -44,9 +44,11 @@ std::vector<Uuid> report_uuids(const std::vector<ReplicatedReport>& reports);
 /// The body of the same report from another machine.
 Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine);
 
-/// \return the reason if it cannot be stored: that of find_fault(), or a counter over 2^63.
+/// \param attempt  valid (validate(Attempt)): the server checked it when it arrived.
+/// \return the reason if it cannot be stored: a counter over 2^63.
 Result<PreparedAttempt> prepare(Attempt attempt);
-/// The same for a report from another store, with the body that its robot sent.
+/// The same for a report from another store, with the body that its robot sent. Its attempt is
+/// checked here.
 Result<PreparedAttempt> prepare(ReplicatedReport report);
 
 }  // namespace kinship::store

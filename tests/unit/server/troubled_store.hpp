@@ -110,17 +110,17 @@ class TroubledStore final : public store::Store {
 
   Uuid epoch() const override { return store_.epoch(); }
   store::StorePoint point() const override { return store_.point(); }
-  /// Called when a mark is looked for in the store; may block.
+  /// Called when a token is looked for in the store; may block.
   std::function<void()> on_lost = [] {};
-  bool has_lost(const HistoryMark& mark) const override {
+  bool has_lost(const ConsistencyToken& token) const override {
     on_lost();
-    return store_.has_lost(mark);
+    return store_.has_lost(token);
   }
-  bool may_have_lost(const HistoryMark& mark) const override {
-    return has_others || store_.may_have_lost(mark);
+  bool may_have_lost(const ConsistencyToken& token) const override {
+    return has_others || store_.may_have_lost(token);
   }
-  bool begin_epoch_if_lost(const HistoryMark& mark) override {
-    return store_.begin_epoch_if_lost(mark);
+  bool begin_epoch_if_lost(const ConsistencyToken& token) override {
+    return store_.begin_epoch_if_lost(token);
   }
   /// Called before the store tells its status; may block, and throw.
   std::function<void()> on_status = [] {};

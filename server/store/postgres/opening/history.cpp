@@ -95,7 +95,7 @@ Uuid timed_uuid() {
   return uuid;
 }
 
-/// Runs beyond the newest few thousand go; the last of them is remembered: a mark of one that old
+/// Runs beyond the newest few thousand go; the last of them is remembered: a token of one that old
 /// is not taken for lost.
 void forget_old_runs(Connection& connection) {
   constexpr std::int64_t kKeptRuns = 4096;
@@ -231,11 +231,11 @@ StorePoint History::point() const {
   return {epoch, sign(key, epoch, point)};
 }
 
-std::optional<LogPosition> History::find_unconfirmed(const HistoryMark& mark) const {
-  if (mark.empty())
+std::optional<LogPosition> History::find_unconfirmed(const ConsistencyToken& token) const {
+  if (token.empty())
     return std::nullopt;
   const std::lock_guard lock(mutex_);
-  const std::optional<LogPosition> point = verify(state_.key, state_.epoch, mark);
+  const std::optional<LogPosition> point = verify(state_.key, state_.epoch, token);
   if (!point || (point->run == state_.run && point->position <= state_.position))
     return std::nullopt;
   const auto seen = seen_runs_.find(point->run);
@@ -259,14 +259,14 @@ bool History::is_gone(Connection& connection, const LogPosition& point) const {
 }
 
 std::optional<History::Begun> History::begin_epoch_if_lost(Connection& connection,
-                                                           const HistoryMark& mark) const {
+                                                           const ConsistencyToken& token) const {
   lock_epochs(connection);
   Digest key;
   {
     const std::lock_guard lock(mutex_);
     key = state_.key;
   }
-  const std::optional<LogPosition> point = verify(key, newest_epoch(connection).epoch, mark);
+  const std::optional<LogPosition> point = verify(key, newest_epoch(connection).epoch, token);
   if (!point || !is_gone(connection, *point))
     return std::nullopt;
   const std::string why =

@@ -16,11 +16,11 @@ namespace kinship::store::postgres {
 std::string identity_of(Connection& connection);
 
 /// The epoch of a store, the position of this server's commits, and whether the point of a client's
-/// consistency token (HistoryMark) is still in the database. Several servers write; each connection
-/// that writes reports is a run, whose position its transactions raise by one in a row of their
-/// own. A mark names a run and a position. It covers all earlier commits: the log of PostgreSQL is
-/// one sequence, and a promoted standby, or a database that was rolled back, has a prefix of it; so
-/// if that commit exists, all earlier ones do. The row of the run tells whether it exists.
+/// consistency token is still in the database. Several servers write; each connection that writes
+/// reports is a run, whose position its transactions raise by one in a row of their own. A token
+/// names a run and a position. It covers all earlier commits: the log of PostgreSQL is one
+/// sequence, and a promoted standby, or a database that was rolled back, has a prefix of it; so if
+/// that commit exists, all earlier ones do. The row of the run tells whether it exists.
 ///
 /// May be shared between threads, except methods that take a connection, which belongs to the
 /// caller.
@@ -47,18 +47,19 @@ class History {
   Uuid run() const;  ///< the current run of this server
   StorePoint point() const;
 
-  /// The point of a mark, if it is of this epoch and not known to be in the database.
-  std::optional<LogPosition> find_unconfirmed(const HistoryMark& mark) const;
+  /// The point of a token, if it is of this epoch and not known to be in the database.
+  std::optional<LogPosition> find_unconfirmed(const ConsistencyToken& token) const;
   /// Whether a unconfirmed point is lost. Remembers how far its run is known.
   bool is_gone(Connection& connection, const LogPosition& point) const;
 
-  /// Begins a new epoch if a mark is lost, in a writing transaction. \return the epoch, for
+  /// Begins a new epoch if a token is lost, in a writing transaction. \return the epoch, for
   /// adopt().
   struct Begun {
     Uuid epoch;
     std::string why;
   };
-  std::optional<Begun> begin_epoch_if_lost(Connection& connection, const HistoryMark& mark) const;
+  std::optional<Begun> begin_epoch_if_lost(Connection& connection,
+                                           const ConsistencyToken& token) const;
   void adopt(const Begun& begun);
 
   std::uint64_t rollbacks() const;  ///< noticed by this object

@@ -158,11 +158,11 @@ StorePoint History::point() const {
   return {epoch, sign(key, epoch, point)};
 }
 
-bool History::has_lost(const HistoryMark& mark) const {
-  if (mark.empty())
+bool History::has_lost(const ConsistencyToken& token) const {
+  if (token.empty())
     return false;
   const std::lock_guard lock(mutex_);
-  const std::optional<LogPosition> point = verify(state_.key, state_.log.epoch(), mark);
+  const std::optional<LogPosition> point = verify(state_.key, state_.log.epoch(), token);
   return point && !state_.log.contains(*point, state_.position);
 }
 
@@ -177,7 +177,7 @@ std::string History::trouble() const {
 }
 
 void History::Renewal::apply(Batch& batch) {
-  if (!history_.has_lost(mark_))
+  if (!history_.has_lost(token_))
     return;
   Database& database = batch.database();
   position_ = position_of(database);

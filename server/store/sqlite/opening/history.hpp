@@ -24,8 +24,8 @@ Uuid write_new_epoch(Database& database, const std::filesystem::path& file);
 std::uint64_t position_of(Database& database);
 
 /// The epoch of a store, the position of its history, and whether a client's consistency token
-/// (HistoryMark) lies on it. May be shared between threads, except methods that take a connection,
-/// which belongs to the caller's thread.
+/// lies on it. May be shared between threads, except methods that take a connection, which belongs
+/// to the caller's thread.
 class History {
  public:
   explicit History(const std::filesystem::path& file);
@@ -44,7 +44,7 @@ class History {
 
   Uuid epoch() const;
   StorePoint point() const;
-  bool has_lost(const HistoryMark& mark) const;
+  bool has_lost(const ConsistencyToken& token) const;
 
   std::uint64_t rollbacks() const;  ///< noticed by this object
   std::string trouble() const;      ///< the last rollback, as text; empty: none
@@ -75,8 +75,8 @@ class History {
 
 class History::Renewal : public WriteItem {
  public:
-  /// \param history, mark  outlive the item, which is done when its result is set.
-  Renewal(History& history, const HistoryMark& mark) : history_(history), mark_(mark) {}
+  /// \param history, token  outlive the item, which is done when its result is set.
+  Renewal(History& history, const ConsistencyToken& token) : history_(history), token_(token) {}
 
   std::future<bool> result() { return promise_.get_future(); }  ///< whether an epoch began
   void apply(Batch& batch) override;
@@ -84,7 +84,7 @@ class History::Renewal : public WriteItem {
 
  private:
   History& history_;
-  const HistoryMark& mark_;
+  const ConsistencyToken& token_;
   std::optional<TimelineHistory> log_;  // empty: nothing was to be done
   std::uint64_t position_ = 0;
   std::promise<bool> promise_;

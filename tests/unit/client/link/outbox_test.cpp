@@ -188,18 +188,18 @@ TEST_F(OutboxTest, ChangedStoreEpochOffersSentReportsAgain) {
 }
 
 TEST_F(OutboxTest, RemembersTheNewestMarkOfTheStore) {
-  EXPECT_TRUE(outbox.known_mark().empty());
+  EXPECT_TRUE(outbox.known_token().empty());
   const Uuid epoch = Uuid::random();
-  const HistoryMark first(40, 0xab), second(64, 0x01);
+  const ConsistencyToken first(40, 0xab), second(64, 0x01);
   outbox.note_store(epoch, first);
-  EXPECT_EQ(Outbox(folder.path()).known_mark(), first);
+  EXPECT_EQ(Outbox(folder.path()).known_token(), first);
   outbox.note_store(epoch, {});  // from a server that gives none
-  EXPECT_EQ(outbox.known_mark(), first);
+  EXPECT_EQ(outbox.known_token(), first);
   outbox.note_store(epoch, second);
-  EXPECT_EQ(outbox.known_mark(), second);
+  EXPECT_EQ(outbox.known_token(), second);
   for (const char* const damaged : {"", "abc", "xyxy\n"}) {
-    write_text(folder.path() / "store_mark", damaged);
-    EXPECT_TRUE(outbox.known_mark().empty()) << damaged;
+    write_text(folder.path() / "consistency_token", damaged);
+    EXPECT_TRUE(outbox.known_token().empty()) << damaged;
   }
 }
 

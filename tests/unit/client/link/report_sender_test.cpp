@@ -226,7 +226,7 @@ class GreetingTest : public ReportSenderTest {
           if (is_silent)
             return Error{ErrorCode::Unavailable, "no answer"};
           ReportReply reply = answer(batch, ReceiptStatus::Stored, "", epoch);
-          reply.history_mark = mark;
+          reply.consistency_token = token;
           return reply;
         },
         ReportSender::Register{}, [this] { return start + std::chrono::minutes(minutes); },
@@ -258,7 +258,7 @@ class GreetingTest : public ReportSenderTest {
   std::condition_variable changed;
   std::vector<ReportRequest> batches;
   Uuid epoch = Uuid::random();
-  HistoryMark mark = {1, 2, 3};
+  ConsistencyToken token = {1, 2, 3};
   bool is_silent = false;
 };
 
@@ -268,9 +268,9 @@ TEST_F(GreetingTest, IdleSenderTellsANewServerWhatItKnowsAndOffersAgainWhatWasLo
   change([&] { epoch = Uuid::random(); });
   ++servers;
   wait_for_batches(3);
-  EXPECT_TRUE(batch(0).known_mark.empty());
+  EXPECT_TRUE(batch(0).known_token.empty());
   EXPECT_TRUE(batch(1).attempts.empty());
-  EXPECT_EQ(batch(1).known_mark, mark);
+  EXPECT_EQ(batch(1).known_token, token);
   EXPECT_EQ(batch(2).attempts.size(), 1U);
   EXPECT_EQ(batch(2).attempts.at(0).report_uuid, batch(0).attempts.at(0).report_uuid);
 }
@@ -285,7 +285,7 @@ TEST_F(GreetingTest, GreetingWithoutAnAnswerIsRepeatedAndTheMarkKept) {
   wait_for_batches(4);
   for (std::size_t i = 1; i < 4; ++i) {
     EXPECT_TRUE(batch(i).attempts.empty());
-    EXPECT_EQ(batch(i).known_mark, mark);
+    EXPECT_EQ(batch(i).known_token, token);
   }
 }
 

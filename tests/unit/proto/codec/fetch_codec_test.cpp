@@ -49,7 +49,7 @@ TEST(FetchCodec, AProfileHas256BytesAtMostOnBothSides) {
   request.profile += 'p';
   message.wire.profile = message.arena->text(request.profile);
   EXPECT_EQ(encode({}, request).error().message, "profile: 257 bytes exceed 256");
-  EXPECT_EQ(decode(message.wire).error().message, "profile (bytes): 257 exceeds 256");
+  EXPECT_EQ(decode(message.wire).error().message, "profile: 257 bytes exceed 256");
 
   FetchReply reply = ready_reply();
   reply.distribution->profile = request.profile;
@@ -58,7 +58,7 @@ TEST(FetchCodec, AProfileHas256BytesAtMostOnBothSides) {
   auto sent = encode({}, reply).value_or_throw();
   EXPECT_EQ(decode(sent.wire).value_or_throw().distribution->profile, reply.distribution->profile);
   sent.wire.distribution._buffer[0].profile = sent.arena->text(request.profile);
-  EXPECT_EQ(decode(sent.wire).error().message, "profile (bytes): 257 exceeds 256");
+  EXPECT_EQ(decode(sent.wire).error().message, "profile: 257 bytes exceed 256");
 }
 
 TEST(FetchCodec, DistributionBelongsToReadyAndFailed) {

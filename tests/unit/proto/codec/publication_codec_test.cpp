@@ -42,7 +42,7 @@ TEST(EventCodec, IncomingOneIsCheckedByName) {
   EXPECT_EQ(decode(message.wire).error().message, "text: has more than one line");
   const std::string text(513, 'x');
   message.wire.text = const_cast<char*>(text.c_str());
-  EXPECT_EQ(decode(message.wire).error().message, "text (bytes): 513 exceeds 512");
+  EXPECT_EQ(decode(message.wire).error().message, "text: 513 bytes exceed 512");
 }
 
 }  // namespace

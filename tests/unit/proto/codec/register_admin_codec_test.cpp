@@ -14,7 +14,7 @@ constexpr std::uint64_t kSeed = 34;
 RobotDescription robot() { return test::RandomValues(kSeed).robot_description(); }
 
 std::string complaint(const RobotDescription& description) {
-  const auto error = check(description);
+  const auto error = validate(description);
   return error ? error->message : "";
 }
 
@@ -101,7 +101,7 @@ TEST(AdminCodec, DeadlineOfARequestComesBackAndIsLimited) {
   EXPECT_EQ(decode(encode({}, request)->wire)->deadline, std::chrono::hours(1));
   request.deadline += std::chrono::milliseconds(1);
   EXPECT_EQ(encode({}, request).error().message,
-            "deadline (ms): 3600001 is not between 0 and 3600000");
+            "deadline_ms: 3600001 is not between 0 and 3600000");
   request.deadline = std::chrono::milliseconds(-1);
   EXPECT_FALSE(encode({}, request));
 }

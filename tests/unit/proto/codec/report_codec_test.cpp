@@ -20,8 +20,12 @@ Attempt solved_attempt(Eigen::Index dof, Eigen::Index waypoints) {
   return attempt;
 }
 
+/// What an attempt breaks; as a message it is then refused, too.
 std::string complaint(const Attempt& attempt) {
-  const auto error = find_fault(attempt);
+  const auto error = validate(attempt);
+  if (const auto message = encode({}, ReportRequest{{attempt}, {}})) {
+    EXPECT_EQ(decode(message->wire)->refused.size(), error ? 1U : 0U);
+  }
   return error ? error->message : "";
 }
 
@@ -147,7 +151,7 @@ TEST(ReportCodec, ABadConstraintIsRefusedByName) {
   wire.T_region_end[6] = 0;
   EXPECT_EQ(decode(message.wire)->attempts.size(), 1U);
   request.attempts[0].scene->constraint->bounds(0, 3) = 0.3;
-  EXPECT_EQ(encode({}, request).error().message,
+  EXPECT_EQ(validate(request.attempts[0])->message,
             "scene: constraint: Bw of roll: lower 0.3 exceeds upper 0.1");
   message.wire.attempts._buffer[0].scene._buffer[0].constraint._buffer = nullptr;
   EXPECT_FALSE(decode(message.wire)->attempts.at(0).scene->constraint) << "of an older client";
@@ -228,21 +232,21 @@ TEST(ReportCodec, AttemptWithoutARecordIsRefused) {
 }
 
 TEST(ReportCodec, MarksComeBackAndHaveALimit) {
-  const HistoryMark mark(kMaxHistoryMarkBytes, 0xa5);
-  const HistoryMark too_long(kMaxHistoryMarkBytes + 1, 0xa5);
-  auto request = encode({}, ReportRequest{{}, {}, mark}).value_or_throw();
-  EXPECT_EQ(decode(request.wire)->known_mark, mark);
+  const ConsistencyToken token(kMaxConsistencyTokenBytes, 0xa5);
+  const ConsistencyToken too_long(kMaxConsistencyTokenBytes + 1, 0xa5);
+  auto request = encode({}, ReportRequest{{}, {}, token}).value_or_throw();
+  EXPECT_EQ(decode(request.wire)->known_token, token);
   EXPECT_EQ(encode({}, ReportRequest{{}, {}, too_long}).error().code, ErrorCode::TooLarge);
-  request.arena->resize(request.wire.known_mark, too_long.size());
-  EXPECT_EQ(decode(request.wire).error().message, "known_mark: 65 exceeds 64");
-  request.wire.known_mark._buffer = nullptr;  // what a shorter message leaves
-  EXPECT_TRUE(decode(request.wire)->known_mark.empty());
+  request.arena->resize(request.wire.known_token, too_long.size());
+  EXPECT_EQ(decode(request.wire).error().message, "known_token: 65 exceeds 64");
+  request.wire.known_token._buffer = nullptr;  // what a shorter message leaves
+  EXPECT_TRUE(decode(request.wire)->known_token.empty());
 
-  auto reply = encode({}, ReportReply{{}, {}, mark}).value_or_throw();
-  EXPECT_EQ(decode(reply.wire)->history_mark, mark);
+  auto reply = encode({}, ReportReply{{}, {}, token}).value_or_throw();
+  EXPECT_EQ(decode(reply.wire)->consistency_token, token);
   EXPECT_EQ(encode({}, ReportReply{{}, {}, too_long}).error().code, ErrorCode::TooLarge);
-  reply.arena->resize(reply.wire.history_mark, too_long.size());
-  EXPECT_EQ(decode(reply.wire).error().message, "history_mark: 65 exceeds 64");
+  reply.arena->resize(reply.wire.consistency_token, too_long.size());
+  EXPECT_EQ(decode(reply.wire).error().message, "consistency_token: 65 exceeds 64");
 }
 
 TEST(ReportCodec, AnOddMessageHoldsNoReceiptBack) {

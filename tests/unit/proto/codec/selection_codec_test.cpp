@@ -51,7 +51,7 @@ TEST(SelectionCodec, TimeIsNotNegativeAndALeaseIsLimited) {
   EXPECT_EQ(complaint(request), "since (ms): -1 is negative");
   request = request_of(0);
   request.follow = std::chrono::seconds(86'401);
-  EXPECT_EQ(complaint(request), "follow (s): 86401 is not between 0 and 86400");
+  EXPECT_EQ(complaint(request), "follow_s: 86401 is not between 0 and 86400");
 }
 
 /// What decoding says to a message in which something was changed.

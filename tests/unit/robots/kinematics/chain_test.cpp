@@ -24,7 +24,7 @@ std::string fault_after(const std::function<void(ChainParts&)>& change) {
   ChainParts changed = parts();
   change(changed);
   EXPECT_THROW(Chain{changed}, std::invalid_argument);
-  return find_fault(changed).value_or("none");
+  return validate(changed).value_or("none");
 }
 
 TEST(Chain, RefusesPartsThatAreNoChainAndNamesThem) {

@@ -179,7 +179,7 @@ TEST(Chain, RefusesMimicJointsThatAreNoneAndNamesThem) {
     mimic.joint.name = "rod";
     mimic.joint.axis *= axis;
     broken.mimics.push_back(mimic);
-    return find_fault(broken).value_or("none");
+    return validate(broken).value_or("none");
   };
   EXPECT_EQ(fault_after(2, 0, 1), "none");
   EXPECT_EQ(fault_after(3, 0, 1), "joint 'rod': joint index 3 is not below its own, 3");

@@ -14,7 +14,7 @@ namespace {
 
 class RolledBack : public ServiceFixture {
  protected:
-  /// The store as it was before the last report, whose mark is kept.
+  /// The store as it was before the last report, whose token is kept.
   void SetUp() override {
     report(fleet::solved(teacher_, "shelf", 6, 1));
     fetch(request_for(pupil_));
@@ -25,22 +25,22 @@ class RolledBack : public ServiceFixture {
     start();
     const ReportReply reply = report({fleet::solved(teacher_, "shelf", 50)});
     epoch_ = reply.store_epoch;
-    lost_ = reply.history_mark;
+    lost_ = reply.consistency_token;
     service_.reset();
     for (const auto& [suffix, bytes] : before)
       std::ofstream(file_.string() + suffix, std::ios::binary | std::ios::trunc) << bytes;
     start();
   }
-  ReportReply say(const HistoryMark& mark, std::vector<Attempt> attempts = {}) {
+  ReportReply say(const ConsistencyToken& token, std::vector<Attempt> attempts = {}) {
     std::promise<ReportReply> reply;
-    service_->report({std::move(attempts), {}, mark},
+    service_->report({std::move(attempts), {}, token},
                      [&](const ReportReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
 
   const std::filesystem::path file_ = directory_ / "fleet.db";
   Uuid epoch_;
-  HistoryMark lost_;
+  ConsistencyToken lost_;
 };
 
 TEST_F(RolledBack, IsToldByAGreetingAndBeginsAnEpochOnce) {
@@ -48,13 +48,14 @@ TEST_F(RolledBack, IsToldByAGreetingAndBeginsAnEpochOnce) {
   const ReportReply reply = say(lost_);
   EXPECT_NE(reply.store_epoch, epoch_);
   EXPECT_TRUE(reply.receipts.empty());
-  EXPECT_FALSE(reply.history_mark.empty());
+  EXPECT_FALSE(reply.consistency_token.empty());
   EXPECT_EQ(service_->status().store_epoch, reply.store_epoch);
   EXPECT_EQ(service_->status().rollbacks, 1U);
   EXPECT_NE(log().find("rolled back behind receipts"), std::string::npos) << log();
   EXPECT_TRUE(is_told("rolled back behind receipts"));
-  for (const HistoryMark& mark : {lost_, reply.history_mark, HistoryMark{}, HistoryMark(40, 7)})
-    EXPECT_EQ(say(mark).store_epoch, reply.store_epoch);
+  for (const ConsistencyToken& token :
+       {lost_, reply.consistency_token, ConsistencyToken{}, ConsistencyToken(40, 7)})
+    EXPECT_EQ(say(token).store_epoch, reply.store_epoch);
   EXPECT_EQ(service_->status().rollbacks, 1U);
 }
 

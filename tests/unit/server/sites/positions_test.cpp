@@ -18,7 +18,7 @@ TEST_F(PositionsTest, AreThereAgainAfterARestart) {
     positions.passed = 12;
     positions.up_retired = "5";
     positions.down_retired = "6";
-    positions.mark = {0, 255, 17};
+    positions.token = {0, 255, 17};
     positions.tasks["shelf 2"] = {"opaque cursor", 1'700'000'000'000};
     positions.refuse({test::id_from<Uuid>(1), "it has no joints"}, false);
     positions.save();
@@ -30,7 +30,7 @@ TEST_F(PositionsTest, AreThereAgainAfterARestart) {
   EXPECT_EQ(positions.passed, 12U);
   EXPECT_EQ(positions.up_retired, "5");
   EXPECT_EQ(positions.down_retired, "6");
-  EXPECT_EQ(positions.mark, (HistoryMark{0, 255, 17}));
+  EXPECT_EQ(positions.token, (ConsistencyToken{0, 255, 17}));
   ASSERT_EQ(positions.tasks.size(), 1U);
   EXPECT_EQ(positions.tasks["shelf 2"].cursor, "opaque cursor");
   EXPECT_EQ(positions.tasks["shelf 2"].used_ms, 1'700'000'000'000);
@@ -49,7 +49,7 @@ TEST_F(PositionsTest, BeginAgainWithAnotherEpochOfEitherSide) {
     positions.passed = 7;
     positions.up_retired = "8";
     positions.down_retired = "9";
-    positions.mark = {1};
+    positions.token = {1};
     positions.tasks["shelf"] = {"9", 5};
     positions.refuse({test::id_from<Uuid>(3), "why"}, true);
     positions.save();
@@ -57,7 +57,7 @@ TEST_F(PositionsTest, BeginAgainWithAnotherEpochOfEitherSide) {
     EXPECT_EQ(positions.up + positions.tasks["shelf"].cursor, "");
     EXPECT_EQ(positions.up_retired + positions.down_retired, "");
     EXPECT_EQ(positions.passed, 0U);
-    EXPECT_TRUE(positions.mark.empty());
+    EXPECT_TRUE(positions.token.empty());
     EXPECT_EQ(positions.tasks["shelf"].used_ms, 5) << "it is wanted as before";
     EXPECT_TRUE(Positions(*site_).refused().empty());
   }

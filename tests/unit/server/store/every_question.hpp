@@ -69,7 +69,7 @@ class EveryQuestion {
     EXPECT_TRUE(store_->find_distribution(test::id_from<Digest>(8)));
     store_->note_use(test::id_from<Digest>(8));
     store_->find_robot(robot_);
-    store_->has_lost(store_->point().mark);
+    store_->has_lost(store_->point().token);
   }
   void list_names() {
     store_->robots();

@@ -68,11 +68,11 @@ TEST_F(HistoryTest, AStoreOpenedAgainKeepsItsEpochAndWhatWasMarked) {
   const Uuid epoch = store_->epoch();
   for (std::uint64_t i = 0; i < 5; ++i) {
     report(10 * i, i);  // of the first run nothing
-    const HistoryMark mark = store_->point().mark;
-    EXPECT_FALSE(store_->has_lost(mark));
+    const ConsistencyToken token = store_->point().token;
+    EXPECT_FALSE(store_->has_lost(token));
     open();
     EXPECT_EQ(store_->epoch(), epoch);
-    EXPECT_FALSE(store_->has_lost(mark)) << i;
+    EXPECT_FALSE(store_->has_lost(token)) << i;
     EXPECT_EQ(store_->status().rollbacks, 0U);
     EXPECT_EQ(store_->status().message.find("rolled back"), std::string::npos);
   }
@@ -108,18 +108,18 @@ TEST_F(HistoryTest, OpeningAndReportingNothingLeavesTheFileAsItIs) {
   report(1, 3);
   const std::string before = snapshot();
   open();
-  const HistoryMark mark = store_->point().mark;
+  const ConsistencyToken token = store_->point().token;
   EXPECT_EQ(snapshot(), before);
   open();
-  EXPECT_FALSE(store_->has_lost(mark));
+  EXPECT_FALSE(store_->has_lost(token));
 }
 
 TEST_F(HistoryTest, TheFirstRunOfAStoreIsKnownBeforeItHasWrittenAnything) {
-  const HistoryMark mark = store_->point().mark;
+  const ConsistencyToken token = store_->point().token;
   open();
   report(1);
   open();
-  EXPECT_FALSE(store_->has_lost(mark));
+  EXPECT_FALSE(store_->has_lost(token));
 }
 
 TEST_F(HistoryTest, ARenamedStoreKeepsItsEpoch) {
@@ -152,18 +152,18 @@ class HistoryOfClients : public HistoryTest {
   void SetUp() override {
     HistoryTest::SetUp();
     report(1, 3);
-    early_ = store_->point().mark;
+    early_ = store_->point().token;
     before_ = snapshot();
     mark_before_ = bytes_of(high_water_mark_);
     open();
     report(10, 3);
-    late_ = store_->point().mark;
+    late_ = store_->point().token;
     epoch_ = store_->epoch();
     roll_back(before_, mark_before_);
     open();
   }
 
-  HistoryMark early_, late_;
+  ConsistencyToken early_, late_;
   std::string before_, mark_before_;
   Uuid epoch_;
 };
@@ -180,16 +180,16 @@ TEST_F(HistoryOfClients, ALaterMarkIsLostAndBeginsOneEpoch) {
   EXPECT_FALSE(store_->begin_epoch_if_lost(late_));
   EXPECT_EQ(store_->status().rollbacks, 1U);
   report(20);
-  const HistoryMark newest = store_->point().mark;
+  const ConsistencyToken newest = store_->point().token;
   open();
   EXPECT_EQ(store_->epoch(), next);
-  EXPECT_EQ(store_->point().mark, newest);
+  EXPECT_EQ(store_->point().token, newest);
   EXPECT_FALSE(store_->has_lost(newest));
 }
 
 TEST_F(HistoryOfClients, AMarkThatTheStoreNeverMadeChangesNothing) {
   for (std::size_t i = 0; i < late_.size(); ++i) {
-    HistoryMark forged = late_;
+    ConsistencyToken forged = late_;
     forged[i] ^= 0x40;
     EXPECT_FALSE(store_->has_lost(forged)) << i;
     EXPECT_FALSE(store_->begin_epoch_if_lost(forged)) << i;

@@ -28,6 +28,27 @@ std::vector<Uuid> all_arrivals(const Store& store, const std::string& task, std:
   return reports;
 }
 
+TEST_P(StoreSharing, RefusesAttemptsOfAnotherStoreThatBreakARule) {
+  Attempt no_path = solved(1);
+  no_path.path.reset();
+  Attempt failed_with_path = solved(2);
+  failed_with_path.record.outcome = Outcome::Failed;
+  Attempt share = solved(3);
+  share.record.share = 1.5;
+  Attempt far_away = solved(4);
+  far_away.T_task_base->translation().x() = 1e6;
+  std::vector<ReplicatedReport> reports;
+  for (const Attempt& attempt : {no_path, failed_with_path, share, far_away, solved(5)})
+    reports.push_back({.attempt = attempt});
+  const std::vector<Receipt> receipts = commit(*store_, std::move(reports));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(receipts[i].status, ReceiptStatus::Refused) << i;
+    EXPECT_FALSE(receipts[i].message.empty()) << i;
+  }
+  EXPECT_EQ(receipts[4].status, ReceiptStatus::Stored);
+  EXPECT_EQ(store_->status().attempts, 1U);
+}
+
 TEST_P(StoreSharing, ArrivalsAreOfAllKindsInTheirOrderAndGoOnBehindACursor) {
   report(solved(3));
   report(test::make_unsolved(iiwa_.digest, "table", 1));

@@ -72,13 +72,13 @@ TEST(TimelineHistory, ComesBackFromItsText) {
 TEST(ConsistencyToken, IsVerifiedByItsOwnKeyInThisEpochAlone) {
   const Digest key = *Digest::from_hex(std::string(64, 'a'));
   const LogPosition point{Uuid::random(), 0x0102030405060708};
-  const HistoryMark mark = sign(key, kEpoch, point);
-  EXPECT_EQ(verify(key, kEpoch, mark), point);
-  EXPECT_FALSE(verify(key, Uuid::random(), mark));
-  EXPECT_FALSE(verify(Digest{}, kEpoch, mark));
+  const ConsistencyToken token = sign(key, kEpoch, point);
+  EXPECT_EQ(verify(key, kEpoch, token), point);
+  EXPECT_FALSE(verify(key, Uuid::random(), token));
+  EXPECT_FALSE(verify(Digest{}, kEpoch, token));
   EXPECT_FALSE(verify(key, kEpoch, {}));
-  for (std::size_t i = 0; i < mark.size(); ++i) {
-    HistoryMark other = mark;
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    ConsistencyToken other = token;
     other[i] ^= 1;
     EXPECT_FALSE(verify(key, kEpoch, other)) << i;
   }

@@ -185,18 +185,18 @@ TEST_F(PostgresStoreTest, WhatOneServerDoesTheOtherSees) {
 TEST_F(PostgresStoreTest, AMarkOfOneServerIsJudgedByTheOther) {
   const std::unique_ptr<Store> other = another();
   test::report(*store_, {attempt(1)});
-  const HistoryMark mark = store_->point().mark;
-  EXPECT_FALSE(other->has_lost(mark));
-  EXPECT_FALSE(other->begin_epoch_if_lost(mark));
+  const ConsistencyToken token = store_->point().token;
+  EXPECT_FALSE(other->has_lost(token));
+  EXPECT_FALSE(other->begin_epoch_if_lost(token));
   // As after a promotion of a standby that had not got the last commit.
   sql("UPDATE run SET position = position - 1 WHERE position > 1");
   const std::unique_ptr<Store> third = another();
-  EXPECT_TRUE(third->has_lost(mark));
+  EXPECT_TRUE(third->has_lost(token));
   const Uuid before = third->epoch();
-  EXPECT_TRUE(third->begin_epoch_if_lost(mark));
+  EXPECT_TRUE(third->begin_epoch_if_lost(token));
   EXPECT_NE(third->epoch(), before);
-  EXPECT_FALSE(third->has_lost(mark));
-  EXPECT_FALSE(other->begin_epoch_if_lost(mark)) << "one epoch for one loss";
+  EXPECT_FALSE(third->has_lost(token));
+  EXPECT_FALSE(other->begin_epoch_if_lost(token)) << "one epoch for one loss";
   EXPECT_EQ(test::report(*store_, {attempt(2)}).at(0).status, ReceiptStatus::Stored);
   EXPECT_EQ(store_->epoch(), third->epoch());
   EXPECT_GT(store_->generation(robot_.digest, "shelf"), 1'000'000U);

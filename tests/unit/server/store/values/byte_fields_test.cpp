@@ -20,7 +20,7 @@ inline constexpr std::tuple kFieldsOf<Crate>{Field{"bottles", &Crate::bottles},
 namespace store::byte_fields_test {
 namespace {
 
-static_assert(newest_format<Crate>() == 2);
+static_assert(newest_format(kFieldsOf<Crate>) == 2);
 
 TEST(ByteFields, WhatAFormatLacksKeepsItsDefault) {
   ByteWriter older, newer;

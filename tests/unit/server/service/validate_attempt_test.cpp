@@ -1,4 +1,4 @@
-#include "server/service/check_attempt.hpp"
+#include "server/service/validate_attempt.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,14 +6,14 @@
 
 #include "tests/unit/server/fleet.hpp"
 
-namespace kinship::service::check_attempt_test {
+namespace kinship::service::validate_attempt_test {
 namespace {
 
 class CheckAttempt : public testing::Test {
  protected:
   /// The message, or empty.
   std::string check() const {
-    const std::optional<Error> error = check_attempt(attempt_, robot_);
+    const std::optional<Error> error = validate(attempt_, robot_);
     if (!error)
       return "";
     EXPECT_EQ(error->code, ErrorCode::InvalidInput);
@@ -68,4 +68,4 @@ TEST_F(CheckAttempt, AJointWithoutLimitsCountsItsTurnsUpToALimit) {
 }
 
 }  // namespace
-}  // namespace kinship::service::check_attempt_test
+}  // namespace kinship::service::validate_attempt_test

@@ -12,9 +12,9 @@ namespace kinship::service {
 /// only.
 inline constexpr double kLimitTolerance = 1e-6;
 
-/// Why a valid attempt (checked by find_fault() on arrival) does not fit this robot, or nothing:
+/// Why a valid attempt (validate(Attempt) on arrival) does not fit this robot, or nothing:
 /// its path has another number of joints, or lies outside their limits. The error names the first
 /// violation with its value and limit; joints and waypoints count from 1.
-std::optional<Error> check_attempt(const Attempt& attempt, const runtime::Robot& robot);
+std::optional<Error> validate(const Attempt& attempt, const runtime::Robot& robot);
 
 }  // namespace kinship::service

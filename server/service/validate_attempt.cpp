@@ -1,4 +1,4 @@
-#include "server/service/check_attempt.hpp"
+#include "server/service/validate_attempt.hpp"
 
 #include <algorithm>
 #include <string>
@@ -59,7 +59,7 @@ std::optional<Error> check_path(const Path& path, const runtime::Robot& robot) {
 
 }  // namespace
 
-std::optional<Error> check_attempt(const Attempt& attempt, const runtime::Robot& robot) {
+std::optional<Error> validate(const Attempt& attempt, const runtime::Robot& robot) {
   return attempt.path ? check_path(*attempt.path, robot) : std::nullopt;
 }
 
