@@ -28,7 +28,7 @@ Examples:
       any run: kinship-experiments page --help
   kinship-experiments planar --out build/experiments --quick
       the whole first experiment with few instances: learning sets, distributions, queries
-  kinship-experiments planar --out client/experiments/results --resume
+  kinship-experiments planar --out build/experiments --resume
       goes on with what is there
   kinship-experiments planar --out build/tuning --tuning --overshoot 1.5 --share 0.9
       the same on tuning instances, to choose options by
