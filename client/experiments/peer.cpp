@@ -21,7 +21,7 @@ namespace kinship::experiments {
 namespace {
 
 using Json = nlohmann::json;
-using planning::ExperienceKind;
+using ompl_planners::ExperienceKind;
 
 /// A problem of a robot with what answers its collision questions.
 struct Scenery {
@@ -105,7 +105,7 @@ class PeerRun {
                                       problem.T_task_base->inverse() * problem.T_task_goal.value(),
                                       bounds, is_free, goal_options)
             .configurations;
-    planning::OmplOptions ompl;
+    ompl_planners::OmplOptions ompl;
     ompl.planner = "RRTConnect";
     ompl.range = range_;
     ompl.limits.step = study_.settings.resolution;
@@ -115,9 +115,9 @@ class PeerRun {
     const Json recalled =
         half_of(experience_->recall(problem.start, goals, is_free, ompl.limits, recall));
     return {{"recall", recalled},
-            {"scratch", half_of(planning::plan_with_ompl(problem.start, goals, is_free,
-                                                         planning::ConfigurationSampler(bounds),
-                                                         ompl, scratch))}};
+            {"scratch", half_of(ompl_planners::plan_with_ompl(
+                            problem.start, goals, is_free, planning::ConfigurationSampler(bounds),
+                            ompl, scratch))}};
   }
 
  private:
@@ -129,7 +129,7 @@ class PeerRun {
   const StudyMember& member_;
   ExperienceKind kind_ = ExperienceKind::Lightning;
   double range_ = 0;
-  std::optional<planning::OmplExperience> experience_;
+  std::optional<ompl_planners::OmplExperience> experience_;
 };
 
 }  // namespace
