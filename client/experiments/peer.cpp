@@ -1,12 +1,13 @@
 #include "client/experiments/peer.hpp"
 
+#include <iomanip>
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <random>
+#include <sstream>
 
-#include "client/experiments/formatted.hpp"
 #include "client/ompl/ompl_experience.hpp"
 #include "client/ompl/ompl_planner.hpp"
 #include "proto/json/problem_json.hpp"
@@ -86,10 +87,12 @@ class PeerRun {
     }
     if (!experience_)
       throw Failure(ErrorCode::NotFound, "no paths to learn");
-    return formatted("%zu of %zu paths kept whole, %zu %s, %llu checks, %.1f s", kept, solved,
-                     experience_->size(), kind_ == ExperienceKind::Lightning ? "paths" : "vertices",
-                     static_cast<unsigned long long>(experience_->learning_checks()),
-                     planning::thread_time_s() - begin_s);
+    std::ostringstream learned;
+    learned << kept << " of " << solved << " paths kept whole, " << experience_->size()
+            << (kind_ == ExperienceKind::Lightning ? " paths, " : " vertices, ")
+            << experience_->learning_checks() << " checks, " << std::fixed << std::setprecision(1)
+            << planning::thread_time_s() - begin_s << " s";
+    return learned.str();
   }
 
   Json answer(Problem asked) {
