@@ -35,19 +35,19 @@ int main(int count, char** words) try {
   const Distribution distribution = client.fetch(request).value_or_throw().distribution.value();
 
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(arm.chain, start);
-  const auto space = planning::make_state_space(bounds);
-  planning::install_guided_sampler(
+  const auto space = ompl_planners::make_state_space(bounds);
+  ompl_planners::install_guided_sampler(
       *space,
       std::make_shared<const planning::ConfigurationSampler>(
           bounds, arm.chain, distribution.mixture.value(), distribution.advice.recommended_share),
       1);
   ompl::geometric::SimpleSetup setup(space);
   setup.setStateValidityChecker([&](const ob::State* state) {
-    return !world.collides(planning::to_configuration(*state, arm.chain.dof()));
+    return !world.collides(ompl_planners::to_configuration(*state, arm.chain.dof()));
   });
   ob::ScopedState<> from(space), to(space);
-  planning::copy_to_state(start, *from.get());
-  planning::copy_to_state(goal, *to.get());
+  ompl_planners::copy_to_state(start, *from.get());
+  ompl_planners::copy_to_state(goal, *to.get());
   setup.setStartAndGoalStates(from, to);
   setup.setPlanner(std::make_shared<ompl::geometric::RRTConnect>(setup.getSpaceInformation()));
   const bool solved = setup.solve(20) == ob::PlannerStatus::EXACT_SOLUTION;

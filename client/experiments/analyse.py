@@ -29,7 +29,7 @@ def main() -> int:
     arguments = parser.parse_args()
     sys.dont_write_bytecode = True  # nothing is left in the source tree
     try:
-        from analysis import calibration, family, report, study_folder, transferability, tuning
+        from analysis import family, report, study_folder, transferability
     except ModuleNotFoundError as error:
         print(f"analyse.py: {error}; on Debian: apt-get install {PACKAGES}", file=sys.stderr)
         return 1
@@ -42,9 +42,9 @@ def main() -> int:
             return 0
         folder = study_folder.StudyFolder(arguments.folder)
         if arguments.calibration:
-            print(calibration.calibration_text(folder), end="")
+            print(report.calibration_text(folder), end="")
         elif arguments.tuning:
-            print(tuning.tuning_text(folder), end="")
+            print(report.tuning_text(folder), end="")
         else:
             report.write_report(folder)
     except (OSError, ValueError) as error:

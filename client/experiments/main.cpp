@@ -3,8 +3,9 @@
 #include <sstream>
 
 #include "client/arguments/command_options.hpp"
-#include "client/experiments/commands.hpp"
 #include "client/experiments/page_options.hpp"
+#include "client/experiments/python_program.hpp"
+#include "client/experiments/station_problems.hpp"
 #include "client/experiments/study_options.hpp"
 #include "proto/files/output_file.hpp"
 #include "proto/manual/manual.hpp"
@@ -28,7 +29,7 @@ Examples:
       any run: kinship-experiments page --help
   kinship-experiments planar --out build/experiments --quick
       the whole first experiment with few instances: learning sets, distributions, queries
-  kinship-experiments planar --out client/experiments/results --resume
+  kinship-experiments planar --out build/experiments --resume
       goes on with what is there
   kinship-experiments planar --out build/tuning --tuning --overshoot 1.5 --share 0.9
       the same on tuning instances, to choose options by
@@ -41,8 +42,6 @@ struct CommandLine {
   std::filesystem::path output;
   std::string placed_at = std::string(to_text(Station::Machine));
   models::RobotArguments placed;
-  CompareOptions compare;
-  std::vector<std::string> also;
   PageOptions page;
   StudyOptions study;
 };
@@ -81,17 +80,21 @@ void add_placement(CLI::App& app, CommandLine& line) {
       ->capture_default_str();
 }
 
-void add_compare(CLI::App& app, CommandLine& line) {
+/// Python compares, which is told the options as they were given.
+void add_compare(CLI::App& app) {
   CLI::App* const compare = app.add_subcommand(
       "compare", "compare two result files of kinship-plan over the same problems");
-  compare->add_option("--uniform", line.compare.uniform, "results without guidance")->required();
-  compare->add_option("--guided", line.compare.guided, "results with guidance")->required();
-  compare
-      ->add_option("--also", line.also,
-                   "NAME=FILE: other results over the same problems, each compared with uniform "
-                   "planning in a line below; may be repeated")
+  const auto add = [&](const char* name, const char* text) {
+    return compare->add_option(name, CLI::callback_t(), text)->type_name("TEXT");
+  };
+  add("--uniform", "results without guidance")->required();
+  add("--guided", "results with guidance")->required();
+  add("--also",
+      "NAME=FILE: other results over the same problems, each compared with uniform planning in a "
+      "line below; may be repeated")
       ->take_all();
-  compare->add_flag("--json", line.compare.json, "one JSON document instead of a table");
+  compare->add_flag_callback(
+      "--json", [] {}, "one JSON document instead of a table");
 }
 
 Eigen::Isometry3d read_placement(const std::string& text) {
@@ -116,12 +119,6 @@ void write_problems(const CommandLine& line, StationOptions options) {
   output.keep();
 }
 
-void write_compared(CommandLine& line) {
-  for (const std::string& also : line.also)
-    line.compare.also.push_back(parse_also(also));
-  run_comparison(line.compare);
-}
-
 int run(int argc, char** argv) {
   CommandLine line;
   line.shelf.station = Station::Shelf;
@@ -134,7 +131,7 @@ int run(int argc, char** argv) {
               line);
   add_station(app, "a held box goes from a table into a shelf", line.shelf, line);
   add_placement(app, line);
-  add_compare(app, line);
+  add_compare(app);
   add_page_command(app, line.page);
   add_study_commands(app, line.study);
   try {
@@ -154,9 +151,9 @@ int run(int argc, char** argv) {
     write_placement(line.placed_at == to_text(Station::Shelf) ? Station::Shelf : Station::Machine,
                     line.placed, std::cout);
   else if (app.got_subcommand("page"))
-    run_page_command(line.page);
+    run_page_command(line.page, {argv + 1, argv + argc});
   else
-    write_compared(line);
+    become_python("compare.py", *app.get_subcommand("compare"));
   return kDone;
 }
 

@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <iterator>
 
 #include "client/arguments/command_options.hpp"
-#include "client/experiments/commands.hpp"
+#include "client/experiments/page/run_page.hpp"
+#include "client/experiments/python_program.hpp"
 #include "proto/files/output_file.hpp"
 
 namespace kinship::experiments {
@@ -30,32 +32,6 @@ Examples:
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist.)";
 
-void add_files(CLI::App& page, PageOptions& options) {
-  RunFiles& files = options.run.files;
-  page.add_option(
-      "--model", files.robot.source,
-      "model folder of the robot, or a URDF file with --base and --tip; MODELS/ROBOT if "
-      "missing");
-  arguments::add_robot_options(page, files.robot);
-  page.add_option("--problems", files.problems, "what was planned with both");
-  page.add_option("--uniform", files.uniform, "results of kinship-plan without guidance");
-  page.add_option("--guided", files.guided, "results of kinship-plan with guidance");
-  page.add_option("--distribution", files.distribution,
-                  "what kinship distributions fetch --json wrote before");
-  page.add_option("--advice", files.advice,
-                  "the same fetched after the attempts, for what the server advises now");
-  page.add_option("--uniform-searches", files.uniform_searches,
-                  "what kinship-plan --searches wrote, without guidance");
-  page.add_option("--guided-searches", files.guided_searches, "and with guidance");
-  page.add_option("--also", options.also,
-                  "NAME=FILE: results over the same problems to show beside those, e.g. of one "
-                  "guide alone; may be repeated")
-      ->take_all();
-  page.add_option("--teacher", options.teachers,
-                  "MODEL,PROBLEMS,RESULTS of a robot whose experience it is; may be repeated")
-      ->take_all();
-}
-
 }  // namespace
 
 void add_page_command(CLI::App& app, PageOptions& options) {
@@ -64,25 +40,43 @@ void add_page_command(CLI::App& app, PageOptions& options) {
       "write an HTML page that shows what experience was worth to a robot; it needs nothing "
       "else");
   page->footer(kPageExamples);
-  page->add_option("--run", options.run.folder,
-                   "folder in which files that are not named are looked for");
-  page->add_option("--models", options.run.models, "folder of model folders");
-  page->add_option("--robot", options.run.robot,
-                   "beginning of the robot's files in the folder; needed if there are several");
-  page->add_option("--teachers,--fleet", options.run.teachers,
-                   "those of the experienced robots; all that are there if missing")
+  page->callback([&options, page] { options.command = page; });
+  const auto add = [&](const char* name, const char* text) {
+    return page->add_option(name, CLI::callback_t(), text)->type_name("TEXT");
+  };
+  add("--run", "folder in which files that are not named are looked for");
+  add("--models", "folder of model folders");
+  add("--robot", "beginning of the robot's files in the folder; needed if there are several");
+  add("--teachers,--fleet", "those of the experienced robots; all that are there if missing")
+      ->expected(1, CLI::detail::expected_max_vector_size)
       ->delimiter(',');
-  add_files(*page, options);
+  add("--model",
+      "model folder of the robot, or a URDF file with --base and --tip; MODELS/ROBOT if "
+      "missing");
+  arguments::add_robot_options(*page, options.robot);
+  add("--problems", "what was planned with both");
+  add("--uniform", "results of kinship-plan without guidance");
+  add("--guided", "results of kinship-plan with guidance");
+  add("--distribution", "what kinship distributions fetch --json wrote before");
+  add("--advice", "the same fetched after the attempts, for what the server advises now");
+  add("--uniform-searches", "what kinship-plan --searches wrote, without guidance");
+  add("--guided-searches", "and with guidance");
+  add("--also",
+      "NAME=FILE: results over the same problems to show beside those, e.g. of one guide alone; "
+      "may be repeated")
+      ->take_all();
+  add("--teacher", "MODEL,PROBLEMS,RESULTS of a robot whose experience it is; may be repeated")
+      ->take_all();
   page->add_option("--output", options.output, "file to write; standard output if missing");
+  page->add_flag("--draws", options.draws, "draw the run that standard input describes")->group("");
 }
 
-void run_page_command(PageOptions options) {
-  for (const std::string& teacher : options.teachers)
-    options.run.files.teachers.push_back(parse_teacher(teacher));
-  for (const std::string& also : options.also)
-    options.run.files.also.push_back(parse_also(also));
+void run_page_command(const PageOptions& options, const std::vector<std::string>& arguments) {
+  if (!options.draws)
+    become_python("page.py", *options.command, {{"arguments", arguments}});
+  const std::string document{std::istreambuf_iterator<char>(std::cin), {}};
   files::OutputFile output(options.output, std::cout);
-  write_page(options.run, output.stream());
+  write_page(parse_run(document, options.robot), output.stream());
   output.keep();
 }
 

@@ -1,12 +1,13 @@
 #include "client/experiments/peer.hpp"
 
+#include <iomanip>
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <random>
+#include <sstream>
 
-#include "client/experiments/formatted.hpp"
 #include "client/ompl/ompl_experience.hpp"
 #include "client/ompl/ompl_planner.hpp"
 #include "proto/json/problem_json.hpp"
@@ -21,7 +22,7 @@ namespace kinship::experiments {
 namespace {
 
 using Json = nlohmann::json;
-using planning::ExperienceKind;
+using ompl_planners::ExperienceKind;
 
 /// A problem of a robot with what answers its collision questions.
 struct Scenery {
@@ -86,10 +87,12 @@ class PeerRun {
     }
     if (!experience_)
       throw Failure(ErrorCode::NotFound, "no paths to learn");
-    return formatted("%zu of %zu paths kept whole, %zu %s, %llu checks, %.1f s", kept, solved,
-                     experience_->size(), kind_ == ExperienceKind::Lightning ? "paths" : "vertices",
-                     static_cast<unsigned long long>(experience_->learning_checks()),
-                     planning::thread_time_s() - begin_s);
+    std::ostringstream learned;
+    learned << kept << " of " << solved << " paths kept whole, " << experience_->size()
+            << (kind_ == ExperienceKind::Lightning ? " paths, " : " vertices, ")
+            << experience_->learning_checks() << " checks, " << std::fixed << std::setprecision(1)
+            << planning::thread_time_s() - begin_s << " s";
+    return learned.str();
   }
 
   Json answer(Problem asked) {
@@ -105,7 +108,7 @@ class PeerRun {
                                       problem.T_task_base->inverse() * problem.T_task_goal.value(),
                                       bounds, is_free, goal_options)
             .configurations;
-    planning::OmplOptions ompl;
+    ompl_planners::OmplOptions ompl;
     ompl.planner = "RRTConnect";
     ompl.range = range_;
     ompl.limits.step = study_.settings.resolution;
@@ -115,9 +118,9 @@ class PeerRun {
     const Json recalled =
         half_of(experience_->recall(problem.start, goals, is_free, ompl.limits, recall));
     return {{"recall", recalled},
-            {"scratch", half_of(planning::plan_with_ompl(problem.start, goals, is_free,
-                                                         planning::ConfigurationSampler(bounds),
-                                                         ompl, scratch))}};
+            {"scratch", half_of(ompl_planners::plan_with_ompl(
+                            problem.start, goals, is_free, planning::ConfigurationSampler(bounds),
+                            ompl, scratch))}};
   }
 
  private:
@@ -129,7 +132,7 @@ class PeerRun {
   const StudyMember& member_;
   ExperienceKind kind_ = ExperienceKind::Lightning;
   double range_ = 0;
-  std::optional<planning::OmplExperience> experience_;
+  std::optional<ompl_planners::OmplExperience> experience_;
 };
 
 }  // namespace

@@ -1,23 +1,19 @@
 #pragma once
 
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
-/// Programs in Debian's Python, whose packages are what Kinship is tested with.
+namespace CLI {  // NOLINT: theirs
+class App;
+}
+
 namespace kinship::experiments {
 
-/// The folder of the programs in Python, in the sources.
-std::filesystem::path python_folder();
-
-/// Runs a program in place of this one.
+/// Runs a program of this folder in Debian's Python, whose packages are what Kinship is tested
+/// with, in place of this program. It gets one argument, a JSON document: by name a list of
+/// words for each option of the command, as given or its default, "program", this one, and `more`.
 /// \throws Failure(NotFound) without the program or Python.
-[[noreturn]] void become_python(const std::filesystem::path& program,
-                                const std::vector<std::string>& arguments);
-
-/// What a program writes. Its messages go where those of this one go.
-/// \throws Failure(NotFound) likewise, and if it says so; Failure(InvalidInput) if it fails.
-std::string output_of_python(const std::filesystem::path& program,
-                             const std::vector<std::string>& arguments);
+[[noreturn]] void become_python(const std::string& script, const CLI::App& command,
+                                const nlohmann::json& more = nlohmann::json::object());
 
 }  // namespace kinship::experiments

@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <optional>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "client/experiments/machine_scene.hpp"
-#include "client/experiments/shelf_scene.hpp"
+#include "client/experiments/station_scene.hpp"
 #include "client/experiments/studies/instance_draws.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
+#include "proto/types/pose.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/inverse.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::experiments {
+
 namespace {
 
 constexpr double kStationTimeLimit_s =
@@ -112,6 +117,34 @@ Problem draw_station_problem(Station station, const models::LoadedRobot& robot,
           "' where it stands (is its placement right?) has no free start and goal in",
       std::string(to_text(station)),
       [&](const InstanceKey& draw) { return try_draw(station, robot, T_task_base, draw); });
+}
+
+void write_station_problems(const StationOptions& options, std::ostream& out,
+                            std::ostream& messages) {
+  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  const std::string& label = robot.description.label;
+  const Eigen::Isometry3d T_task_base =
+      options.T_task_base.value_or(placement_at(options.station, label));
+  std::uint32_t redrawn = 0;
+  for (std::uint32_t index = 0; index < options.count; ++index) {
+    const Problem problem =
+        draw_station_problem(options.station, robot, T_task_base, {options.seed, index, 0});
+    if (problem.name.find('.') != std::string::npos)
+      ++redrawn;
+    out << json::to_json(problem) << '\n';
+    if (!out)
+      throw Failure(ErrorCode::Storage, "cannot write the problems");
+  }
+  messages << options.count << " problems for " << label << ", " << redrawn
+           << " of them in a scene drawn again\n";
+}
+
+void write_placement(Station station, const models::RobotArguments& robot, std::ostream& out) {
+  const RobotDescription description = models::describe_robot(robot).value_or_throw();
+  const PoseArray pose = to_pose_array(placement_at(station, description.label));
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    out << (i == 0 ? "" : " ") << pose[i];
+  out << '\n';
 }
 
 }  // namespace kinship::experiments

@@ -2,19 +2,22 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 
-#include "client/experiments/studies/instance_random.hpp"
+#include "client/experiments/studies/instance_draws.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/models/loaded_robot.hpp"
+#include "robots/models/robot_arguments.hpp"
 
 namespace kinship::experiments {
 
 /// The tasks of the quickstart.
 enum class Station {
-  Machine,  ///< a part goes from a pallet through the door of a machine: machine_scene
-  Shelf     ///< a box goes from a table into a compartment of a shelf: shelf_scene
+  Machine,  ///< a part goes from a pallet through the door of a machine
+  Shelf     ///< a box goes from a table into a compartment of a shelf
 };
 
 /// "machine" or "shelf", which is what names of instances begin with.
@@ -37,5 +40,21 @@ Problem draw_station_problem(Station station, const models::LoadedRobot& robot,
                              const Eigen::Isometry3d& T_task_base, const InstanceKey& key);
 
 inline constexpr std::uint32_t kMaxDraws = 50;
+
+/// The command line of `machine` and `shelf`.
+struct StationOptions {
+  Station station = Station::Machine;
+  models::RobotArguments robot;
+  std::uint32_t count = 40;
+  std::uint64_t seed = 1;
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< empty: placement_at of the robot's label
+};
+
+/// Writes `count` problems of the task, one JSON document a line; progress on `messages`.
+void write_station_problems(const StationOptions& options, std::ostream& out,
+                            std::ostream& messages);
+
+/// Writes "x y z qx qy qz qw" of the robot's placement in the task.
+void write_placement(Station station, const models::RobotArguments& robot, std::ostream& out);
 
 }  // namespace kinship::experiments

@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "client/experiments/studies/instance_random.hpp"
+#include "client/experiments/studies/instance_draws.hpp"
 #include "proto/types/scene.hpp"
 
 namespace kinship::experiments {
@@ -41,5 +41,25 @@ void add_box(Scene& scene, std::string name, const Eigen::Vector3d& size,
 
 /// The table top that a robot stands on: `middle` and `size` in x and y, m.
 void add_table_top(Scene& scene, const Eigen::Vector2d& middle, const Eigen::Vector2d& size);
+
+/// Draws an instance of loading a machine: a part is taken from a pallet beside the robot and put
+/// onto a fixture behind the door of a machine.
+///
+/// Machine and pallet stand about 2 cm and 3 degrees from their nominal places, the part anywhere
+/// on the pallet, the fixture about 1.5 cm from its place in the machine. Equal generator, equal
+/// scene.
+StationScene draw_machine_scene(std::mt19937_64& generator);
+
+/// Draws an instance of filling a shelf: a box is taken from a table and put into a compartment of
+/// a shelf.
+///
+/// The shelf, the box to fetch and everything beside them stand about 2 cm and a few degrees from
+/// their nominal places; one of the four compartments is the goal, one or two others are occupied.
+/// Equal generator, equal scene.
+StationScene draw_shelf_scene(std::mt19937_64& generator);
+
+/// The held box, and its pose in the transfer frame.
+BoxShape held_box();
+Eigen::Isometry3d T_transfer_box();
 
 }  // namespace kinship::experiments

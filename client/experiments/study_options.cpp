@@ -9,8 +9,8 @@
 #include "client/arguments/command_options.hpp"
 #include "client/experiments/peer.hpp"
 #include "client/experiments/python_program.hpp"
+#include "client/experiments/studies/fleet.hpp"
 #include "client/experiments/studies/instance_draws.hpp"
-#include "client/experiments/studies/study_description.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/rehearsal.hpp"
@@ -124,25 +124,11 @@ void add_other_tasks(CLI::App& command, StudyOptions& options) {
       ->excludes(tunes);
 }
 
-/// The options as they were given, and the defaults of others, by name: lists of words.
-nlohmann::json words_of(const CLI::App& command) {
-  nlohmann::json words;
-  for (const CLI::Option* option : command.get_options())
-    if (option->count() > 0)
-      words[option->get_name().substr(2)] = option->results();
-    else if (!option->get_default_str().empty())
-      words[option->get_name().substr(2)] = {option->get_default_str()};
-  return words;
-}
-
 void run_in_python(const StudyOptions& options) {
-  nlohmann::json run = words_of(*options.command);
-  run["profile"] = {options.profile};
-  run["name"] = {options.study};
+  nlohmann::json more{{"name", {options.study}}, {"profile", {options.profile}}};
   for (const Study* const study : find_studies(options.study))
-    run["studies"].push_back(study->name);
-  run["program"] = {std::filesystem::read_symlink("/proc/self/exe").string()};
-  become_python(python_folder() / "run_study.py", {run.dump()});
+    more["studies"].push_back(study->name);
+  become_python("run_study.py", *options.command, more);
 }
 
 void write_instances(const Study& study, const StudyOptions& options,

@@ -212,11 +212,11 @@ class Planning {
                  : planning::plan_roadmap(start, goals, is_free_, sampler, roadmap, generator_);
     }
     if (planner.kind == PlannerKind::Ompl) {
-      const planning::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
+      const ompl_planners::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
       return constraint_
-                 ? planning::plan_with_ompl(start, goals, {is_free_, *constraint_}, sampler, ompl,
-                                            generator_)
-                 : planning::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
+                 ? ompl_planners::plan_with_ompl(start, goals, {is_free_, *constraint_}, sampler,
+                                                 ompl, generator_)
+                 : ompl_planners::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
     }
     return constraint_ ? planning::plan_cbirrt2(start, goals, {is_free_, *constraint_}, sampler,
                                                 options, generator_)

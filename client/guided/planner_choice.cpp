@@ -31,7 +31,7 @@ Result<PlannerChoice> parse_planner(std::string_view text) {
         ErrorCode::InvalidInput,
         "'" + std::string(text) + "' is no planner: give birrt, cbirrt2, roadmap or ompl:NAME"};
   const std::string name(text.substr(kOmpl.size()));
-  const std::vector<std::string> names = planning::ompl_planner_names();
+  const std::vector<std::string> names = ompl_planners::ompl_planner_names();
   if (std::ranges::find(names, name) == names.end())
     return Error{
         ErrorCode::InvalidInput,

@@ -18,7 +18,7 @@ enum class PlannerKind {
 /// The planner of a run's problems.
 struct PlannerChoice {
   PlannerKind kind = PlannerKind::ByProblem;
-  std::string ompl_planner = {};  ///< of planning::ompl_planner_names(); with Ompl only
+  std::string ompl_planner = {};  ///< of ompl_planners::ompl_planner_names(); with Ompl only
 };
 
 /// "birrt", "cbirrt2", "roadmap" or "ompl:NAME".

@@ -10,7 +10,7 @@
 
 #include "client/ompl/state_space.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 namespace {
 
 namespace ob = ompl::base;
@@ -40,9 +40,9 @@ ob::RealVectorStateSpace& sampled_space(ob::StateSpace& space) {
 
 }  // namespace
 
-GuidedStateSampler::GuidedStateSampler(const ompl::base::StateSpace* space,
-                                       std::shared_ptr<const ConfigurationSampler> sampler,
-                                       std::uint64_t seed)
+GuidedStateSampler::GuidedStateSampler(
+    const ompl::base::StateSpace* space,
+    std::shared_ptr<const planning::ConfigurationSampler> sampler, std::uint64_t seed)
     : ompl::base::StateSampler(space),
       sampler_(std::move(sampler)),
       generator_(seed),
@@ -64,7 +64,7 @@ void GuidedStateSampler::sampleGaussian(ompl::base::State* state, const ompl::ba
 }
 
 void install_guided_sampler(ompl::base::StateSpace& space,
-                            std::shared_ptr<const ConfigurationSampler> sampler,
+                            std::shared_ptr<const planning::ConfigurationSampler> sampler,
                             std::uint64_t seed) {
   ob::RealVectorStateSpace& sampled = sampled_space(space);
   if (static_cast<Eigen::Index>(sampled.getDimension()) != sampler->bounds().cols())
@@ -79,4 +79,4 @@ void install_guided_sampler(ompl::base::StateSpace& space,
   });
 }
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

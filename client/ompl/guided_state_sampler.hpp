@@ -8,7 +8,7 @@
 
 #include "robots/planning/configuration_sampler.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 
 /// Gives any planner of OMPL the samples of a ConfigurationSampler in place of uniform ones;
 /// samples near a state are those of the space. One planner thread uses one instance.
@@ -20,7 +20,8 @@ class GuidedStateSampler : public ompl::base::StateSampler {
   /// \param space    from make_state_space, with as many joints as the sampler has.
   /// \param sampler  shared by all instances that planners of the space allocate.
   GuidedStateSampler(const ompl::base::StateSpace* space,
-                     std::shared_ptr<const ConfigurationSampler> sampler, std::uint64_t seed);
+                     std::shared_ptr<const planning::ConfigurationSampler> sampler,
+                     std::uint64_t seed);
 
   void sampleUniform(ompl::base::State* state) override;
   void sampleUniformNear(ompl::base::State* state, const ompl::base::State* near,
@@ -29,7 +30,7 @@ class GuidedStateSampler : public ompl::base::StateSampler {
                       double standard_deviation) override;
 
  private:
-  std::shared_ptr<const ConfigurationSampler> sampler_;
+  std::shared_ptr<const planning::ConfigurationSampler> sampler_;
   std::mt19937_64 generator_;
   ompl::base::StateSamplerPtr space_sampler_;
 };
@@ -42,7 +43,7 @@ class GuidedStateSampler : public ompl::base::StateSampler {
 /// \throws std::invalid_argument if space and sampler differ in size, or for another space: an
 ///         AtlasStateSpace or TangentBundleStateSpace draws from its charts.
 void install_guided_sampler(ompl::base::StateSpace& space,
-                            std::shared_ptr<const ConfigurationSampler> sampler,
+                            std::shared_ptr<const planning::ConfigurationSampler> sampler,
                             std::uint64_t seed);
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

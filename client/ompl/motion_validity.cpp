@@ -9,7 +9,7 @@
 #include "client/ompl/state_space.hpp"
 #include "robots/planning/is_free.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 namespace {
 
 namespace ob = ompl::base;
@@ -24,8 +24,8 @@ SeveralStatesValidity::SeveralStatesValidity(const ob::SpaceInformationPtr& info
       between_(std::move(between)) {}
 
 bool SeveralStatesValidity::are_valid(const Eigen::Ref<const Eigen::MatrixXd>& qs) const {
-  for (Eigen::Index first = 0, together = kFewTogether; first < qs.cols();
-       first += std::exchange(together, kTogether)) {
+  for (Eigen::Index first = 0, together = planning::kFewTogether; first < qs.cols();
+       first += std::exchange(together, planning::kTogether)) {
     const Eigen::Index count = std::min(together, qs.cols() - first);
     if (ahead_(qs.middleCols(first, count)) < count)
       return false;
@@ -76,4 +76,4 @@ Eigen::MatrixXd StraightMotionValidator::asked(const ob::State& from, const ob::
   return qs;
 }
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Motions of OMPL whose states are checked together; for this library's sources only.
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 
 /// A validity checker for several states at once.
 class SeveralStatesValidity : public ompl::base::StateValidityChecker {
@@ -55,4 +55,4 @@ class StraightMotionValidator : public ompl::base::DiscreteMotionValidator {
   Eigen::MatrixXd asked(const ompl::base::State& from, const ompl::base::State& to) const;
 };
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

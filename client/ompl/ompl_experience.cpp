@@ -20,7 +20,7 @@
 #include "robots/planning/path_vertices.hpp"
 #include "robots/planning/planning_budget.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 namespace {
 
 namespace ob = ompl::base;
@@ -162,9 +162,9 @@ class OmplExperience::Implementation {
     memory_ = make_memory(kind, information_, range);
   }
 
-  bool learn(const Eigen::MatrixXd& waypoints, const IsFree& is_free) {
-    PlanningBudget budget(is_free, std::numeric_limits<std::uint64_t>::max(),
-                          std::chrono::hours(1));
+  bool learn(const Eigen::MatrixXd& waypoints, const planning::IsFree& is_free) {
+    planning::PlanningBudget budget(is_free, std::numeric_limits<std::uint64_t>::max(),
+                                    std::chrono::hours(1));
     budget_ = &budget;
     og::PathGeometric path(information_);
     ob::ScopedState<> state(information_);
@@ -178,13 +178,14 @@ class OmplExperience::Implementation {
     return kept;
   }
 
-  PlanSummary recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                     const IsFree& is_free, const BirrtOptions& limits,
-                     std::mt19937_64& generator) {
-    PlanningBudget budget(is_free, limits.max_checks, limits.time_limit);
+  planning::PlanSummary recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                               const planning::IsFree& is_free,
+                               const planning::BirrtOptions& limits, std::mt19937_64& generator) {
+    planning::PlanningBudget budget(is_free, limits.max_checks, limits.time_limit);
     budget_ = &budget;
-    install_guided_sampler(*space_, std::make_shared<ConfigurationSampler>(bounds_), generator());
-    PlanSummary summary;
+    install_guided_sampler(*space_, std::make_shared<planning::ConfigurationSampler>(bounds_),
+                           generator());
+    planning::PlanSummary summary;
     if (memory_->size() > 0 && budget.is_free(start)) {
       // OMPL stops looking at the first goal that collides; Thunder then does not come back.
       const Eigen::MatrixXd targets = free_ones(goals, budget);
@@ -196,10 +197,10 @@ class OmplExperience::Implementation {
     summary.collision_checks = budget.checks();
     summary.planning_time_s = budget.thread_time_s();
     if (!summary.waypoints)
-      summary.reason = budget.exhausted() ? budget.reason() : NoPath::NothingRecalled;
+      summary.reason = budget.exhausted() ? budget.reason() : planning::NoPath::NothingRecalled;
     else if (!is_path(*summary.waypoints, is_free)) {
       summary.waypoints.reset();
-      summary.reason = NoPath::RecallCollides;
+      summary.reason = planning::NoPath::RecallCollides;
     }
     budget_ = nullptr;
     return summary;
@@ -228,10 +229,10 @@ class OmplExperience::Implementation {
     if (planner->solve(ended) != ob::PlannerStatus::EXACT_SOLUTION || !problem->hasExactSolution())
       return std::nullopt;
     auto& path = *problem->getSolutionPath()->as<og::PathGeometric>();
-    return densified(to_waypoints(path.getStates(), bounds_.cols()), part_);
+    return planning::densified(to_waypoints(path.getStates(), bounds_.cols()), part_);
   }
 
-  static Eigen::MatrixXd free_ones(const Eigen::MatrixXd& goals, PlanningBudget& budget) {
+  static Eigen::MatrixXd free_ones(const Eigen::MatrixXd& goals, planning::PlanningBudget& budget) {
     Eigen::MatrixXd kept(goals.rows(), goals.cols());
     Eigen::Index count = 0;
     for (const auto& goal : goals.colwise())
@@ -240,7 +241,7 @@ class OmplExperience::Implementation {
     return kept.leftCols(count);
   }
 
-  static bool is_path(const Eigen::MatrixXd& waypoints, const IsFree& is_free) {
+  static bool is_path(const Eigen::MatrixXd& waypoints, const planning::IsFree& is_free) {
     return std::ranges::all_of(waypoints.colwise(), [&](const auto& q) { return is_free(q); });
   }
 
@@ -249,7 +250,7 @@ class OmplExperience::Implementation {
   double part_ = 0;
   ob::SpaceInformationPtr information_;
   std::unique_ptr<Memory> memory_;
-  PlanningBudget* budget_ = nullptr;  // of the call under way
+  planning::PlanningBudget* budget_ = nullptr;  // of the call under way
   std::uint64_t learning_checks_ = 0;
 };
 
@@ -258,7 +259,7 @@ OmplExperience::OmplExperience(ExperienceKind kind, const Eigen::Matrix2Xd& boun
     : implementation_(std::make_unique<Implementation>(kind, bounds, step, range)) {}
 OmplExperience::~OmplExperience() = default;
 
-bool OmplExperience::learn(const Eigen::MatrixXd& waypoints, const IsFree& is_free) {
+bool OmplExperience::learn(const Eigen::MatrixXd& waypoints, const planning::IsFree& is_free) {
   try {
     return implementation_->learn(waypoints, is_free);
   } catch (const ompl::Exception& exception) {
@@ -270,9 +271,11 @@ std::size_t OmplExperience::size() const { return implementation_->memory().size
 
 std::uint64_t OmplExperience::learning_checks() const { return implementation_->learning_checks(); }
 
-PlanSummary OmplExperience::recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                                   const IsFree& is_free, const BirrtOptions& limits,
-                                   std::mt19937_64& generator) {
+planning::PlanSummary OmplExperience::recall(const Eigen::VectorXd& start,
+                                             const Eigen::MatrixXd& goals,
+                                             const planning::IsFree& is_free,
+                                             const planning::BirrtOptions& limits,
+                                             std::mt19937_64& generator) {
   try {
     return implementation_->recall(start, goals, is_free, limits, generator);
   } catch (const ompl::Exception& exception) {
@@ -280,4 +283,4 @@ PlanSummary OmplExperience::recall(const Eigen::VectorXd& start, const Eigen::Ma
   }
 }
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -9,7 +9,7 @@
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/is_free.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 
 /// The planners of OMPL that reuse the robot's own paths.
 enum class ExperienceKind {
@@ -40,7 +40,7 @@ class OmplExperience {
   /// \param waypoints  dof x n, n >= 2.
   /// \param is_free    of the path's scene: Thunder checks while it builds its roadmap.
   /// \return           whether OMPL kept the whole path.
-  bool learn(const Eigen::MatrixXd& waypoints, const IsFree& is_free);
+  bool learn(const Eigen::MatrixXd& waypoints, const planning::IsFree& is_free);
 
   /// Paths of Lightning, vertices of Thunder's roadmap.
   std::size_t size() const;
@@ -52,12 +52,13 @@ class OmplExperience {
   /// plan_birrt, NothingRecalled if retrieval and repair gave up, RecallCollides if OMPL's path is
   /// invalid.
   /// \throws Failure(Internal) with the message of OMPL's exception.
-  PlanSummary recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                     const IsFree& is_free, const BirrtOptions& limits, std::mt19937_64& generator);
+  planning::PlanSummary recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                               const planning::IsFree& is_free,
+                               const planning::BirrtOptions& limits, std::mt19937_64& generator);
 
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -23,7 +23,7 @@
 #include "robots/planning/path_vertices.hpp"
 #include "robots/planning/planning_budget.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 namespace {
 
 namespace ob = ompl::base;
@@ -54,13 +54,13 @@ PlanningSpace straight_space(const Eigen::Matrix2Xd& bounds, double step) {
   planning.way = [part](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
     Eigen::MatrixXd ends(from.size(), 2);
     ends << from, to;
-    return densified(ends, part);
+    return planning::densified(ends, part);
   };
   return planning;
 }
 
-PlanningSpace constrained_space(const Eigen::Matrix2Xd& bounds, RegionConstraint& constraint,
-                                double step) {
+PlanningSpace constrained_space(const Eigen::Matrix2Xd& bounds,
+                                planning::RegionConstraint& constraint, double step) {
   const auto space = std::make_shared<RegionStateSpace>(make_state_space(bounds), constraint, step);
   PlanningSpace planning;
   planning.information = std::make_shared<ob::ConstrainedSpaceInformation>(space);
@@ -83,7 +83,7 @@ PlanningSpace constrained_space(const Eigen::Matrix2Xd& bounds, RegionConstraint
 /// One query in a space.
 class OmplQuery {
  public:
-  OmplQuery(PlanningSpace space, const IsFree& is_free, const OmplOptions& options)
+  OmplQuery(PlanningSpace space, const planning::IsFree& is_free, const OmplOptions& options)
       : space_(std::move(space)),
         budget_(is_free, options.limits.max_checks, options.limits.time_limit),
         end_(std::chrono::steady_clock::now() + options.limits.time_limit),
@@ -102,10 +102,10 @@ class OmplQuery {
     problem_->setOptimizationObjective(first_path);
   }
 
-  PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
-    PlanSummary summary;
+  planning::PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+    planning::PlanSummary summary;
     summary.reason = pose(start, goals);
-    if (summary.reason == NoPath::None)
+    if (summary.reason == planning::NoPath::None)
       summary.waypoints = standstill_ ? standstill_ : solve(summary);
     summary.collision_checks = budget_.checks();
     summary.planning_time_s = budget_.thread_time_s();
@@ -115,7 +115,7 @@ class OmplQuery {
  private:
   bool is_free_at(const Eigen::VectorXd& q) {
     const bool free = (!space_.holds || space_.holds(q)) && budget_.is_free(q);
-    if (budget_.reason() != NoPath::None)
+    if (budget_.reason() != planning::NoPath::None)
       ended_ = true;
     return free;
   }
@@ -125,17 +125,17 @@ class OmplQuery {
     while (holding < qs.cols() && space_.holds(qs.col(holding)))
       ++holding;
     const Eigen::Index free = holding == 0 ? 0 : budget_.free_ahead(qs.leftCols(holding));
-    if (budget_.reason() != NoPath::None)
+    if (budget_.reason() != planning::NoPath::None)
       ended_ = true;
     return free;
   }
 
   /// Gives OMPL start and free goals. \return why there is nothing to plan, if so.
-  NoPath pose(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+  planning::NoPath pose(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     if (goals.cols() == 0)
-      return NoPath::NoGoal;
+      return planning::NoPath::NoGoal;
     if (!budget_.is_free(start))
-      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
+      return budget_.exhausted() ? budget_.reason() : planning::NoPath::StartCollides;
     const auto targets = std::make_shared<ob::GoalStates>(space_.information);
     ob::ScopedState<> state(space_.information);
     for (const auto& goal : goals.colwise()) {
@@ -150,14 +150,14 @@ class OmplQuery {
     if (budget_.exhausted())
       return budget_.reason();
     if (!targets->hasStates())
-      return NoPath::GoalsCollide;
+      return planning::NoPath::GoalsCollide;
     space_.copy_to(start, *state.get());
     problem_->addStartState(state);
     problem_->setGoal(targets);
-    return NoPath::None;
+    return planning::NoPath::None;
   }
 
-  std::optional<Eigen::MatrixXd> solve(PlanSummary& summary) {
+  std::optional<Eigen::MatrixXd> solve(planning::PlanSummary& summary) {
     // Atomic and a constant: some planners ask from a second thread.
     const ob::PlannerTerminationCondition ended(
         [this] { return ended_ || std::chrono::steady_clock::now() >= end_; });
@@ -166,8 +166,8 @@ class OmplQuery {
     const ob::PlannerStatus status = planner_->solve(ended);
     if (status == ob::PlannerStatus::EXACT_SOLUTION)
       return waypoints();
-    summary.reason = budget_.exhausted() ? budget_.reason() : NoPath::GaveUp;
-    if (summary.reason == NoPath::GaveUp)
+    summary.reason = budget_.exhausted() ? budget_.reason() : planning::NoPath::GaveUp;
+    if (summary.reason == planning::NoPath::GaveUp)
       summary.planner_message = "OMPL: " + status.asString();
     return std::nullopt;
   }
@@ -190,7 +190,7 @@ class OmplQuery {
   }
 
   PlanningSpace space_;
-  PlanningBudget budget_;
+  planning::PlanningBudget budget_;
   std::chrono::time_point<std::chrono::steady_clock, std::chrono::duration<double>> end_;
   std::atomic<bool> ended_ = false;
   ob::PlannerPtr planner_;
@@ -198,8 +198,9 @@ class OmplQuery {
   std::optional<Eigen::MatrixXd> standstill_;
 };
 
-PlanSummary run(PlanningSpace space, const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                const IsFree& is_free, const OmplOptions& options) {
+planning::PlanSummary run(PlanningSpace space, const Eigen::VectorXd& start,
+                          const Eigen::MatrixXd& goals, const planning::IsFree& is_free,
+                          const OmplOptions& options) {
   try {
     return OmplQuery(std::move(space), is_free, options).run(start, goals);
   } catch (const ompl::Exception& exception) {
@@ -210,29 +211,31 @@ PlanSummary run(PlanningSpace space, const Eigen::VectorXd& start, const Eigen::
 
 }  // namespace
 
-PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                           const IsFree& is_free, const ConfigurationSampler& sampler,
-                           const OmplOptions& options, std::mt19937_64& generator) {
+planning::PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                     const planning::IsFree& is_free,
+                                     const planning::ConfigurationSampler& sampler,
+                                     const OmplOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_with_ompl", start, goals, sampler, options.limits);
   ompl::msg::noOutputHandler();
   PlanningSpace space = straight_space(sampler.bounds(), options.limits.step);
   install_guided_sampler(*space.information->getStateSpace(),
-                         std::make_shared<ConfigurationSampler>(sampler), generator());
+                         std::make_shared<planning::ConfigurationSampler>(sampler), generator());
   return run(std::move(space), start, goals, is_free, options);
 }
 
-PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                           const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
-                           const OmplOptions& options, std::mt19937_64& generator) {
+planning::PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                     const planning::ConstrainedFreedom& freedom,
+                                     const planning::ConfigurationSampler& sampler,
+                                     const OmplOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_with_ompl", start, goals, sampler, options.limits);
   ompl::msg::noOutputHandler();
   return plan_along(start, goals, freedom.constraint, [&](const Eigen::MatrixXd& reachable) {
     PlanningSpace space =
         constrained_space(sampler.bounds(), freedom.constraint, options.limits.step);
     install_guided_sampler(*space.information->getStateSpace(),
-                           std::make_shared<ConfigurationSampler>(sampler), generator());
+                           std::make_shared<planning::ConfigurationSampler>(sampler), generator());
     return run(std::move(space), start, reachable, freedom.is_free, options);
   });
 }
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -8,14 +8,14 @@
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/cbirrt2.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 
 struct OmplOptions {
   std::string planner = "RRTConnect";  ///< one of ompl_planner_names()
   /// Longest extension, joint units; 0: OMPL's choice, a fifth of the space's extent. Planners
   /// without extensions have none.
   double range = 0;
-  BirrtOptions limits;  ///< step, checks and time; OMPL knows no overshoot
+  planning::BirrtOptions limits;  ///< step, checks and time; OMPL knows no overshoot
 };
 
 /// The planners that draw uniform samples from the space, so that guidance reaches them, in
@@ -39,14 +39,16 @@ std::vector<std::string> ompl_planner_names();
 /// \throws std::invalid_argument as plan_birrt, if bounds leave a joint no room, the range is
 ///         negative, or for an unknown planner, with the known names.
 /// \throws Failure(Internal) with the message of OMPL's exception.
-PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                           const IsFree& is_free, const ConfigurationSampler& sampler,
-                           const OmplOptions& options, std::mt19937_64& generator);
+planning::PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                     const planning::IsFree& is_free,
+                                     const planning::ConfigurationSampler& sampler,
+                                     const OmplOptions& options, std::mt19937_64& generator);
 
 /// The same along a task space region, on a RegionStateSpace; paths, goals and reasons as in
 /// plan_cbirrt2. The dof is at least 2.
-PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                           const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
-                           const OmplOptions& options, std::mt19937_64& generator);
+planning::PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                     const planning::ConstrainedFreedom& freedom,
+                                     const planning::ConfigurationSampler& sampler,
+                                     const OmplOptions& options, std::mt19937_64& generator);
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -15,7 +15,7 @@
 
 #include "client/ompl/ompl_planner.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 namespace {
 
 namespace ob = ompl::base;
@@ -145,4 +145,4 @@ ob::PlannerPtr make_ompl_planner(const std::string& name, double range,
   return planner;
 }
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -1,12 +1,14 @@
 #include "client/ompl/region_state_space.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "client/ompl/motion_validity.hpp"
-#include "client/ompl/region_ompl_constraint.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
+
 namespace {
 
 namespace ob = ompl::base;
@@ -21,8 +23,8 @@ Eigen::VectorXd to_constrained_configuration(const ob::State& state) {
   return *state.as<ob::ConstrainedStateSpace::StateType>();
 }
 
-RegionStateSpace::RegionStateSpace(const ob::StateSpacePtr& ambient, RegionConstraint& region,
-                                   double step)
+RegionStateSpace::RegionStateSpace(const ob::StateSpacePtr& ambient,
+                                   planning::RegionConstraint& region, double step)
     : ob::ProjectedStateSpace(ambient,
                               std::make_shared<RegionOmplConstraint>(
                                   static_cast<Eigen::Index>(ambient->getDimension()), region)),
@@ -114,4 +116,41 @@ bool RegionMotionValidator::checkMotion(const ob::State* from, const ob::State* 
   return arrived;
 }
 
-}  // namespace kinship::planning
+namespace {
+
+unsigned checked(Eigen::Index dof) {
+  if (dof < 2)
+    throw std::invalid_argument("RegionOmplConstraint: " + std::to_string(dof) +
+                                " joints leave nothing free, need at least 2");
+  return static_cast<unsigned>(dof);
+}
+
+}  // namespace
+
+RegionOmplConstraint::RegionOmplConstraint(Eigen::Index dof, planning::RegionConstraint& region)
+    : ompl::base::Constraint(checked(dof), 1, planning::RegionConstraint::kWaypointTolerance),
+      region_(region) {}
+
+void RegionOmplConstraint::function(const Eigen::Ref<const Eigen::VectorXd>& q,
+                                    Eigen::Ref<Eigen::VectorXd> out) const {
+  out[0] = region_.distance(q);
+}
+
+void RegionOmplConstraint::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q,
+                                    Eigen::Ref<Eigen::MatrixXd> out) const {
+  const planning::RegionConstraint::Vector6 excess = region_.excess(q);
+  const double distance = excess.norm();
+  if (distance == 0)
+    out.setZero();
+  else
+    out = excess.transpose() * region_.derivative(q) / distance;
+}
+
+bool RegionOmplConstraint::project(Eigen::Ref<Eigen::VectorXd> q) const {
+  Eigen::VectorXd projected = q;
+  const bool arrived = region_.project(projected);
+  q = projected;
+  return arrived;
+}
+
+}  // namespace kinship::ompl_planners

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ompl/base/Constraint.h>
 #include <ompl/base/MotionValidator.h>
 #include <ompl/base/spaces/constraint/ProjectedStateSpace.h>
 
@@ -8,8 +9,9 @@
 #include <vector>
 
 #include "robots/planning/constrained_stepper.hpp"
+#include "robots/planning/region_constraint.hpp"
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 
 /// Configurations along a task space region as a projected space of OMPL whose steps are those of
 /// plan_cbirrt2, so that its motions have the guarantees of plan_cbirrt2: at most `step` apart,
@@ -19,7 +21,8 @@ class RegionStateSpace : public ompl::base::ProjectedStateSpace {
  public:
   /// \param ambient  from make_state_space.
   /// \param region   borrowed: must outlive this; counts the projections.
-  RegionStateSpace(const ompl::base::StateSpacePtr& ambient, RegionConstraint& region, double step);
+  RegionStateSpace(const ompl::base::StateSpacePtr& ambient, planning::RegionConstraint& region,
+                   double step);
 
   /// The configurations from one to another along the region, both included; equal in both
   /// directions. Not checked for collisions.
@@ -36,8 +39,8 @@ class RegionStateSpace : public ompl::base::ProjectedStateSpace {
   bool holds(const Eigen::VectorXd& q) const { return region_.holds(q); }
 
  private:
-  RegionConstraint& region_;
-  mutable ConstrainedStepper stepper_;  // OMPL asks for ways by const methods
+  planning::RegionConstraint& region_;
+  mutable planning::ConstrainedStepper stepper_;  // OMPL asks for ways by const methods
 };
 
 /// Whether the way between two states of a RegionStateSpace is free, the second state included.
@@ -57,4 +60,30 @@ class RegionMotionValidator : public ompl::base::MotionValidator {
 /// \param state  of a constrained space.
 Eigen::VectorXd to_constrained_configuration(const ompl::base::State& state);
 
-}  // namespace kinship::planning
+/// A task space region as OMPL takes a constraint, for a ProjectedStateSpace: one equation, the
+/// distance to the region, and the projection of RegionConstraint in place of OMPL's Newton steps.
+/// Not for an AtlasStateSpace: a region is no manifold, and its inside has no tangent space.
+///
+/// Not shared between threads, and neither are spaces over it: projecting counts.
+class RegionOmplConstraint : public ompl::base::Constraint {
+ public:
+  /// \param dof     at least 2.
+  /// \param region  borrowed: must outlive this and the spaces over it.
+  /// \throws std::invalid_argument if there are fewer joints.
+  RegionOmplConstraint(Eigen::Index dof, planning::RegionConstraint& region);
+
+  /// Distance to the region, 1 m = 1 rad: 1.
+  void function(const Eigen::Ref<const Eigen::VectorXd>& q,
+                Eigen::Ref<Eigen::VectorXd> out) const override;
+
+  /// Its derivative, per joint unit; 0 within the region: 1 x dof.
+  void jacobian(const Eigen::Ref<const Eigen::VectorXd>& q,
+                Eigen::Ref<Eigen::MatrixXd> out) const override;
+
+  bool project(Eigen::Ref<Eigen::VectorXd> q) const override;
+
+ private:
+  planning::RegionConstraint& region_;
+};
+
+}  // namespace kinship::ompl_planners

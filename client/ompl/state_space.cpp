@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 namespace {
 
 using RealVectorState = ompl::base::RealVectorStateSpace::StateType;
@@ -42,4 +42,4 @@ Eigen::MatrixXd to_waypoints(const std::vector<ompl::base::State*>& states, Eige
   return waypoints;
 }
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

@@ -9,7 +9,7 @@ class RealVectorStateSpace;
 class State;
 }  // namespace ompl::base
 
-namespace kinship::planning {
+namespace kinship::ompl_planners {
 
 /// The configurations within bounds as a state space of OMPL: one real number per joint, Euclidean
 /// distance in joint units. Joints do not wrap; planning_bounds chooses the turn.
@@ -27,4 +27,4 @@ Eigen::VectorXd to_configuration(const ompl::base::State& state, Eigen::Index do
 /// Waypoints of a path of OMPL (PathGeometric::getStates()): dof x n.
 Eigen::MatrixXd to_waypoints(const std::vector<ompl::base::State*>& states, Eigen::Index dof);
 
-}  // namespace kinship::planning
+}  // namespace kinship::ompl_planners

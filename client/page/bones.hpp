@@ -29,4 +29,9 @@ std::vector<SceneObject> held_objects(const models::LoadedRobot& robot,
                                       const Eigen::Isometry3d& T_task_base,
                                       const Eigen::Ref<const Eigen::VectorXd>& q);
 
+/// The objects of a scene that view.js draws: its solids, and boxes around its meshes and point
+/// clouds.
+/// \param scene  read (models::SceneMeshes); objects without triangles or voxels are left out.
+std::vector<SceneObject> drawn_objects(const Scene& scene);
+
 }  // namespace kinship::page

@@ -57,6 +57,13 @@ std::string millimetres(const Eigen::Ref<const Eigen::MatrixXd>& lengths_m) {
   return whole(lengths_m, kMillimetres);
 }
 
+std::string object(std::initializer_list<std::pair<std::string_view, std::string>> members) {
+  std::string json = "{";
+  for (const auto& [name, value] : members)
+    json += (json.size() > 1 ? "," : "") + json_string(name) + ":" + value;
+  return json + "}";
+}
+
 std::string json_of(const SceneObject& object) {
   return "{\"name\":" + json_string(object.name) +
          ",\"pose\":" + list(to_pose_array(object.T_task_object), number) + "," +

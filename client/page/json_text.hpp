@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/page/bones.hpp"
@@ -32,6 +34,9 @@ std::string list(const Values& values, const ToJson& each_to_json) {
     json += (json.size() > 1 ? "," : "") + each_to_json(value);
   return json + "]";
 }
+
+/// A JSON object of members that are JSON themselves.
+std::string object(std::initializer_list<std::pair<std::string_view, std::string>> members);
 
 /// A solid for view.js: {"name", "pose": [7], "box" | "cylinder" | "sphere"}.
 std::string json_of(const SceneObject& object);

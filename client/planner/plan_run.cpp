@@ -15,7 +15,6 @@
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
 #include "client/planner/server_line.hpp"
-#include "client/planner/transfer_warning.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/geometry/geometry_doubts.hpp"

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 #include "proto/types/problem.hpp"
@@ -21,5 +22,9 @@ std::vector<ProblemLine> read_problem_lines(std::istream& stream);
 
 /// The result for a line that holds no problem.
 ProblemResult broken_line_result(std::size_t number, const Error& error);
+
+/// The warning of a run without a transfer frame: poses of its problems are taken for those of the
+/// tip link; it names the option to pass. A line, or empty if no problem gives a pose.
+std::string transfer_warning(const std::vector<ProblemLine>& lines, const std::string& tip_link);
 
 }  // namespace kinship::planner

@@ -9,8 +9,14 @@
 #include "proto/types/transferability.hpp"
 
 /// Pages of a server's data: one HTML document each, which needs no network (client/page), with its
-/// data as one JSON document in it.
+/// data as one JSON document in it. Lengths are whole millimetres, times Unix time in ms.
 namespace kinship::plots {
+
+/// The distribution as in `distributions fetch --json`, without its mixture, and the data derived
+/// from it.
+std::string to_json(const DistributionPlot& plot);
+
+std::string to_json(const TaskHistory& history);
 
 void write_page(const DistributionPlot& plot, std::ostream& out);
 void write_page(const TaskHistory& history, std::ostream& out);

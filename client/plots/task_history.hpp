@@ -95,4 +95,11 @@ std::int64_t bin_length_ms(std::int64_t first_ms, std::int64_t last_ms);
 TaskHistory history_of(const std::string& task, std::vector<AttemptSummary> attempts,
                        const std::vector<DistributionSummary>& distributions);
 
+/// Fills in the estimated worth of guidance at the end of each bin with judged attempts: of the
+/// planner of most of them, because checks of two planners cannot be compared; of all profiles
+/// together. Nothing before kMinCompared of either mode.
+/// \param attempts  of one robot, by time.
+void add_benefit(const std::vector<const AttemptSummary*>& attempts, const TaskHistory& history,
+                 RobotHistory& robot);
+
 }  // namespace kinship::plots

@@ -54,28 +54,28 @@ planning::BirrtOptions limits(const Instance& instance) {
 
 /// With the planner of OMPL that is named, or with ours.
 planning::PlanSummary plan(const Instance& instance,
-                           const std::optional<planning::OmplOptions>& ompl,
+                           const std::optional<ompl_planners::OmplOptions>& ompl,
                            const planning::IsFree& is_free) {
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(instance.chain, instance.start);
   const planning::ConfigurationSampler sampler(bounds);
   std::mt19937_64 generator(instance.seed);
   ompl::RNG::setSeed(instance.seed + 1);
   if (instance.region == nullptr)
-    return ompl ? planning::plan_with_ompl(instance.start, instance.goals, is_free, sampler, *ompl,
-                                           generator)
+    return ompl ? ompl_planners::plan_with_ompl(instance.start, instance.goals, is_free, sampler,
+                                                *ompl, generator)
                 : planning::plan_birrt(instance.start, instance.goals, is_free, sampler,
                                        limits(instance), generator);
   planning::RegionConstraint constraint(instance.chain, *instance.region,
                                         Eigen::Isometry3d::Identity(), bounds);
   const planning::ConstrainedFreedom freedom{is_free, constraint};
-  return ompl ? planning::plan_with_ompl(instance.start, instance.goals, freedom, sampler, *ompl,
-                                         generator)
+  return ompl ? ompl_planners::plan_with_ompl(instance.start, instance.goals, freedom, sampler,
+                                              *ompl, generator)
               : planning::plan_cbirrt2(instance.start, instance.goals, freedom, sampler,
                                        limits(instance), generator);
 }
 
 planning::PlanSummary plan(const Instance& instance,
-                           const std::optional<planning::OmplOptions>& ompl) {
+                           const std::optional<ompl_planners::OmplOptions>& ompl) {
   return plan(instance, ompl, planning::free_in(instance.world));
 }
 
@@ -90,21 +90,21 @@ planning::PlanSummary plan_by_fcl(const Instance& instance) {
 planning::PlanSummary plan_with_ompl_alone(const Instance& instance) {
   namespace ob = ompl::base;
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(instance.chain, instance.start);
-  const auto space = planning::make_state_space(bounds);
+  const auto space = ompl_planners::make_state_space(bounds);
   ompl::RNG::setSeed(instance.seed + 1);
   ompl::geometric::SimpleSetup setup(space);
   setup.setStateValidityChecker([&](const ob::State* state) {
-    return !instance.world.collides(planning::to_configuration(*state, instance.chain.dof()));
+    return !instance.world.collides(ompl_planners::to_configuration(*state, instance.chain.dof()));
   });
   const auto& information = setup.getSpaceInformation();
   information->setStateValidityCheckingResolution(limits(instance).step /
                                                   space->getMaximumExtent());
   ob::ScopedState<> state(space);
-  planning::copy_to_state(instance.start, *state.get());
+  ompl_planners::copy_to_state(instance.start, *state.get());
   setup.setStartState(state);
   const auto goals = std::make_shared<ob::GoalStates>(information);
   for (Eigen::Index i = 0; i < instance.goals.cols(); ++i) {
-    planning::copy_to_state(instance.goals.col(i), *state.get());
+    ompl_planners::copy_to_state(instance.goals.col(i), *state.get());
     goals->addState(state);
   }
   setup.setGoal(goals);
@@ -140,9 +140,9 @@ class Comparison {
   void add(const Instance& instance) {
     ours_.add(plan(instance, std::nullopt));
     by_fcl_.add(plan_by_fcl(instance));
-    const planning::OmplOptions as_it_comes{.range = 0, .limits = limits(instance)};
+    const ompl_planners::OmplOptions as_it_comes{.range = 0, .limits = limits(instance)};
     theirs_.add(plan(instance, as_it_comes));
-    const planning::OmplOptions tuned{.range = 0.5, .limits = limits(instance)};
+    const ompl_planners::OmplOptions tuned{.range = 0.5, .limits = limits(instance)};
     tuned_.add(plan(instance, tuned));
     if (instance.region == nullptr)
       ompl_alone_.add(plan_with_ompl_alone(instance));

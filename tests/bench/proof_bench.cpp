@@ -110,10 +110,9 @@ void plan_furniture(int instances) {
     for (const experiments::StudyMember& member : experiments::load_fleet(
              study, std::filesystem::path(test::source_dir()) / "robots/models"))
       for (int i = 0; i < instances; ++i)
-        all.add(member.planned,
-                experiments::read_instance(
-                    member, experiments::seed_of(experiments::InstanceSet::Tuning, 0),
-                    static_cast<std::uint32_t>(i)));
+        all.add({member.robot.chain, member.robot.shapes},
+                member.draw(experiments::seed_of(experiments::InstanceSet::Tuning, 0),
+                            static_cast<std::uint32_t>(i)));
   }
   all.print_as("furniture");
 }

@@ -3,8 +3,8 @@ import collections
 import dataclasses
 import json
 import math
-import pathlib
 import statistics
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,10 +14,10 @@ Result = dict[str, Any]  # a line of a result file
 _NEEDED = ("name", "solved", "collision_checks", "planning_time_s")
 
 
-def read_results(file: pathlib.Path) -> list[Result]:
+def read_results(file: str) -> list[Result]:
     """Raises FileNotFoundError, or ValueError with the number of a line that is no result."""
     results = []
-    with file.open(encoding="utf-8") as lines:
+    with open(file, encoding="utf-8") as lines:
         for number, line in enumerate(lines, 1):
             try:
                 result = json.loads(line)
@@ -135,3 +135,30 @@ def _pair(comparison: Comparison) -> dict[str, Any]:
 
 def _test(test: Wilcoxon) -> dict[str, Any]:
     return dataclasses.asdict(test)
+
+
+def parse_also(text: str) -> tuple[str, str]:
+    """"NAME=FILE". Raises ValueError if it is not."""
+    name, _, file = text.partition("=")
+    if not name or not file:
+        raise ValueError(f"--also '{text}' is not NAME=FILE")
+    return name, file
+
+
+def named(file: str, uniform: Sequence[Result], guided: Sequence[Result]) -> Comparison:
+    """A comparison; errors begin with the file."""
+    try:
+        return Comparison(uniform, guided)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
+
+
+def compare_also(uniform: Sequence[Result], beside: Sequence[tuple[str, str]]) -> list[tuple[str, Comparison]]:
+    """Other results over the same problems, each compared with uniform planning. beside: names and files."""
+    return [(name, named(file, uniform, read_results(file))) for name, file in beside]
+
+
+def fail(message: str, code: int) -> int:
+    """Tells people why the program fails. Returns the code."""
+    print(f"kinship-experiments: {message}", file=sys.stderr)
+    return code

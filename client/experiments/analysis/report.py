@@ -1,14 +1,18 @@
-"""RESULTS.md of a study and its figures."""
+"""RESULTS.md of a study and its figures; calibration and tuning as text, for the choice of constants and options."""
+import json
 from collections.abc import Sequence
 
 from . import markdown, tables
 from .bars import write_bars
 from .clouds import POSTURES, write_clouds
-from .statistics import RESAMPLES, Comparison, compare
+from .statistics import RESAMPLES, Comparison, compare, mean_of_comparisons
 from .study_folder import Cells, StudyFolder
 
 _NO_PEERS = ("OMPL's own experience planners, Lightning and Thunder, are not among the side studies: recalled paths "
              "are joined to start and goal by straight lines in joint space, which do not keep to the constraint.\n\n")
+
+_TUNING_WIDTHS = (-14, -14, 9, 9, 9, 7, 17, 7, 6, 8, 9)
+_TUNING_HEAD = ("robot", "experience", "uniform", "f = 1", "guided", "ratio", "95 %", "median", "time", "p", "solved")
 
 
 def write_report(study: StudyFolder) -> None:
@@ -106,3 +110,36 @@ def _variants(study: StudyFolder, cells: Cells, further: Cells) -> Sequence[tupl
         order = {source: place for place, source in enumerate(study.robots)}
         pairs.sort(key=lambda pair: (order[pair.guided.robot], order.get(tables.source_of(pair.guided), len(order))))
     return list(variants.items())
+
+
+def calibration_text(study: StudyFolder) -> str:
+    """Checks of calibration instances beside the paper's."""
+    return tables.calibration_table(study, study.cells("calibration.jsonl"))
+
+
+def _tuning_line(cells: tuple[str, ...]) -> str:
+    padded = [cell.ljust(-width) if width < 0 else cell.rjust(width) for cell, width in zip(cells, _TUNING_WIDTHS)]
+    return " ".join(padded).rstrip() + "\n"
+
+
+def tuning_text(study: StudyFolder) -> str:
+    """A line for each pair of the last tuning run, then the geometric means."""
+    run = json.loads((study.folder / "tuning.json").read_text(encoding="utf-8"))
+    cells = study.cells("tuning.jsonl")
+    text = _tuning_line(_TUNING_HEAD)
+    groups: dict[str, list[Comparison]] = {"own": [], "transferred": []}
+    for pair in run["pairs"]:
+        robot = pair["robot"]
+        comparison = compare(cells[robot, run["uniform"]], cells[robot, pair["guidance"]])
+        ratio = comparison.checks
+        text += _tuning_line((robot, pair["source"], f"{comparison.uniform.checks.mean():.0f}",
+                       f"{cells[robot, 'uniform'].checks.mean():.0f}", f"{comparison.guided.checks.mean():.0f}",
+                       f"{ratio.value:.2f}", f"[{ratio.low:.2f}, {ratio.high:.2f}]", f"{comparison.median_ratio:.2f}",
+                       f"{comparison.time.value:.2f}", f"{comparison.p_checks:.1g}", comparison.guided.solved_text()))
+        groups["own" if pair["source"] == robot else "transferred"].append(comparison)
+    for name, comparisons in groups.items():
+        if comparisons:
+            least = min(each.checks.value for each in comparisons)
+            text += (f"{name:<12} checks {mean_of_comparisons(comparisons, 'checks')}, least {least:.2f}, "
+                     f"time {mean_of_comparisons(comparisons, 'cpu_s').value:.2f}, {len(comparisons)} pairs\n")
+    return text

@@ -1,8 +1,7 @@
-#include "client/experiments/studies/cobot_studies.hpp"
-
 #include <utility>
 
-#include "client/experiments/studies/carrying_instances.hpp"
+#include "client/experiments/studies/carrying_scene.hpp"
+#include "client/experiments/studies/study.hpp"
 
 namespace kinship::experiments {
 namespace {

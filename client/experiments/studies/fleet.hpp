@@ -1,11 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "client/experiments/studies/study.hpp"
-#include "client/guided/plan_problem.hpp"
 #include "proto/types/digest.hpp"
 
 namespace kinship::experiments {
@@ -14,16 +14,11 @@ namespace kinship::experiments {
 struct StudyMember {
   StudyRobot placed;
   models::LoadedRobot robot;
-  guided::PlannedRobot planned;  ///< the same as planning wants it
   Digest digest;
   DrawInstance draw;
 
   const std::string& label() const noexcept { return robot.description.label; }
 };
-
-/// An instance with the numbers that its line in a problem file gives (a pose changes in its last
-/// bit when it is written and read): who repeats one plans the same.
-Problem read_instance(const StudyMember& member, std::uint64_t seed, std::uint32_t index);
 
 /// Every robot of a study, in its order.
 /// \param models  folder of the robots' model folders.
@@ -32,5 +27,10 @@ std::vector<StudyMember> load_fleet(const Study& study, const std::filesystem::p
 
 /// \throws Failure(NotFound) that names the robots there are.
 std::size_t find_member(const std::vector<StudyMember>& fleet, std::string_view label);
+
+/// A study as the programs that run and analyse it want to know it, one JSON document: name,
+/// settings, and of each robot where it stands, its chain, and the scene of its first test
+/// instance.
+std::string describe_study(const Study& study, const std::vector<StudyMember>& fleet);
 
 }  // namespace kinship::experiments

@@ -1,12 +1,43 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <numbers>
 #include <random>
+#include <string_view>
+#include <vector>
 
-#include "client/experiments/studies/furniture_kinds.hpp"
+#include "client/experiments/studies/study.hpp"
+#include "proto/types/scene.hpp"
 
 namespace kinship::experiments {
+
+/// What the furniture of a study is.
+enum class FurnitureKind { Shelf, TallShelf, Box, Cage, Table };
+
+/// From where a hand takes what stands on a board.
+enum class Approach { Forward, Downward };
+
+/// Where things stand.
+struct Board {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its top, m
+  double half_x = 0, half_y = 0;                     ///< m, to where the middle of a thing may be
+  Approach approach = Approach::Forward;
+};
+
+/// A piece of furniture in its own frame: origin on the floor below its middle, x from who stands
+/// before it to its back, y to the left, z up.
+struct Furniture {
+  std::vector<SceneObject> solids;
+  std::vector<Board> boards;
+  double nominal_x = 0;    ///< m, before the robots: where its origin stands in the task frame
+  std::size_t things = 0;  ///< that stand on its boards besides the one to grasp
+};
+
+Furniture make_furniture(FurnitureKind kind);
+
+/// Of the study and its task, e.g. "furniture_tall_shelf".
+std::string_view study_name(FurnitureKind kind);
 
 /// How far furniture stands from its nominal place, uniformly.
 inline constexpr double kFurnitureShift_m = 0.4;
@@ -30,5 +61,19 @@ FurnitureScene draw_furniture_scene(FurnitureKind kind, std::mt19937_64& generat
 /// Names of the floor, which robots stand on, and of what is to be grasped.
 inline constexpr const char* kFloorName = "floor";
 inline constexpr const char* kTargetName = "target";
+
+/// Instances of grasping from furniture for one robot.
+///
+/// The scene and the pose of the grasp depend on kind, seed and index only; the start is the
+/// robot's home, StudyRobot::start. Where that is not free, or planning would find no goal under
+/// one of the seeds of an instance's queries, the instance is drawn again under the next sub-seed,
+/// and its name ends in `.1`, `.2`, ...: equal names, equal scenes.
+/// \param max_goals  PlanSettings::max_goals of the study.
+/// \throws Failure(InvalidInput) if the start is not one of the robot; the instances throw
+///         Failure(NotFound) where they find none in kMaxFurnitureDraws draws.
+DrawInstance make_furniture_instances(FurnitureKind kind, int max_goals,
+                                      const models::LoadedRobot& robot, const StudyRobot& placed);
+
+inline constexpr std::uint32_t kMaxFurnitureDraws = 1000;
 
 }  // namespace kinship::experiments

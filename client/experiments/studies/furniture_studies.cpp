@@ -1,9 +1,8 @@
-#include "client/experiments/studies/furniture_studies.hpp"
-
 #include <string>
 #include <utility>
 
-#include "client/experiments/studies/furniture_instances.hpp"
+#include "client/experiments/studies/furniture_scene.hpp"
+#include "client/experiments/studies/study.hpp"
 
 namespace kinship::experiments {
 namespace {

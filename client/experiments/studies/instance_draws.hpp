@@ -2,19 +2,52 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "client/experiments/studies/instance_random.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/inverse/descent.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "robots/planning/is_free.hpp"
 
-/// What instances of all tasks have in common, whatever their scene.
+/// What instances of all tasks have in common, whatever their scene: random numbers, which are
+/// equal for several robots or not, starts and goals.
 namespace kinship::experiments {
+
+/// One draw of an instance; the next draw is made where a robot cannot start or end the one before.
+struct InstanceKey {
+  std::uint64_t seed = 0;
+  std::uint32_t index = 0;
+  std::uint32_t draw = 0;
+};
+
+/// Independent random numbers for each use of an instance.
+enum class Use : std::uint32_t { Scene, Start, Planner };
+
+std::mt19937_64 generator_for(const InstanceKey& key, Use use);
+
+/// Of Problem::seed; fits a signed integer.
+std::uint64_t planner_seed(const InstanceKey& key);
+
+/// "<task>-<seed>-<index>", and ".<draw>" from the second draw on.
+std::string instance_name(std::string_view task, const InstanceKey& key);
+
+/// Normal noise, cut at 2.5 standard deviations so that objects do not grow into each other.
+class Noise {
+ public:
+  explicit Noise(std::mt19937_64& generator) : generator_(generator) {}
+
+  double operator()(double deviation);
+
+ private:
+  std::mt19937_64& generator_;
+  std::normal_distribution<double> normal_;
+};
 
 inline constexpr std::uint32_t kTestSeeds = 4;  ///< queries of a test instance
 inline constexpr double kTimeLimit_s = 86400;   ///< of a query: checks end it, never seconds

@@ -1,6 +1,5 @@
-#include "client/experiments/studies/kitting_studies.hpp"
-
-#include "client/experiments/studies/kitting_instances.hpp"
+#include "client/experiments/studies/kitting_scene.hpp"
+#include "client/experiments/studies/study.hpp"
 
 namespace kinship::experiments {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "client/experiments/studies/instance_draws.hpp"
-#include "client/experiments/studies/instance_random.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/solver.hpp"

@@ -1,8 +1,7 @@
-#include "client/experiments/studies/planar_studies.hpp"
-
 #include <utility>
 
 #include "client/experiments/studies/planar_scene.hpp"
+#include "client/experiments/studies/study.hpp"
 
 namespace kinship::experiments {
 namespace {

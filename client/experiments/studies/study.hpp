@@ -16,9 +16,7 @@ namespace kinship::experiments {
 /// What instances are for. No instance is in two of these: each has seeds of its own.
 enum class InstanceSet { Calibration, Learning, Tuning, Test };
 
-std::string_view name_of(InstanceSet set);
-
-/// \throws Failure(InvalidInput) for a word that name_of gives none of.
+/// "calibration", "learning", "tuning" or "test". \throws Failure(InvalidInput) for another word.
 InstanceSet parse_instance_set(std::string_view name);
 
 /// A robot of a study and where it stands.
@@ -57,6 +55,21 @@ struct Study {
 /// fleet do; all robots are tuned and tested on the same ones.
 /// \param robot  index into Study::robots.
 std::uint64_t seed_of(InstanceSet set, std::size_t robot);
+
+/// The studies with planar arms: `planar` (the paper's first experiment), `planar_p1` and
+/// `open_table`.
+std::vector<Study> planar_studies();
+
+/// The studies with collaborative robots: `cobots` (the paper's second experiment) and
+/// `open_table_cobots`.
+std::vector<Study> cobot_studies();
+
+/// The family `furniture`: five cobots take something from furniture that stands elsewhere each
+/// time, a study for each kind of furniture.
+std::vector<Study> furniture_studies();
+
+/// `kitting`: five cobots put parts from a worktable into the ten compartments of a rack.
+std::vector<Study> kitting_studies();
 
 /// Every study, by name.
 const std::vector<Study>& studies();

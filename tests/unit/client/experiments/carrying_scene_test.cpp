@@ -5,7 +5,6 @@
 #include <string>
 #include <tuple>
 
-#include "client/experiments/studies/carrying_instances.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"

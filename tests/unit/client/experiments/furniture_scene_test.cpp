@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 
-#include "client/experiments/studies/furniture_instances.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"

@@ -5,7 +5,6 @@
 #include <set>
 #include <string>
 
-#include "client/experiments/studies/kitting_instances.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"

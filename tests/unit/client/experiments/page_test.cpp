@@ -1,20 +1,20 @@
 // A page of a small run: real models, files as deploy/quickstart leaves them.
 
-#include "client/experiments/page/page.hpp"
+#include "client/experiments/page/run_page.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "client/experiments/page/page_data.hpp"
-#include "client/experiments/page/page_json.hpp"
-#include "client/experiments/page/run_files.hpp"
+#include "client/page/bones.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
+#include "proto/types/pose.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/models/loaded_robot.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -27,16 +27,6 @@ models::LoadedRobot load(const std::string& name) {
   models::RobotArguments arguments;
   arguments.source = std::filesystem::path(kModels) / name;
   return models::load_robot(arguments).value_or_throw();
-}
-
-/// What find_run or read_run says is wrong.
-std::string fault_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return "";
 }
 
 class Page : public testing::Test {
@@ -129,184 +119,133 @@ class Page : public testing::Test {
     return distribution;
   }
 
-  std::string written() const {
+  /// As page.py finds it.
+  PageRun run() const {
+    const auto file = [&](const char* name) { return (folder_ / name).string(); };
+    const nlohmann::json files = {{"model", kModels + "/ur10e"},
+                                  {"problems", file("ur10e.problems.jsonl")},
+                                  {"uniform", file("ur10e-uniform.results.jsonl")},
+                                  {"guided", file("ur10e-guided.results.jsonl")},
+                                  {"distribution", file("distribution.json")},
+                                  {"advice", file("advice.json")},
+                                  {"uniform-searches", file("ur10e-uniform.searches.jsonl")},
+                                  {"guided-searches", file("ur10e-guided.searches.jsonl")}};
+    const nlohmann::json document = {
+        {"files", files},
+        {"teachers",
+         {{kModels + "/panda", file("panda.problems.jsonl"), file("panda.results.jsonl")}}},
+        {"shown", "p0"},
+        {"figures", {{"typical", {{"problem", "p0"}}}, {"also", nlohmann::json::array()}}}};
+    return parse_run(document.dump(), {});
+  }
+
+  static std::string written(const PageRun& run) {
     std::ostringstream page;
-    write_page(read_run(run()), page);
+    write_page(run, page);
     return page.str();
   }
 
-  RunFiles run() const {
-    RunLocation location;
-    location.folder = folder_;
-    location.models = kModels;
-    return find_run(location);
+  /// The data that the page carries.
+  static nlohmann::json data_of(const PageRun& run) {
+    const std::string page = written(run);
+    const std::string begin = "id=\"data\">";
+    const auto first = page.find(begin) + begin.size();
+    return nlohmann::json::parse(page.substr(first, page.find("</script>", first) - first));
+  }
+
+  static std::string fault_of(const PageRun& run) {
+    try {
+      written(run);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "";
   }
 
   const test::TemporaryDirectory directory_;
   const std::filesystem::path folder_ = directory_.path();
 };
 
-TEST_F(Page, TellsTheRunsNumbers) {
-  const PageData data = read_run(run());
-  ASSERT_EQ(data.fleet.size(), 1U);
-  EXPECT_EQ(data.fleet[0].label, "panda");
-  EXPECT_EQ(data.fleet[0].problems, 2U);
-  EXPECT_EQ(data.fleet[0].paths.size(), 2U);
-  EXPECT_GT(data.fleet[0].paths[0].positions.cols(), 2) << "resampled";
-  EXPECT_EQ(data.figures["uniform_checks"]["mean"], 5000);
-  EXPECT_EQ(data.figures["guided_checks"]["mean"], 2000);
-  EXPECT_EQ(data.figures["cheaper_guided"], 2);
-  EXPECT_EQ(data.figures["comparison"]["ratio"]["mean_checks"], 2.5);
-  EXPECT_GT(data.samples.hand.positions.cols(), 1000);
+TEST_F(Page, ShowsTheFleetsPathsAndSamples) {
+  const auto data = data_of(run());
+  ASSERT_EQ(data["fleet"].size(), 1U);
+  EXPECT_EQ(data["fleet"][0]["label"], "panda");
+  EXPECT_EQ(data["fleet"][0]["problems"], 2);
+  ASSERT_EQ(data["fleet"][0]["paths"].size(), 2U);
+  EXPECT_GT(data["fleet"][0]["paths"][0]["positions"].size(), 3U * 2) << "resampled";
+  EXPECT_EQ(data["fleet"][0]["example"]["checks"], 700) << "the median";
+  EXPECT_GT(data["samples"]["hand"]["positions"].size(), 3U * 1000);
 }
 
 TEST_F(Page, ARobotAndItsBoxGoFromStartToGoal) {
-  const PageData data = read_run(run());
-  ASSERT_TRUE(data.newcomer);
-  const Demonstration& shown = *data.newcomer;
+  const auto shown = data_of(run())["newcomer"];
   const models::LoadedRobot robot = load("ur10e");
   const Problem answered = problem("ur10e", 0);
-  ASSERT_GT(shown.frames.size(), 5U);
-  EXPECT_EQ(shown.obstacles.size(), answered.scene.objects.size());
-  const auto held_at = [&](const Eigen::VectorXd& q) {
-    return page::held_objects(robot, answered.attached, *answered.T_task_base, q)
-        .front()
-        .T_task_object;
+  ASSERT_GT(shown["frames"].size(), 5U);
+  EXPECT_EQ(shown["obstacles"].size(), answered.scene.objects.size());
+  const auto is_held_at = [&](const nlohmann::json& frame, const Eigen::VectorXd& q) {
+    const PoseArray pose = frame["held"][0]["pose"].get<PoseArray>();
+    return from_pose_array(pose).value_or_throw().isApprox(
+        page::held_objects(robot, answered.attached, *answered.T_task_base, q)
+            .front()
+            .T_task_object,
+        1e-6);
   };
-  EXPECT_TRUE(shown.frames.front().held.front().T_task_object.isApprox(held_at(answered.start)));
-  EXPECT_TRUE(shown.frames.back().held.front().T_task_object.isApprox(
-      held_at(answered.goal_configurations.col(0))));
+  EXPECT_TRUE(is_held_at(shown["frames"].front(), answered.start));
+  EXPECT_TRUE(is_held_at(shown["frames"].back(), answered.goal_configurations.col(0)));
 }
 
-TEST_F(Page, ShowsTheSearchesOfTheInstanceNearestTheMedianRatio) {
-  const PageData data = read_run(run());  // ratios 4 and 2: the median is 3, the first of equals
-  ASSERT_TRUE(data.searches);
-  const nlohmann::ordered_json& typical = data.figures["typical"];
-  EXPECT_EQ(typical["problem"], "p0");
-  EXPECT_EQ(typical["median_ratio"], 3);
-  EXPECT_EQ(typical["candidates"], 2);
-  EXPECT_EQ(typical["uniform_checks"], 4000);
-  EXPECT_EQ(data.searches->guided.path, (std::vector<std::int64_t>{0, 2, 3, 1}));
-  const models::LoadedRobot robot = load("ur10e");
-  EXPECT_TRUE(data.searches->uniform.hand.col(0).isApprox(
-      poses_of(robot.chain, *problem("ur10e", 0).T_task_base, problem("ur10e", 0).start)
-          .positions.col(0)));
+TEST_F(Page, ShowsTheSearchesOfItsProblem) {
+  const auto searches = data_of(run())["searches"];
+  EXPECT_EQ(searches["guided"]["path"], (std::vector<int>{0, 2, 3, 1}));
+  EXPECT_EQ(searches["guided"]["parents"], (std::vector<int>{-1, -1, 0, 2}));
+  const Problem answered = problem("ur10e", 0);
+  const Eigen::Vector3d hand =
+      1000 *
+      (*answered.T_task_base * kinematics::T_base_transfer(load("ur10e").chain, answered.start))
+          .translation();
+  for (Eigen::Index i = 0; i < 3; ++i)
+    EXPECT_NEAR(searches["uniform"]["hand"][static_cast<std::size_t>(i)], hand(i), 0.5);
 }
 
 TEST_F(Page, GoesWithoutWhatARunNeedNotHave) {
-  for (const char* name : {"advice.json", "ur10e-uniform.searches.jsonl", "panda.results.jsonl"})
-    std::filesystem::remove(folder_ / name);
-  const PageData data = read_run(run());
-  EXPECT_FALSE(data.advice || data.searches);
-  EXPECT_TRUE(data.fleet.empty());
-  EXPECT_TRUE(data.newcomer);
+  PageRun run = this->run();
+  run.advice.clear();
+  run.uniform_searches.clear();
+  run.teachers.clear();
+  auto data = data_of(run);
+  EXPECT_TRUE(data["advice"].is_null() && data["searches"].is_null() && data["fleet"].empty());
+  EXPECT_FALSE(data["newcomer"].is_null());
+  run.figures["typical"] = nullptr;
+  run.shown = "p1";
+  data = data_of(run);
+  EXPECT_TRUE(data["newcomer"].is_null());
+  EXPECT_EQ(data["obstacles"].size(), 1U) << "none was solved by both: a problem is shown";
 }
 
-TEST_F(Page, TellsWhatEachGuideAloneBringsBesideIt) {
-  write_results("ur10e", "ur10e-retreat", {8000, 12000});
-  write_results("ur10e", "ur10e-mixture", {1000, 1000});
-  const PageData data = read_run(run());
-  EXPECT_EQ(data.fleet.size(), 1U) << "they are no teachers";
-  const auto told = nlohmann::json::parse(to_json(data))["also"];
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0][0], "mixture alone");
-  EXPECT_EQ(told[0][3], "5.00");
-  EXPECT_EQ(told[1], (std::vector<std::string>{"retreat alone", "2/2", "10 000", "0.50", "10.0 ms",
-                                               "0.50"}));
-}
-
-TEST_F(Page, ResultsBesideItMayHaveAnyName) {
-  write_results("ur10e", "tuned", {500, 1500});
-  RunLocation location;
-  location.folder = folder_;
-  location.models = kModels;
-  location.files.also = {
-      parse_also("with my option=" + (folder_ / "tuned.results.jsonl").string())};
-  const PageData data = read_run(find_run(location));
-  ASSERT_EQ(data.figures["also"].size(), 1U);
-  EXPECT_EQ(data.figures["also"][0][0], "with my option");
-  EXPECT_EQ(data.figures["also"][0][3], "5.00");
-  for (const char* const wrong : {"file", "=file", "name="})
-    EXPECT_NE(fault_of([&] { parse_also(wrong); }).find("is not NAME=FILE"), std::string::npos);
-  location.files.also = {parse_also("gone=" + (folder_ / "gone.jsonl").string())};
-  EXPECT_NE(fault_of([&] { find_run(location); }).find("of 'gone': there is no"),
-            std::string::npos);
-}
-
-TEST_F(Page, EqualFilesGiveAnEqualPage) { EXPECT_EQ(written(), written()); }
+TEST_F(Page, EqualFilesGiveAnEqualPage) { EXPECT_EQ(written(run()), written(run())); }
 
 TEST_F(Page, CarriesItsDataAsOneDocument) {
-  const std::string page = written();
-  const std::string begin = "id=\"data\">";
-  const auto first = page.find(begin) + begin.size();
-  const auto data =
-      nlohmann::json::parse(page.substr(first, page.find("</script>", first) - first));
+  const auto data = data_of(run());
   EXPECT_EQ(data["robot"], "ur10e");
-  EXPECT_EQ(data["comparison"]["pairs"], 2);
-  EXPECT_EQ(data["uniform_checks"]["mean"], 5000);
+  EXPECT_EQ(data["held"], (std::vector<std::string>{"box"}));
   EXPECT_EQ(data["distribution"]["configurations"], 12'345);
   EXPECT_EQ(data["distribution"]["sources"][0]["label"], "panda");
-  const std::vector<std::string> checks = {"collision checks, mean", "5 000", "2 000", "2.50",
-                                           "0.5000"};
-  EXPECT_EQ(data["table"]["rows"][1], checks) << "as in the terminal";
   EXPECT_EQ(data["newcomer"]["frames"][0]["held"][0]["name"], "box");
-  EXPECT_EQ(data["guides"], nlohmann::json::parse(R"([{"guide": "ways", "queries": 2}])"));
-  EXPECT_EQ(data["searches"]["guided"]["parents"], (std::vector<int>{-1, -1, 0, 2}));
   EXPECT_EQ(data["advice"]["share"], 0.25) << "of now, not of the fetch before the attempts";
   EXPECT_EQ(data["advice"]["evidence"], "guided 1 in 2");
   EXPECT_EQ(data["obstacles"][0]["name"], "</script><b>");
-  EXPECT_EQ(data["also"], nlohmann::json::array());
-  EXPECT_EQ(data["uniform_time_s"]["mean"], 0.005);
-  EXPECT_EQ(data["guided_time_s"]["mean"], 0.002);
-}
-
-TEST_F(Page, AllThatIsMissingIsNamedAtOnce) {
-  std::filesystem::remove(folder_ / "distribution.json");
-  std::filesystem::remove(folder_ / "ur10e.problems.jsonl");
-  const std::string fault = fault_of([&] { run(); });
-  EXPECT_NE(fault.find("--distribution, or call it distribution.json"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("--problems, or call it ROBOT.problems.jsonl"), std::string::npos) << fault;
-  EXPECT_EQ(fault.find("--uniform"), std::string::npos) << fault;
-}
-
-TEST_F(Page, ARunOfSeveralRobotsAsksWhich) {
-  write_results("ur10e", "sawyer-uniform", {1});
-  write_results("ur10e", "sawyer-guided", {1});
-  EXPECT_NE(fault_of([&] { run(); }).find("say --robot (sawyer, ur10e)"), std::string::npos);
-}
-
-TEST_F(Page, FilesMayHaveAnyName) {
-  RunLocation location;
-  RunFiles& files = location.files;
-  files.robot.source = std::filesystem::path(kModels) / "ur10e";
-  const auto moved = [&](const std::string& from, const std::string& to) {
-    std::filesystem::rename(folder_ / from, folder_ / to);
-    return folder_ / to;
-  };
-  files.problems = moved("ur10e.problems.jsonl", "a");
-  files.uniform = moved("ur10e-uniform.results.jsonl", "b");
-  files.guided = moved("ur10e-guided.results.jsonl", "c");
-  files.distribution = moved("distribution.json", "d");
-  files.teachers = {parse_teacher((std::filesystem::path(kModels) / "panda").string() + "," +
-                                  (folder_ / "panda.problems.jsonl").string() + "," +
-                                  (folder_ / "panda.results.jsonl").string())};
-  const PageData data = read_run(find_run(location));
-  EXPECT_EQ(data.robot, "ur10e");
-  EXPECT_EQ(data.fleet.size(), 1U);
-  EXPECT_EQ(data.figures["uniform_checks"]["mean"], 5000);
-  EXPECT_THROW(parse_teacher("model,problems"), Failure);
+  EXPECT_EQ(data["also"], nlohmann::json::array()) << "the figures are there too";
 }
 
 TEST_F(Page, APathOfAnotherRobotIsRefused) {
   write_results("ur10e", "panda", {1, 1});
-  EXPECT_NE(fault_of([&] { read_run(run()); }).find("has 6 joints, panda 7"), std::string::npos);
+  EXPECT_NE(fault_of(run()).find("has 6 joints, panda 7"), std::string::npos);
 }
 
 TEST_F(Page, AnAnswerToNoProblemIsRefused) {
-  write_problems("ur10e", 0);
   std::ofstream(folder_ / "ur10e.problems.jsonl") << json::to_json(problem("ur10e", 7)) << '\n';
-  EXPECT_NE(fault_of([&] { read_run(run()); }).find("answers 'p0', which is none of the 1"),
-            std::string::npos);
+  EXPECT_NE(fault_of(run()).find("answers 'p0', which is none of the 1"), std::string::npos);
 }
 
 }  // namespace

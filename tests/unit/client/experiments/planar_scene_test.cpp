@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "client/experiments/studies/planar_studies.hpp"
+#include "client/experiments/studies/study.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"

@@ -1,4 +1,4 @@
-#include "client/experiments/shelf_scene.hpp"
+#include "client/experiments/station_scene.hpp"
 
 #include <gtest/gtest.h>
 

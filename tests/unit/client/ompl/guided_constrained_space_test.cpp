@@ -11,17 +11,19 @@
 #include <ompl/util/Console.h>
 
 #include "client/ompl/guided_state_sampler.hpp"
-#include "client/ompl/region_ompl_constraint.hpp"
+#include "client/ompl/region_state_space.hpp"
 #include "client/ompl/state_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/robots/planning/carrying_problem.hpp"
 
-namespace kinship::planning::guided_constrained_space_test {
+namespace kinship::ompl_planners::guided_constrained_space_test {
 namespace {
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
-using test_support::LineArm;
+using planning::ConfigurationSampler;
+using planning::RegionConstraint;
+using planning::test_support::LineArm;
 
 constexpr std::uint64_t kSeed = 29;
 constexpr double kStep = 0.1;
@@ -190,4 +192,4 @@ TEST(GuidedConstrainedSpace, GuidesRrtConnectOnAProjectedSpace) {
 }
 
 }  // namespace
-}  // namespace kinship::planning::guided_constrained_space_test
+}  // namespace kinship::ompl_planners::guided_constrained_space_test

@@ -16,14 +16,15 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/unit/robots/planning/wall_world.hpp"
 
-namespace kinship::planning::guided_state_sampler_test {
+namespace kinship::ompl_planners::guided_state_sampler_test {
 namespace {
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
-using test_support::at;
-using test_support::square_bounds;
-using test_support::WallWorld;
+using planning::ConfigurationSampler;
+using planning::test_support::at;
+using planning::test_support::square_bounds;
+using planning::test_support::WallWorld;
 
 constexpr std::uint64_t kSeed = 23;
 
@@ -175,4 +176,4 @@ TEST(GuidedStateSampler, RefusesASpaceOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace kinship::planning::guided_state_sampler_test
+}  // namespace kinship::ompl_planners::guided_state_sampler_test

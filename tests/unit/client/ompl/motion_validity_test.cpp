@@ -11,7 +11,7 @@
 
 #include "client/ompl/state_space.hpp"
 
-namespace kinship::planning::motion_validity_test {
+namespace kinship::ompl_planners::motion_validity_test {
 namespace {
 
 namespace ob = ompl::base;
@@ -77,4 +77,4 @@ TEST(StraightMotionValidator, AsksForWhatOmplAsksForInItsOrder) {
 }
 
 }  // namespace
-}  // namespace kinship::planning::motion_validity_test
+}  // namespace kinship::ompl_planners::motion_validity_test

@@ -6,12 +6,15 @@
 
 #include "tests/unit/robots/planning/wall_world.hpp"
 
-namespace kinship::planning::ompl_experience_test {
+namespace kinship::ompl_planners::ompl_experience_test {
 namespace {
 
-using test_support::at;
-using test_support::square_bounds;
-using test_support::WallWorld;
+using planning::BirrtOptions;
+using planning::NoPath;
+using planning::PlanSummary;
+using planning::test_support::at;
+using planning::test_support::square_bounds;
+using planning::test_support::WallWorld;
 
 constexpr double kStep = 0.05;
 
@@ -108,4 +111,4 @@ TEST(LightningExperience, RefusesAStepOfNothing) {
 }
 
 }  // namespace
-}  // namespace kinship::planning::ompl_experience_test
+}  // namespace kinship::ompl_planners::ompl_experience_test

@@ -5,14 +5,20 @@
 #include "tests/unit/robots/planning/carrying_problem.hpp"
 #include "tests/unit/robots/planning/wall_world.hpp"
 
-namespace kinship::planning::ompl_planner_test {
+namespace kinship::ompl_planners::ompl_planner_test {
 namespace {
 
-using test_support::at;
-using test_support::largest_excess;
-using test_support::LineArm;
-using test_support::square_bounds;
-using test_support::WallWorld;
+using planning::ConfigurationSampler;
+using planning::ConstrainedFreedom;
+using planning::IsFree;
+using planning::NoPath;
+using planning::PlanSummary;
+using planning::RegionConstraint;
+using planning::test_support::at;
+using planning::test_support::largest_excess;
+using planning::test_support::LineArm;
+using planning::test_support::square_bounds;
+using planning::test_support::WallWorld;
 
 const Eigen::VectorXd kStart = at(-0.8, -0.5);
 const Eigen::VectorXd kGoal = at(0.8, -0.5);
@@ -230,4 +236,4 @@ TEST(OmplPlanner, ConstrainedWaypointsAreThoseThatWereAsked) {
 }
 
 }  // namespace
-}  // namespace kinship::planning::ompl_planner_test
+}  // namespace kinship::ompl_planners::ompl_planner_test

@@ -10,7 +10,6 @@
 
 #include "client/guided/planner_choice.hpp"
 #include "client/planner/problem_lines.hpp"
-#include "client/planner/transfer_warning.hpp"
 #include "robots/models/robot_arguments.hpp"
 #include "tests/support/places.hpp"
 

@@ -1,4 +1,4 @@
-#include "client/plots/benefit.hpp"
+#include "client/plots/task_history.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/plots/marginals.hpp"
+#include "client/plots/distribution_plot.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "client/plots/plot_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "tests/unit/client/plots/history_values.hpp"
 #include "tests/unit/client/plots/plot_values.hpp"

@@ -20,7 +20,7 @@ EXPERIMENTS = HERE.parents[4] / "client" / "experiments"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(EXPERIMENTS))
 
-from analysis import calibration, clouds, family, report, statistics, tables, transferability, tuning  # noqa: E402: after the path
+from analysis import clouds, family, report, statistics, tables, transferability  # noqa: E402: after the path
 from analysis.study_folder import Cell, StudyFolder  # noqa: E402
 
 
@@ -233,7 +233,7 @@ class TestProgram(CopiedStudy):
     def test_calibration(self) -> None:
         text = self.analyse(str(self.folder), "--calibration").stdout
         self.assertIn("| planar_7r_c |", text)
-        self.assertEqual(text, calibration.calibration_text(StudyFolder(self.folder)))
+        self.assertEqual(text, report.calibration_text(StudyFolder(self.folder)))
 
     def test_tuning(self) -> None:
         shutil.copy(self.folder / "test.jsonl.zst", self.folder / "tuning.jsonl.zst")
@@ -244,7 +244,7 @@ class TestProgram(CopiedStudy):
         self.assertEqual(lines[0].split()[:3], ["robot", "experience", "uniform"])
         self.assertEqual(len(lines), 5)
         self.assertRegex(lines[3], r"^own +checks [\d.]+ \[[\d.]+, [\d.]+\], least [\d.]+, time [\d.]+, 1 pairs$")
-        self.assertEqual("\n".join(lines) + "\n", tuning.tuning_text(StudyFolder(self.folder)))
+        self.assertEqual("\n".join(lines) + "\n", report.tuning_text(StudyFolder(self.folder)))
 
     def test_family(self) -> None:
         easy = self.folder.parent / "planar_easy"

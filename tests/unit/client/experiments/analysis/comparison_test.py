@@ -5,6 +5,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,7 +15,7 @@ EXPERIMENTS = pathlib.Path(__file__).resolve().parents[5] / "client" / "experime
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(EXPERIMENTS))
 
-from analysis import page_figures  # noqa: E402: after the path
+from analysis import page_figures, run_files  # noqa: E402: after the path
 from analysis.comparison import Comparison, document  # noqa: E402
 from analysis.comparison_table import duration_text, table  # noqa: E402
 from analysis.wilcoxon import MAX_EXACT_PAIRS, wilcoxon  # noqa: E402
@@ -132,11 +133,14 @@ class Program(unittest.TestCase):
         good.write_text("".join(json.dumps(each) + "\n" for each in UNIFORM))
         bad.write_text(json.dumps(UNIFORM[0]) + '\n{"name": "b"}\n')
 
-        def run(guided_file: pathlib.Path, how: str = "table") -> subprocess.CompletedProcess:
-            options = {"uniform": str(good), "guided": str(guided_file), "also": [["again", str(good)]], "as": how}
-            return subprocess.run([sys.executable, "-B", EXPERIMENTS / "compare.py", json.dumps(options)], capture_output=True, text=True)
+        def run(guided_file: pathlib.Path, also: str = f"again={good}", **more: list[str]) -> subprocess.CompletedProcess:
+            words = {"uniform": [str(good)], "guided": [str(guided_file)], "also": [also]} | more
+            return subprocess.run([sys.executable, "-B", EXPERIMENTS / "compare.py", json.dumps(words)], capture_output=True, text=True)
 
-        self.assertEqual(json.loads(run(good, "json").stdout)["also"][0]["name"], "again")
+        self.assertEqual(json.loads(run(good, json=["true"]).stdout)["also"][0]["name"], "again")
+        for wrong in ("file", "=file", "name="):
+            done = run(good, wrong)
+            self.assertEqual((done.returncode, done.stderr), (2, f"kinship-experiments: --also '{wrong}' is not NAME=FILE\n"))
         for code, file, why in ((3, folder / "none", "none'"), (1, bad, "bad.jsonl line 2: solved: is missing")):
             done = run(file)
             self.assertEqual(done.returncode, code)
@@ -152,6 +156,100 @@ class PageFigures(unittest.TestCase):
         self.assertEqual((figures["cheaper_guided"], figures["guides"]), (2, [{"guide": "ways", "queries": 2}]))
         self.assertEqual(figures["uniform_checks"]["mean"], 2000)
         self.assertIsNone(page_figures.find_typical(UNIFORM, GUIDED))
+
+
+class RunFiles(unittest.TestCase):
+    """Files as deploy/quickstart leaves them."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for name in ("panda", "ur10e"):
+            (self.folder / "models" / name).mkdir(parents=True)
+            (self.folder / f"{name}.problems.jsonl").touch()
+        self.write("panda", 700, 900)
+        self.write("ur10e-uniform", 4000, 6000)
+        self.write("ur10e-guided", 1000, 3000)
+        (self.folder / "distribution.json").touch()
+        self.words = {"run": [str(self.folder)], "models": [str(self.folder / "models")]}
+
+    def write(self, name: str, *checks: int) -> str:
+        """The results of problems p0, p1, ..., a microsecond a check."""
+        file = self.folder / f"{name}.results.jsonl"
+        file.write_text("".join(json.dumps(guided(f"p{i}", True, count, 1e-6 * count) | {"waypoints": [[0], [1]]}) + "\n"
+                                for i, count in enumerate(checks)))
+        return str(file)
+
+    def test_are_found_by_their_names(self):
+        for name in ("advice.json", "ur10e-guided.searches.jsonl"):
+            (self.folder / name).touch()
+        run = run_files.find_run(self.words)
+        self.assertEqual({name: pathlib.Path(file).name for name, file in run["files"].items() if file}, {
+            "model": "ur10e", "problems": "ur10e.problems.jsonl", "uniform": "ur10e-uniform.results.jsonl",
+            "guided": "ur10e-guided.results.jsonl", "distribution": "distribution.json", "advice": "advice.json",
+            "guided-searches": "ur10e-guided.searches.jsonl"})
+        self.assertEqual([pathlib.Path(file).name for file in run["teachers"][0]], ["panda", "panda.problems.jsonl", "panda.results.jsonl"])
+        self.assertEqual((len(run["teachers"]), run["also"]), (1, []))
+        (self.folder / "panda.results.jsonl").unlink()
+        self.assertEqual(run_files.find_run(self.words)["teachers"], [])
+
+    def test_a_page_has_the_figures_of_the_terminal(self):
+        described = run_files.described(run_files.find_run(self.words))
+        figures = described["figures"]
+        self.assertEqual((figures["uniform_checks"]["mean"], figures["guided_checks"]["mean"]), (5000, 2000))
+        self.assertEqual((figures["uniform_time_s"]["mean"], figures["guided_time_s"]["mean"]), (0.005, 0.002))
+        self.assertEqual((figures["comparison"]["ratio"]["mean_checks"], figures["comparison"]["pairs"], figures["cheaper_guided"]), (2.5, 2, 2))
+        self.assertEqual(figures["table"]["rows"][1], ("collision checks, mean", "5 000", "2 000", "2.50", "0.5000"))
+        self.assertEqual((figures["guides"], figures["also"]), ([{"guide": "ways", "queries": 2}], []))
+        # ratios 4 and 2: the median is 3, the first of equals is shown
+        self.assertEqual((described["shown"], figures["typical"]["median_ratio"], figures["typical"]["candidates"]), ("p0", 3, 2))
+        self.assertEqual(figures["typical"]["uniform_checks"], 4000)
+
+    def test_each_guide_alone_stands_beside_them(self):
+        self.write("ur10e-retreat", 8000, 12000)
+        self.write("ur10e-mixture", 1000, 1000)
+        run = run_files.find_run(self.words)
+        self.assertEqual(len(run["teachers"]), 1)
+        mixture, retreat = run_files.described(run)["figures"]["also"]
+        self.assertEqual((mixture[0], mixture[3]), ("mixture alone", "5.00"))
+        self.assertEqual(list(retreat), ["retreat alone", "2/2", "10 000", "0.50", "10.0 ms", "0.50"])
+
+    def test_results_beside_them_may_have_any_name(self):
+        self.words["also"] = ["with my option=" + self.write("tuned", 500, 1500)]
+        also = run_files.described(run_files.find_run(self.words))["figures"]["also"]
+        self.assertEqual([(row[0], row[3]) for row in also], [("with my option", "5.00")])
+        self.words["also"] = ["gone=" + str(self.folder / "gone.jsonl")]
+        with self.assertRaisesRegex(LookupError, "of 'gone': there is no"):
+            run_files.find_run(self.words)
+
+    def test_all_that_is_missing_is_named_at_once(self):
+        for name in ("distribution.json", "ur10e.problems.jsonl"):
+            (self.folder / name).unlink()
+        with self.assertRaises(LookupError) as caught:
+            run_files.find_run(self.words)
+        for words in ("--distribution, or call it distribution.json", "--problems, or call it ROBOT.problems.jsonl"):
+            self.assertIn(words, str(caught.exception))
+        self.assertNotIn("--uniform", str(caught.exception))
+        with self.assertRaisesRegex(LookupError, "is no folder"):
+            run_files.find_run({"run": [str(self.folder / "none")]})
+
+    def test_a_run_of_several_robots_asks_which(self):
+        self.write("sawyer-uniform", 1)
+        self.write("sawyer-guided", 1)
+        with self.assertRaisesRegex(ValueError, re.escape("say --robot (sawyer, ur10e)")):
+            run_files.find_run(self.words)
+        self.assertIn("ur10e", run_files.find_run(self.words | {"robot": ["ur10e"]})["files"]["uniform"])
+
+    def test_may_have_any_name(self):
+        old = {"problems": "ur10e.problems.jsonl", "uniform": "ur10e-uniform.results.jsonl", "guided": "ur10e-guided.results.jsonl",
+               "distribution": "distribution.json"}
+        words = {name: [str((self.folder / file).rename(self.folder / name))] for name, file in old.items()}
+        teacher = [str(self.folder / name) for name in ("models/panda", "panda.problems.jsonl", "panda.results.jsonl")]
+        words |= {"model": [str(self.folder / "models" / "ur10e")], "teacher": [",".join(teacher)]}
+        run = run_files.find_run(words)
+        self.assertEqual((run["teachers"], run["files"]["guided"]), ([teacher], words["guided"][0]))
+        self.assertEqual(run_files.described(run)["figures"]["uniform_checks"]["mean"], 5000)
+        with self.assertRaisesRegex(ValueError, "is not MODEL,PROBLEMS,RESULTS"):
+            run_files.find_run(words | {"teacher": ["model,problems"]})
 
 
 def of_differences(differences: list[float]):

@@ -1,35 +1,22 @@
 #include <algorithm>
+#include <map>
 #include <utility>
 
-#include "client/experiments/studies/cobot_studies.hpp"
-#include "client/experiments/studies/furniture_studies.hpp"
-#include "client/experiments/studies/kitting_studies.hpp"
-#include "client/experiments/studies/planar_studies.hpp"
 #include "client/experiments/studies/study.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
 
-std::string_view name_of(InstanceSet set) {
-  switch (set) {
-    case InstanceSet::Calibration:
-      return "calibration";
-    case InstanceSet::Learning:
-      return "learning";
-    case InstanceSet::Tuning:
-      return "tuning";
-    case InstanceSet::Test:
-      break;
-  }
-  return "test";
-}
-
 InstanceSet parse_instance_set(std::string_view name) {
-  for (const InstanceSet set :
-       {InstanceSet::Calibration, InstanceSet::Learning, InstanceSet::Tuning, InstanceSet::Test})
-    if (name_of(set) == name)
-      return set;
-  throw Failure(ErrorCode::InvalidInput, "no set of instances '" + std::string(name) + "'");
+  static const std::map<std::string_view, InstanceSet> kSets = {
+      {"calibration", InstanceSet::Calibration},
+      {"learning", InstanceSet::Learning},
+      {"tuning", InstanceSet::Tuning},
+      {"test", InstanceSet::Test}};
+  const auto found = kSets.find(name);
+  if (found == kSets.end())
+    throw Failure(ErrorCode::InvalidInput, "no set of instances '" + std::string(name) + "'");
+  return found->second;
 }
 
 std::uint64_t seed_of(InstanceSet set, std::size_t robot) {

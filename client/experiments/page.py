@@ -1,0 +1,35 @@
+#!/usr/bin/python3
+"""Finds the files and figures of a run; kinship-experiments, which starts it, draws them as a page.
+
+    page.py OPTIONS      one JSON document: by name a list of words for each option, for "program" and for "arguments", its own
+
+Exit codes: 0 done, 1 failed, 2 wrong usage or a broken file, 3 a file or folder does not exist.
+"""
+import json
+import subprocess
+import sys
+
+
+def main() -> int:
+    """Returns the exit code."""
+    from analysis import comparison, run_files
+
+    words: dict[str, list[str]] = json.loads(sys.argv[1])
+    try:
+        run = run_files.find_run(words)
+        document = run_files.described(run)
+    except ModuleNotFoundError as error:
+        return comparison.fail(f"{error}; on Debian: apt-get install python3-numpy", 1)
+    except FileNotFoundError as error:
+        return comparison.fail(f"cannot read '{error.filename}': {error.strerror}", 3)
+    except LookupError as error:
+        return comparison.fail(error.args[0], 3)
+    except ValueError as error:
+        return comparison.fail(str(error), 2)
+    except OSError as error:
+        return comparison.fail(str(error), 1)
+    return subprocess.run([*words["program"], *words["arguments"], "--draws"], input=json.dumps(document), text=True).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
