@@ -97,31 +97,12 @@ class Advised : public testing::Test {
   }
 
   std::vector<ProblemResult> plan(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {problems_,
-                                          urdf_,
-                                          "--base",
-                                          "base",
-                                          "--tip",
-                                          "l4",
-                                          "--label",
-                                          "planar",
-                                          "--axes",
-                                          "x,y,yaw",
-                                          "--transfer",
-                                          "0.3 0 0 0 0 0 1",
-                                          "--task",
-                                          "wall",
-                                          "--report",
-                                          "--outbox",
-                                          directory_ / "plan-outbox",
-                                          "--domain",
-                                          std::to_string(domain_.number()),
-                                          "--timeout",
-                                          "60",
-                                          "--wait",
-                                          "120",
-                                          "--max-checks",
-                                          "3000"};
+    std::vector<std::string> arguments = test::words(
+        problems_ + " " + urdf_ +
+        " --base base --tip l4 --label planar --axes x,y,yaw --task wall" + " --report --outbox " +
+        (directory_ / "plan-outbox").string() + " --domain " + std::to_string(domain_.number()) +
+        " --timeout 60 --wait 120 --max-checks 3000");
+    arguments.insert(arguments.end(), {"--transfer", "0.3 0 0 0 0 0 1"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     test::Program program("kinship-plan", arguments, log_);
     std::vector<ProblemResult> results;
@@ -162,8 +143,7 @@ class Advised : public testing::Test {
 };
 
 TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain_.number()});
   link::Client client(
       {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)});
   ASSERT_TRUE(client.register_robot(description_));
@@ -199,8 +179,7 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
 }
 
 TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain_.number()});
   link::Client client(
       {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)});
   ASSERT_TRUE(client.register_robot(description_));

@@ -24,8 +24,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(ForeignClient, MessagesThatEndEarlyAreRefusedAndHarmNobody) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;
-  ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  ServerProcess server({.store = directory / "fleet.db", .domain = domain.number()});
   Program client("../tests/shortened_client", {std::to_string(domain.number())},
                  directory / "error");
   const std::vector<std::string> lines = lines_of(client.read_all());
@@ -41,8 +40,7 @@ TEST(ForeignClient, MessagesThatEndEarlyAreRefusedAndHarmNobody) {
 TEST(ForeignClient, AMessageThatLiesAboutItsLengthsHarmsNobody) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;
-  ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  ServerProcess server({.store = directory / "fleet.db", .domain = domain.number()});
   for (const char* name : {"../tests/hostile_client", "../tests/foreign_client"}) {
     Program client(name, {std::to_string(domain.number())}, directory / "error");
     client.read_all();
@@ -54,8 +52,7 @@ TEST(ForeignClient, AMessageThatLiesAboutItsLengthsHarmsNobody) {
 TEST(ForeignClient, RegistersReportsFetchesAndHearsOfTheNewerRevision) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;
-  ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  ServerProcess server({.store = directory / "fleet.db", .domain = domain.number()});
   Program client("../tests/foreign_client", {std::to_string(domain.number()), "follow"},
                  directory / "error");
   const std::vector<std::string> lines = lines_of(client.read_all());

@@ -142,8 +142,7 @@ TEST_P(Shells, CompleteWhatTheServerKnowsAndNothingWithoutOne) {
   const test::ReservedDomain domain;
   const std::string number = std::to_string(domain.number());
   EXPECT_EQ(offered(shell, "kinship --domain " + number + " robots show "), Words());
-  const test::ServerProcess server(
-      {.store = folder_ / "store.db", .domain = domain.number(), .arguments = {}});
+  const test::ServerProcess server({.store = folder_ / "store.db", .domain = domain.number()});
   link::Client client({.domain = domain.number(),
                        .outbox = folder_ / "outbox",
                        .timeout = std::chrono::seconds(30)});

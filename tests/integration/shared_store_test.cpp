@@ -85,28 +85,6 @@ class SharedStore : public testing::Test {
   Digest panda_, ur10e_;
 };
 
-TEST_F(SharedStore, WhatOneServerIsToldTheOtherServes) {
-  one_->report(panda_, 1, 8);
-  const FetchReply made = other_->fetch(ur10e_);
-  ASSERT_EQ(made.status, FetchStatus::Ready) << made.message;
-  EXPECT_EQ(made.distribution->sources.at(0).paths, 8U);
-  // Made once: the first server takes it from the store.
-  const FetchReply taken = one_->fetch(ur10e_);
-  ASSERT_EQ(taken.status, FetchStatus::Ready) << taken.message;
-  EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
-}
-
-TEST_F(SharedStore, WhoeverAsksForAGenerationGetsItThoughAnotherServerMadeAnOlderOne) {
-  one_->report(panda_, 1, 8);
-  ASSERT_EQ(one_->fetch(panda_).status, FetchStatus::Ready);
-  one_->report(panda_, 100, 2);  // too few for a fit that nobody waits for
-  const std::uint64_t generation = std::stoull(query("SELECT generation FROM experience"));
-  const FetchReply reply = other_->fetch(panda_, generation);
-  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  EXPECT_EQ(reply.distribution->revision, 2U);
-  EXPECT_EQ(reply.distribution->sources.at(0).generation, generation);
-}
-
 TEST_F(SharedStore, TwoServersThatAreAskedAtOnceMakeOneFit) {
   one_->report(panda_, 1, 8);
   auto fits = std::make_unique<test::LockedTable>(url_, "fit_lease");
@@ -181,23 +159,6 @@ TEST_F(SharedStore, WhatIsEvictedOrRenamedAtOneServerTheOtherNotices) {
   ASSERT_EQ(one_->ask(rename).status, AdminStatus::Ok);
   EXPECT_TRUE(comes_true(
       [&] { return other_->register_model("ur10e").message == "known already, as 'arm-7'"; }));
-}
-
-TEST_F(SharedStore, AServerThatJoinsServesWhatOthersMadeAtOnce) {
-  one_->report(panda_, 1, 8);
-  const FetchReply made = one_->fetch(ur10e_);
-  ASSERT_EQ(made.status, FetchStatus::Ready) << made.message;
-  const std::unique_ptr<test::Cell> third = cell("third");
-  const auto began = Clock::now();
-  std::future<FetchReply> first = begin_fetch(*third);  // its client asks before there is a server
-  third->start();
-  const FetchReply taken = first.get();
-  const double joined_s = seconds_since(began);
-  std::cout << "the first fetch of a server that joins was answered after " << joined_s << " s\n";
-  ASSERT_EQ(taken.status, FetchStatus::Ready) << taken.message;
-  EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
-  EXPECT_EQ(fits_of(*third), 0);
-  EXPECT_LT(joined_s, 20);  // mostly well below 1; the machine may have other work
 }
 
 TEST_F(SharedStore, WithoutItsDatabaseAServerKnowsItsRobotsAndServesWhatIsInMemory) {

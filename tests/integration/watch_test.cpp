@@ -59,8 +59,7 @@ TEST_F(Watch, SaysAtOnceThatThereIsNoServerAndThenHowBusyItIs) {
   begin({"--domain", std::to_string(domain.number()), "watch", "--every", "1", "--robot", "panda"});
   EXPECT_EQ(watch_->read_line().substr(0, 28), "TIME                  KIND  ");
   wait_for_words("no server at 127.0.0.1, domain ");
-  const test::ServerProcess late(
-      {.store = folder_ / "late.db", .domain = domain.number(), .arguments = {}});
+  const test::ServerProcess late({.store = folder_ / "late.db", .domain = domain.number()});
   const std::string line = watch_->read_line();
   EXPECT_NE(line.find("  rates       reports 0.0/s, fetches "), std::string::npos) << line;
   EXPECT_NE(said().find("the server is there"), std::string::npos);

@@ -14,6 +14,8 @@ constexpr const char* kTask = "sweep";
 
 Cell::Options with_folder(Cell::Options options) {
   std::filesystem::create_directories(options.folder);
+  if (options.store.empty())
+    options.store = options.folder / "fleet.db";
   return options;
 }
 
@@ -26,10 +28,16 @@ Cell::Cell(Options options)
                .timeout = std::chrono::seconds(60)}) {}
 
 void Cell::start() {
+  server_.reset();
   server_ = std::make_unique<ServerProcess>(ServerProcess::Options{.store = options_.store,
                                                                    .domain = domain_.number(),
                                                                    .arguments = options_.arguments,
                                                                    .log = options_.folder / "log"});
+}
+
+Answer Cell::run(const std::string& program, std::vector<std::string> words) const {
+  words.insert(words.end(), {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
+  return run_to_end(program, words);
 }
 
 RegisterReply Cell::register_model(const std::string& model) {
