@@ -100,14 +100,12 @@ class BroughtRobot : public testing::Test {
   }
 
   /// Runs kinship-plan for the lifter; what it writes is left in results_ and messages_.
-  int plan(const std::vector<std::string>& more) {
+  int plan(const std::string& more) {
     const std::string folder = directory_.path().string();
-    std::vector<std::string> arguments =
-        test::words("--robot " + folder + "/lifter.urdf --tip hand --package lifter=" + folder +
-                    "/lifter --problems " + folder + "/problems.jsonl --srdf " + folder +
-                    "/lifter.srdf --json");
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const test::Answer answer = cell_.run("kinship-plan", arguments);
+    const test::Answer answer = cell_.run(
+        "kinship-plan", "--robot " + folder + "/lifter.urdf --tip hand --package lifter=" + folder +
+                            "/lifter --problems " + folder + "/problems.jsonl --srdf " + folder +
+                            "/lifter.srdf --json " + more);
     messages_ = answer.err;
     results_.clear();
     std::istringstream lines(answer.out);
@@ -117,11 +115,9 @@ class BroughtRobot : public testing::Test {
   }
 
   int plan_with_server(const std::string& more) {
-    std::vector<std::string> arguments =
-        test::words("--base base --axes x,y,z,yaw --task past --wait 600 --server 127.0.0.1 " +
-                    more + " --outbox " + (directory_ / "plan_outbox").string() + " --transfer");
-    arguments.push_back("0.08 0 0 0 0 0 1");
-    return plan(arguments);
+    return plan("--base base --axes x,y,z,yaw --task past --wait 600 --server 127.0.0.1 " + more +
+                " --outbox " + (directory_ / "plan_outbox").string() +
+                " --transfer '0.08 0 0 0 0 0 1'");
   }
 
   const test::TemporaryDirectory directory_;
@@ -153,7 +149,7 @@ TEST_F(BroughtRobot, PlansReportsAndIsGuidedByItsOwnReports) {
 TEST_F(BroughtRobot, ALabelOfAnotherRobotEndsTheRun) {
   cell_.start();
   EXPECT_EQ(plan_with_server("--label cell7"), 0) << messages_;
-  const int code = plan({"--base", "carriage", "--label", "cell7", "--task", "past"});
+  const int code = plan("--base carriage --label cell7 --task past");
   EXPECT_EQ(code, 1) << messages_;
   EXPECT_TRUE(results_.empty());
   EXPECT_NE(messages_.find("cell7"), std::string::npos) << messages_;
@@ -177,7 +173,7 @@ TEST_F(BroughtRobot, GoesAroundMeshesThatStandBesideTheProblemFile) {
   blocked.goal_configurations.col(0) << 0, M_PI / 4, 0, 0;
   write("problems.jsonl", json::to_json(shapes) + "\n" + json::to_json(meshes) + "\n" +
                               json::to_json(missing) + "\n" + json::to_json(blocked) + "\n");
-  EXPECT_EQ(plan({"--base", "base"}), 0) << messages_;
+  EXPECT_EQ(plan("--base base"), 0) << messages_;
   ASSERT_EQ(results_.size(), 4U);
   EXPECT_TRUE(results_[0].solved) << results_[0].reason;
   EXPECT_TRUE(results_[1].solved) << results_[1].reason;

@@ -85,27 +85,16 @@ class MeshRobots : public testing::Test {
 
   Answer plan_as_teacher() const {
     return cell_.run("kinship-plan",
-                     test::words("--base base --tip tip --axes x,y,yaw --label teacher --task past "
-                                 "--guidance uniform --report yes --json --outbox " +
-                                 (directory_ / "plan_outbox").string() + " --robot " +
-                                 (directory_ / "teacher.urdf").string() + " --problems " +
-                                 (directory_ / "problems.jsonl").string()));
+                     "--base base --tip tip --axes x,y,yaw --label teacher --task past "
+                     "--guidance uniform --report yes --json --outbox " +
+                         (directory_ / "plan_outbox").string() + " --robot " +
+                         (directory_ / "teacher.urdf").string() + " --problems " +
+                         (directory_ / "problems.jsonl").string());
   }
 
   Answer register_pupil() const {
-    return cell_.kinship(test::words("robots register " + (directory_ / "pupil.urdf").string() +
-                                     " --base base --tip tip --axes x,y,yaw --label pupil"));
-  }
-
-  /// As a client from before registers: without what it could tell of the meshes.
-  RegisterReply register_pupil_without() {
-    RobotDescription description;
-    description.label = "pupil";
-    description.urdf = arm_urdf(kPupil_mm);
-    description.base_link = "base";
-    description.tip_link = "tip";
-    description.task_axes.matters = {true, true, false, false, false, true};
-    return cell_.client().register_robot(description).value_or_throw();
+    return cell_.kinship("robots register " + (directory_ / "pupil.urdf").string() +
+                         " --base base --tip tip --axes x,y,yaw --label pupil");
   }
 
   Distribution fetch(const Digest& robot) {
@@ -156,33 +145,8 @@ TEST_F(MeshRobots, AreFilteredWithSolidsAroundTheirMeshesAndTheServerSaysSo) {
   EXPECT_TRUE(has(distribution.filters,
                   "recorded scenes: those of 6 of 6 paths, 6 of them with solids around meshes"));
   const Answer explained =
-      cell_.kinship({"distributions", "explain", "--distribution", distribution.id.hex()});
+      cell_.kinship("distributions explain --distribution " + distribution.id.hex());
   EXPECT_TRUE(has(explained.out, distribution.filters));
-}
-
-TEST_F(MeshRobots, ARegistrationWithoutShapesIsUpgradedByALaterOneWithThem) {
-  ASSERT_EQ(plan_as_teacher().code, 0);
-  const RegisterReply plain = register_pupil_without();
-  EXPECT_EQ(plain.geometry_grade, GeometryGrade::None);
-  const Distribution unfiltered = fetch(plain.robot);
-  EXPECT_TRUE(has(unfiltered.filters,
-                  "not filtered, for 'pupil': 4 links unknown, with meshes that only its clients "
-                  "have; register it again where its meshes are"))
-      << unfiltered.filters;
-  EXPECT_EQ(unfiltered.sources.at(0).filter_checks, 0U);
-
-  const Answer again = register_pupil();
-  EXPECT_TRUE(has(again.out, "(known already)"));
-  EXPECT_TRUE(has(again.out, "better geometry than before, it counts from now on: 4 links by 4"));
-  EXPECT_GT(pupil().geometry_ms, 0);
-  EXPECT_EQ(pupil().robot, plain.robot);
-
-  const Distribution filtered = fetch(plain.robot);
-  EXPECT_NE(filtered.id, unfiltered.id);
-  EXPECT_GT(filtered.sources.at(0).filter_checks, 0U);
-  EXPECT_TRUE(has(filtered.filters, "recorded scenes: those of 6 of 6 paths"));
-  EXPECT_FALSE(register_pupil_without().took_geometry);
-  EXPECT_EQ(fetch(plain.robot).id, filtered.id) << "an older client takes nothing away";
 }
 
 }  // namespace

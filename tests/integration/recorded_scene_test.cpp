@@ -54,14 +54,13 @@ class RecordedScenes : public testing::Test {
       file << json::to_json(turn_before_the_wall(i)) << '\n';
   }
 
-  void plan_and_report(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments =
-        test::words((directory_ / "problems.jsonl").string() + " --model " + test::source_dir() +
-                    "/robots/models/panda --label panda --task turn --guidance none --report" +
-                    " --outbox " + (directory_ / "plan_outbox").string() + " --output " +
-                    (directory_ / "results.jsonl").string());
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const test::Answer plan = cell_.run("kinship-plan", arguments);
+  void plan_and_report(const std::string& more) {
+    const test::Answer plan = cell_.run(
+        "kinship-plan", (directory_ / "problems.jsonl").string() + " --model " +
+                            test::source_dir() + "/robots/models/panda --label panda --task turn" +
+                            " --guidance none --report --outbox " +
+                            (directory_ / "plan_outbox").string() + " --output " +
+                            (directory_ / "results.jsonl").string() + ' ' + more);
     ASSERT_EQ(plan.code, 0) << plan.err;
   }
 
@@ -99,7 +98,7 @@ class RecordedScenes : public testing::Test {
 };
 
 TEST_F(RecordedScenes, LeaveOutWhatAnotherRobotWouldTouchThere) {
-  plan_and_report({});
+  plan_and_report("");
   const std::vector<Attempt> attempts = exported();
   ASSERT_EQ(attempts.size(), static_cast<std::size_t>(kProblems));
   for (const Attempt& attempt : attempts) {
@@ -120,7 +119,7 @@ TEST_F(RecordedScenes, LeaveOutWhatAnotherRobotWouldTouchThere) {
 }
 
 TEST_F(RecordedScenes, AreNotSentIfTheUserDoesNotWantIt) {
-  plan_and_report({"--record-scenes", "no"});
+  plan_and_report("--record-scenes no");
   for (const Attempt& attempt : exported())
     EXPECT_FALSE(attempt.scene);
   const Source source = source_of_ur10e();

@@ -26,7 +26,7 @@ TEST(Retention, NoReceiptIsLostAndEveryCountSaysWhatIsKept) {
     EXPECT_EQ(receipt.message.find("not kept") != std::string::npos, !is_kept) << receipt.message;
   }
   const auto exported = [&] {
-    const test::Answer lines = cell.kinship({"paths", "export", "--task", "sweep"});
+    const test::Answer lines = cell.kinship("paths export --task sweep");
     std::set<Uuid> uuids;
     for (const Attempt& attempt : attempts)
       if (lines.says(attempt.report_uuid.text()))
@@ -40,10 +40,10 @@ TEST(Retention, NoReceiptIsLostAndEveryCountSaysWhatIsKept) {
   EXPECT_EQ(exported(), kept);
   for (const Receipt& receipt : cell.client().deliver(attempts).value_or_throw())
     EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate) << receipt.message;
-  EXPECT_TRUE(cell.kinship({"tasks", "list"}).says("6 of 30"));
-  EXPECT_TRUE(cell.kinship({"tasks", "show", "sweep"}).says("6 of 30 paths, 30 attempts"));
-  EXPECT_TRUE(cell.kinship({"paths", "list"}).says("dropped"));
-  const test::Answer status = cell.kinship({"status"});
+  EXPECT_TRUE(cell.kinship("tasks list").says("6 of 30"));
+  EXPECT_TRUE(cell.kinship("tasks show sweep").says("6 of 30 paths, 30 attempts"));
+  EXPECT_TRUE(cell.kinship("paths list").says("dropped"));
+  const test::Answer status = cell.kinship("status");
   for (const char* const part :
        {"6 paths (24 more were beyond the cap), 30 attempts",
         "6 of 6 paths, of the robot and task with most",

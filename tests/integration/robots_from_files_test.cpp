@@ -43,7 +43,7 @@ class RobotsFromFiles : public testing::Test {
 };
 
 TEST_F(RobotsFromFiles, ATwinIsToldWhomItIsLike) {
-  const Answer first = cell_.kinship({"robots", "register", kModels + "ur10e"});
+  const Answer first = cell_.kinship("robots register " + kModels + "ur10e");
   EXPECT_EQ(first.code, 0) << first.err;
   EXPECT_EQ(first.out.find("same arm"), std::string::npos) << first.out;
 
@@ -52,19 +52,17 @@ TEST_F(RobotsFromFiles, ATwinIsToldWhomItIsLike) {
   for (std::size_t at = 0; (at = text.find(nominal, at)) != std::string::npos;)
     text.replace(at, nominal.size(), calibrated);
   const std::string twin = write("cell7.urdf", text);
-  std::vector<std::string> arguments = test::words(
-      "robots register " + twin + " --base base_link --tip tool0 --label cell7 --transfer");
-  arguments.push_back("0 0 0.06 0 0 0 1");
-  const Answer second = cell_.kinship(arguments);
+  const Answer second =
+      cell_.kinship("robots register " + twin + " --base base_link --tip tool0 --label cell7" +
+                    " --transfer '0 0 0.06 0 0 0 1'");
   EXPECT_EQ(second.code, 0) << second.err;
   EXPECT_NE(second.out.find("the same arm as ur10e"), std::string::npos) << second.out;
 }
 
 TEST_F(RobotsFromFiles, CollisionMeshesAreNotNeededToRegister) {
-  std::vector<std::string> arguments =
-      test::words("robots register " + write_pointer() + " --base base --tip arm --transfer");
-  arguments.push_back("0 0 0 0 0 0 1");
-  const Answer without = cell_.kinship(arguments);
+  const std::string line =
+      "robots register " + write_pointer() + " --base base --tip arm --transfer '0 0 0 0 0 0 1'";
+  const Answer without = cell_.kinship(line);
   EXPECT_EQ(without.code, 0) << without.err;
   EXPECT_NE(without.err.find("without collision geometry: link 'arm': mesh "
                              "'package://pointer/Pointer.STL'"),
@@ -72,8 +70,7 @@ TEST_F(RobotsFromFiles, CollisionMeshesAreNotNeededToRegister) {
       << without.err;
   EXPECT_NE(without.err.find("--package pointer=DIR"), std::string::npos) << without.err;
 
-  arguments.insert(arguments.end(), {"--package", "pointer=" + directory_.path().string()});
-  const Answer with = cell_.kinship(arguments);
+  const Answer with = cell_.kinship(line + " --package pointer=" + directory_.path().string());
   EXPECT_EQ(with.code, 0) << with.err;
   EXPECT_EQ(with.err, "");
 }

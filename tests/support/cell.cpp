@@ -35,9 +35,8 @@ void Cell::start() {
                                                                    .log = options_.folder / "log"});
 }
 
-Answer Cell::run(const std::string& program, std::vector<std::string> words) const {
-  words.insert(words.end(), {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
-  return run_to_end(program, words);
+Answer Cell::run(const std::string& program, const std::string& line) const {
+  return run_to_end(program, words(line + " --timeout 60 --domain " + std::to_string(domain())));
 }
 
 RegisterReply Cell::register_model(const std::string& model) {

@@ -41,8 +41,9 @@ class Cell {
   link::Client& client() { return client_; }
   std::uint32_t domain() const { return domain_.number(); }
   /// A program of the client from its start to its end, told domain and time limit.
-  Answer run(const std::string& program, std::vector<std::string> words) const;
-  Answer kinship(const std::vector<std::string>& words) const { return run("kinship", words); }
+  /// \param line  its further words, see words().
+  Answer run(const std::string& program, const std::string& line) const;
+  Answer kinship(const std::string& line) const { return run("kinship", line); }
 
   RegisterReply register_model(const std::string& model);
   /// So many sweeps of a Panda, durable on return.

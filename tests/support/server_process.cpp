@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
-#include <iterator>
+#include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -139,7 +139,10 @@ int Program::wait() {
 
 std::vector<std::string> words(const std::string& line) {
   std::istringstream stream(line);
-  return {std::istream_iterator<std::string>(stream), {}};
+  std::vector<std::string> found;
+  for (std::string word; stream >> std::quoted(word, '\'', '\0');)
+    found.push_back(word);
+  return found;
 }
 
 Answer run_to_end(const std::string& name, const std::vector<std::string>& arguments) {

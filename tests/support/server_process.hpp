@@ -51,7 +51,7 @@ struct Answer {
   bool says(const std::string& words) const { return (out + err).find(words) != std::string::npos; }
 };
 
-/// The words of a line, apart at blanks.
+/// The words of a line, apart at blanks; one that begins with ' goes on to the next '.
 std::vector<std::string> words(const std::string& line);
 
 /// A program from its start to its end.
