@@ -91,6 +91,12 @@ TEST(FitMixture, ComponentsAreLimitedByTheDistinctConfigurations) {
   EXPECT_EQ(fit(draws_of(known_mixture(), 3), {.components = 50}).mixture.size(), 1);
 }
 
+TEST(FitMixture, AConstantJointGetsTheFloor) {
+  Eigen::MatrixXd constant = draws_of(known_mixture(), 500);
+  constant.row(1).setConstant(0.7);
+  EXPECT_NEAR(fit(constant, {.components = 3}).mixture.covariances()[0](1, 1), 1e-4, 1e-12);
+}
+
 TEST(FitMixture, DegenerateConfigurationsWithoutFloorAreRefused) {
   Eigen::MatrixXd constant = draws_of(known_mixture(), 500);
   constant.row(1).setConstant(0.5);
