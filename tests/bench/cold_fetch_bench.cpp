@@ -49,7 +49,7 @@ double server_time_s(const Distribution& distribution) {
 class Fleet {
  public:
   Fleet()
-      : server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
+      : server_({.store = directory_ / "fleet.db", .domain = domain_.number()}),
         client_({.domain = domain_.number(),
                  .outbox = {},
                  .has_outbox = false,

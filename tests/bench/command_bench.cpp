@@ -45,8 +45,7 @@ void measure(const std::string& name, const std::vector<std::string>& arguments)
 int main() {
   const test::ReservedDomain domain;
   const test::TemporaryDirectory directory{test::disk_root()};
-  const test::ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  const test::ServerProcess server({.store = directory / "fleet.db", .domain = domain.number()});
   {
     link::Client client({.domain = domain.number(), .outbox = directory / "outbox"});
     const Digest panda =

@@ -37,8 +37,8 @@ int run_clients(std::uint32_t domain, const Digest& robot) {
 void run() {
   const test::ReservedDomain domain;
   const test::TemporaryDirectory directory{test::disk_root()};
-  const test::ServerProcess::Options options{
-      .store = directory / "fleet.db", .domain = domain.number(), .arguments = {}};
+  const test::ServerProcess::Options options{.store = directory / "fleet.db",
+                                             .domain = domain.number()};
   auto server = std::make_unique<test::ServerProcess>(options);
   Digest panda;
   {

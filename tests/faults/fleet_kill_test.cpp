@@ -18,6 +18,7 @@
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
+#include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 /// kill -9 of kinshipd and of its clients at random instants, under load: whatever report() took is
@@ -34,7 +35,7 @@ class FleetKill : public testing::Test {
  protected:
   void start_server() {
     server_ = std::make_unique<ServerProcess>(
-        ServerProcess::Options{.store = store_, .domain = domain_.number(), .arguments = {}});
+        ServerProcess::Options{.store = store_, .domain = domain_.number()});
   }
   void start_client(std::size_t client) {
     constexpr std::uint64_t kNumbersPerLife = 10'000'000;
@@ -91,13 +92,6 @@ class FleetKill : public testing::Test {
   std::vector<std::string> ledgers_;  // one a life of a client
   int server_kills_ = 0;
 };
-
-bool is_as_reported(const Attempt& found, const Attempt& wanted) {
-  return found.robot == wanted.robot && found.task == wanted.task &&
-         found.record.outcome == wanted.record.outcome &&
-         found.record.collision_checks == wanted.record.collision_checks &&
-         (!found.path || (wanted.path && found.path->waypoints() == wanted.path->waypoints()));
-}
 
 /// What is wrong with the store, as counts.
 struct Audit {

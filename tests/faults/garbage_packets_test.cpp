@@ -68,8 +68,7 @@ class GarbageSender {
 TEST(GarbagePackets, AtTheServersPortsHarmNobody) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;
-  ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  ServerProcess server({.store = directory / "fleet.db", .domain = domain.number()});
   Bystander bystander(domain.number(), directory / "outbox");
   const std::vector<Packet> packets = capture_client(domain.number(), directory.path());
   const Bystander::Rounds alone = bystander.live(30);

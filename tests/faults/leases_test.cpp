@@ -20,8 +20,7 @@ using std::chrono::seconds;
 TEST(FleetLeases, OfOneClientDoNotEndAnothers) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;
-  ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  ServerProcess server({.store = directory / "fleet.db", .domain = domain.number()});
   Bystander bystander(domain.number(), directory / "outbox");
   FetchRequest request;
   request.task = "sweep";

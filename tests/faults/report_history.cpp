@@ -17,13 +17,6 @@
 namespace kinship::test {
 namespace {
 
-bool is_as_reported(const Attempt& found, const Attempt& wanted) {
-  return found.robot == wanted.robot && found.task == wanted.task &&
-         found.record.outcome == wanted.record.outcome &&
-         found.record.collision_checks == wanted.record.collision_checks &&
-         (!found.path || (wanted.path && found.path->waypoints() == wanted.path->waypoints()));
-}
-
 void compare_attempts(const store::Store& store, const std::set<std::uint64_t>& begun,
                       const std::set<std::uint64_t>& answered, HistoryFaults& faults) {
   std::size_t stored = 0;

@@ -29,7 +29,7 @@ class ReportingFleet : public testing::Test {
   void start_server(const std::filesystem::path& store) {
     server_.reset();
     server_ = std::make_unique<ServerProcess>(
-        ServerProcess::Options{.store = store, .domain = domain_.number(), .arguments = {}});
+        ServerProcess::Options{.store = store, .domain = domain_.number()});
   }
   void start_server() { start_server(store_); }
   void kill_server() {

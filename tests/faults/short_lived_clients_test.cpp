@@ -48,8 +48,7 @@ class ShortLivedClients : public testing::Test {
 
   ReservedDomain domain_;
   TemporaryDirectory directory_;
-  ServerProcess server_{
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}};
+  ServerProcess server_{{.store = directory_ / "fleet.db", .domain = domain_.number()}};
   Bystander bystander_{domain_.number(), directory_ / "outbox"};
 };
 

@@ -2,11 +2,11 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
 #include <map>
 #include <thread>
 
 #include "tests/faults/store_session.hpp"
+#include "tests/support/long_run.hpp"
 
 /// A disk that fails at any one call of a session, once or for some calls: reports are answered
 /// TryAgain, the store opens itself again and goes on, readings are right or say that they failed.
@@ -23,10 +23,7 @@ constexpr std::uint64_t kSeed = 20261123;
 constexpr std::uint64_t kDistribution = 7;
 constexpr auto kTooLong = std::chrono::seconds(5);  // of what takes milliseconds
 
-std::uint64_t stride(std::uint64_t short_run) {
-  const char* const wish = std::getenv("KINSHIP_LONG");  // NOLINT(concurrency-mt-unsafe)
-  return wish != nullptr && std::string(wish) == "1" ? 1 : short_run;
-}
+std::uint64_t stride(std::uint64_t short_run) { return test::is_long_run() ? 1 : short_run; }
 
 /// What a client does that was told of a failure of the storage: the same again.
 template <typename Work>

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/full_disk.hpp"
+#include "tests/support/long_run.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -99,9 +99,7 @@ TEST_F(StoreDisk, SurvivesARowOfFailures) {
 
 /// KINSHIP_LONG=1: 4 GB.
 TEST(StoreDiskOfALargeStore, GoesOnWithinASecondOnceTheDiskDoes) {
-  const char* const wish = std::getenv("KINSHIP_LONG");  // NOLINT(concurrency-mt-unsafe)
-  const bool is_long = wish != nullptr && std::string(wish) == "1";
-  const std::uint64_t bytes = (is_long ? std::uint64_t{4} << 10U : 20) << 20U;
+  const std::uint64_t bytes = (test::is_long_run() ? std::uint64_t{4} << 10U : 20) << 20U;
   constexpr Eigen::Index kWaypoints = 16'384;
   constexpr std::uint64_t kBytesOfAPath = kWaypoints * test::kDof * sizeof(double);
   constexpr std::uint64_t kAtOnce = 8;

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <random>
@@ -10,6 +9,7 @@
 #include "server/store/maintenance.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/faults/store_answers.hpp"
+#include "tests/support/long_run.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -22,7 +22,7 @@ using test::Answers;
 
 constexpr std::uint64_t kSeed = 20261123;
 
-int trials_of(int usual) { return std::getenv("KINSHIP_LONG") == nullptr ? usual : 20 * usual; }
+int trials_of(int usual) { return test::is_long_run() ? 20 * usual : usual; }
 
 /// Something in every table; paths, a URDF and a distribution that take several pages.
 test::StoredThings make_things() {

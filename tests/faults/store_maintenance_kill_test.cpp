@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -86,6 +85,20 @@ class StoreMaintenanceKill : public testing::Test {
     });
   }
 
+  /// Begins anew and kills `verb` before every `step`-th change that it makes, until it is through.
+  /// \return how many changes it makes
+  template <typename Verb, typename Check>
+  int kill_before_each(const Verb& verb, const Check& check, int step = 1) {
+    int change = 0;
+    for (bool killed = true; killed && !HasFailure(); change += step) {
+      SCOPED_TRACE("killed before change " + std::to_string(change));
+      begin_anew();
+      killed = test::killed_before_change(change, verb);
+      check(change);
+    }
+    return change;
+  }
+
   const test::TemporaryDirectory templates_;
   const fs::path backup_ = templates_ / "backup.db";
   const fs::path place_ = templates_ / "place";
@@ -94,104 +107,63 @@ class StoreMaintenanceKill : public testing::Test {
 };
 
 TEST_F(StoreMaintenanceKill, ARestoreLeavesTheOldStoreOrTheNewOneAndNeverLosesTheOld) {
-  int change = 0;
-  bool killed = true;
-  for (; killed; ++change) {
-    SCOPED_TRACE("killed before change " + std::to_string(change));
-    begin_anew();
-    killed = test::killed_before_change(change, [&] { restore_store(backup_, store_, ignore); });
+  const auto restore = [&] { restore_store(backup_, store_, ignore); };
+  const int changes = kill_before_each(restore, [&](int change) {
     ASSERT_TRUE(is_old(store_) || has_old(files_with(".replaced-")));
-    if (change % 4 == 0) {  // once more, to the end
-      ASSERT_NO_THROW(restore_store(backup_, store_, ignore));
-      ASSERT_FALSE(is_old(store_));
-      ASSERT_TRUE(has_old(files_with(".replaced-")));
-      ASSERT_TRUE(files_with(".restoring").empty());
-    }
-    if (HasFailure())
+    if (change % 4 != 0)
       return;
-  }
-  EXPECT_GT(change, 20);
-  std::cout << change << " changes\n";
+    ASSERT_NO_THROW(restore());  // once more, to the end
+    ASSERT_FALSE(is_old(store_));
+    ASSERT_TRUE(has_old(files_with(".replaced-")));
+    ASSERT_TRUE(files_with(".restoring").empty());
+  });
+  EXPECT_GT(changes, 20);
 }
 
 TEST_F(StoreMaintenanceKill, ABackupIsWholeOrNotThereAndCanBeMadeAfterwards) {
-  int change = 0;
-  bool killed = true;
-  for (; killed; ++change) {
-    SCOPED_TRACE("killed before change " + std::to_string(change));
-    begin_anew();
-    const fs::path copy = place_ / "copy.db";
-    killed = test::killed_before_change(change, [&] { backup_store(store_, copy, ignore); });
+  const fs::path copy = place_ / "copy.db";
+  const auto back_up = [&] { backup_store(store_, copy, ignore); };
+  const auto check = [&](int) {
     ASSERT_TRUE(is_old(store_));
     if (!fs::exists(copy))
-      backup_store(store_, copy, ignore);
+      back_up();
     ASSERT_TRUE(is_old(copy));
     ASSERT_TRUE(files_with(".part").empty());
-  }
-  EXPECT_GT(change, 10);
-  std::cout << change << " changes\n";
-}
-
-TEST_F(StoreMaintenanceKill, ABackupOfARunningStoreIsWholeOrNotThere) {
-  int change = 0;
-  bool killed = true;
-  for (; killed; change += 3) {
-    SCOPED_TRACE("killed before change " + std::to_string(change));
-    begin_anew();
-    const fs::path copy = place_ / "copy.db";
-    killed = test::killed_before_change(change, [&] {
-      const std::unique_ptr<Store> store = open_sqlite_store(store_);
-      static_cast<void>(store->backup(copy, [](double) { return true; }).value_or_throw());
-    });
-    ASSERT_TRUE(is_old(store_));
-    if (!fs::exists(copy))
-      backup_store(store_, copy, ignore);
-    ASSERT_TRUE(is_old(copy));
-    ASSERT_TRUE(files_with(".part").empty());
-  }
-  std::cout << change << " changes\n";
+  };
+  EXPECT_GT(kill_before_each(back_up, check), 10);
+  const auto back_up_running = [&] {
+    const std::unique_ptr<Store> store = open_sqlite_store(store_);
+    static_cast<void>(store->backup(copy, [](double) { return true; }).value_or_throw());
+  };
+  EXPECT_GT(kill_before_each(back_up_running, check, 3), 20);
 }
 
 TEST_F(StoreMaintenanceKill, AStoreThatWasBeingMadeIsMadeByTheNextServer) {
-  int change = 0;
-  bool killed = true;
-  for (; killed; ++change) {
-    SCOPED_TRACE("killed before change " + std::to_string(change));
-    begin_anew();
-    const fs::path fresh = place_ / "fresh.db";
-    killed = test::killed_before_change(change, [&] { open_sqlite_store(fresh); });
-    ASSERT_NO_THROW(open_sqlite_store(fresh));
+  const fs::path fresh = place_ / "fresh.db";
+  const auto open = [&] { open_sqlite_store(fresh); };
+  const int changes = kill_before_each(open, [&](int) {
+    ASSERT_NO_THROW(open());
     ASSERT_EQ(check_store(fresh, ignore).problems, 0U);
-  }
-  EXPECT_GT(change, 20);
-  std::cout << change << " changes\n";
+  });
+  EXPECT_GT(changes, 20);
 }
 
 TEST_F(StoreMaintenanceKill, AMigrationHappensWhollyOrNotAtAll) {
   const auto migrations = test::with_next_schema();
-  int change = 0;
-  bool killed = true;
-  for (; killed; ++change) {
-    SCOPED_TRACE("killed before change " + std::to_string(change));
-    begin_anew();
-    killed = test::killed_before_change(change, [&] { open_migrated(store_, migrations); });
+  const auto migrate = [&] { open_migrated(store_, migrations); };
+  const int changes = kill_before_each(migrate, [&](int) {
     const std::int64_t version = Database(store_, Access::ReadWrite).integer("PRAGMA user_version");
     const bool is_done = version == std::ssize(migrations);
     ASSERT_TRUE(is_done || version == test::schema_of_today()) << version;
     const fs::path backup = backup_of_version(store_, test::schema_of_today());
     ASSERT_TRUE(!is_done || fs::exists(backup));
-    if (fs::exists(backup)) {
-      ASSERT_TRUE(is_old(backup));
-    }
-    if (!is_done) {
-      ASSERT_TRUE(is_old(store_));
-    }
-    open_migrated(store_, migrations);  // and goes on from there
+    ASSERT_TRUE(!fs::exists(backup) || is_old(backup));
+    ASSERT_TRUE(is_done || is_old(store_));
+    migrate();  // and goes on from there
     test::undo_next_schema(store_);
     ASSERT_TRUE(is_old(store_));
-  }
-  EXPECT_GT(change, 20);
-  std::cout << change << " changes\n";
+  });
+  EXPECT_GT(changes, 20);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include <cstdlib>
 #include <string>
 
 #include "server/store/maintenance.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "tests/faults/store_session.hpp"
+#include "tests/support/long_run.hpp"
 #include "tests/support/next_schema.hpp"
 #include "tests/support/places.hpp"
 
@@ -20,11 +20,7 @@ using test::StoreSession;
 
 constexpr std::uint64_t kSeed = 20261123;
 
-std::uint64_t rounds(std::uint64_t short_run) {
-  const char* const wish = std::getenv("KINSHIP_LONG");  // NOLINT(concurrency-mt-unsafe)
-  constexpr std::uint64_t kLonger = 12;
-  return wish != nullptr && std::string(wish) == "1" ? kLonger * short_run : short_run;
-}
+std::uint64_t rounds(std::uint64_t usual) { return test::is_long_run() ? 12 * usual : usual; }
 
 std::string golden() { return test::source_dir() + "/tests/golden/store-1.db"; }
 
@@ -38,7 +34,15 @@ class StorePowerLoss : public testing::Test {
     }
     cuts_ += session.cuts();
   }
-  void expect_no_loss() {
+  /// Does `work` in so many sessions, or in twelve times as many.
+  template <typename Work>
+  void expect_no_loss(std::uint64_t sessions, std::uint64_t mean_gap, const Work& work,
+                      const std::string& golden = {}) {
+    for (std::uint64_t round = 0; round < rounds(sessions); ++round) {
+      StoreSession session(kSeed + round, mean_gap, golden);
+      work(session, round);
+      look_at(session);
+    }
     RecordProperty("cuts", static_cast<int>(cuts_));
     EXPECT_EQ(losses_, 0U) << "of " << cuts_ << " cuts; the last: " << last_;
   }
@@ -48,36 +52,29 @@ class StorePowerLoss : public testing::Test {
 };
 
 TEST_F(StorePowerLoss, LosesNothingWhileItServesAndCloses) {
-  for (std::uint64_t round = 0; round < rounds(3); ++round) {
-    StoreSession session(kSeed + round, 15);
+  const auto work = [](StoreSession& session, std::uint64_t /*round*/) {
     for (int life = 0; life < 2; ++life) {
-      const auto store = session.open();
-      session.register_robots(*store);
+      const auto store = session.open_with_robots();
       session.report(*store, 3, 30);
       session.put_distribution(*store, 100 + static_cast<std::uint64_t>(life));
       session.retire(*store, 0);
       session.report(*store, 1, 10);
     }
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(3, 15, work);
 }
 
 TEST_F(StorePowerLoss, LosesNothingWhileAStoreIsMigrated) {
-  for (std::uint64_t round = 0; round < rounds(5); ++round) {
-    StoreSession session(kSeed + round, 3, golden());
+  const auto work = [](StoreSession& session, std::uint64_t /*round*/) {
     open_migrated(session.file(), test::with_next_schema());
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(5, 3, work, golden());
 }
 
 TEST_F(StorePowerLoss, ABackupIsWholeOrNotThere) {
-  for (std::uint64_t round = 0; round < rounds(3); ++round) {
-    StoreSession session(kSeed + round, 15);
+  const auto work = [](StoreSession& session, std::uint64_t /*round*/) {
     {
-      const auto store = session.open();
-      session.register_robots(*store);
+      const auto store = session.open_with_robots();
       session.report(*store, 1, 40);
       for (const std::string name : {"copy-1.db", "copy-2.db"}) {
         const auto copied = store->backup(session.file().parent_path() / name, [&](double) {
@@ -88,39 +85,33 @@ TEST_F(StorePowerLoss, ABackupIsWholeOrNotThere) {
         session.ledger().note([&](test::Receipts& noted) { noted.backups.insert(name); });
       }
     }
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(3, 15, work);
 }
 
 /// Old or new, there is one whole store under the name; both have all that was acknowledged.
 TEST_F(StorePowerLoss, ARestoreLeavesOneWholeStore) {
-  for (std::uint64_t round = 0; round < rounds(2); ++round) {
-    StoreSession session(kSeed + round, 1000);
+  const auto work = [](StoreSession& session, std::uint64_t /*round*/) {
     const std::filesystem::path copy = session.file().parent_path() / "copy-1.db";
     {
-      const auto store = session.open();
-      session.register_robots(*store);
+      const auto store = session.open_with_robots();
       session.report(*store, 1, 20);
       ASSERT_TRUE(store->backup(copy, [](double) { return true; }));
     }
     session.cut_every(5);
     static_cast<void>(restore_store(copy, session.file(), [](double) {}));
     static_cast<void>(restore_store(copy, session.file(), [](double) {}));
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(2, 1000, work);
 }
 
 /// Linux drops the pages of a failed fsync: what is acknowledged afterwards must not lie behind
 /// that hole.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSync) {
-  for (std::uint64_t round = 0; round < rounds(6); ++round) {
-    StoreSession session(kSeed + round, 25);
+  const auto work = [](StoreSession& session, std::uint64_t round) {
     session.cut_often_after_failures();
     {
-      const auto store = session.open();
-      session.register_robots(*store);
+      const auto store = session.open_with_robots();
       session.report(*store, 2, 10);
       session.disk().fail({.calls = static_cast<unsigned>(DiskCall::Sync),
                            .first = 3 * round % 12,
@@ -128,20 +119,17 @@ TEST_F(StorePowerLoss, LosesNothingAfterAFailedSync) {
       session.report(*store, 2, 30);
     }
     EXPECT_GT(session.disk().failed(), 0U);
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(6, 25, work);
 }
 
 /// Right after a checkpoint the WAL has nothing but the commit that failed. Were the database file
 /// written from the page cache before the WAL is durable, a cut would leave parts of that commit.
 TEST_F(StorePowerLoss, LeavesNoPartOfACommitWhoseSyncFailed) {
-  for (std::uint64_t round = 0; round < rounds(6); ++round) {
-    StoreSession session(kSeed + round, 1000);
+  const auto work = [](StoreSession& session, std::uint64_t round) {
     session.cut_often_after_failures();
     {
-      const auto store = session.open();
-      session.register_robots(*store);
+      const auto store = session.open_with_robots();
       session.report(*store, 1, 10 + round % 20);
     }
     {
@@ -150,19 +138,16 @@ TEST_F(StorePowerLoss, LeavesNoPartOfACommitWhoseSyncFailed) {
       session.report(*store, 1, 6);
     }
     EXPECT_EQ(session.disk().failed(), 1U);
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(6, 1000, work);
 }
 
 /// The database file has lost pages then, and the WAL is all there is of them.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedCheckpoint) {
-  for (std::uint64_t round = 0; round < rounds(3); ++round) {
-    StoreSession session(kSeed + round, 1000);
+  const auto work = [](StoreSession& session, std::uint64_t round) {
     session.cut_often_after_failures();
     {
-      const auto store = session.open();
-      session.register_robots(*store);
+      const auto store = session.open_with_robots();
       session.disk().fail({.calls = DiskCall::Write | DiskCall::Sync,
                            .first = 7 * round % 60,
                            .count = 1 + round % 3,
@@ -170,16 +155,14 @@ TEST_F(StorePowerLoss, LosesNothingAfterAFailedCheckpoint) {
       session.report(*store, 2, 30);
     }
     EXPECT_GT(session.disk().failed(), 0U);
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(3, 1000, work);
 }
 
 /// As after a failed sync, with a server that was killed after it, or ended: the next one reads the
 /// page cache too.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSyncAndARestart) {
-  for (std::uint64_t round = 0; round < rounds(6); ++round) {
-    StoreSession session(kSeed + round, 25);
+  const auto work = [](StoreSession& session, std::uint64_t /*round*/) {
     session.cut_often_after_failures();
     {
       auto options = StoreSession::small_options();
@@ -195,9 +178,8 @@ TEST_F(StorePowerLoss, LosesNothingAfterAFailedSyncAndARestart) {
       const auto store = session.open();
       session.report(*store, 2, 20);
     }
-    look_at(session);
-  }
-  expect_no_loss();
+  };
+  expect_no_loss(6, 25, work);
 }
 
 // The harness itself: each of these must be found.
@@ -206,8 +188,7 @@ TEST_F(StorePowerLoss, TheHarnessFindsADiskThatLies) {
   StoreSession session(kSeed, 15);
   session.disk().lie(true);
   {
-    const auto store = session.open();
-    session.register_robots(*store);
+    const auto store = session.open_with_robots();
     session.report(*store, 1, 40);
   }
   look_at(session);
@@ -241,8 +222,7 @@ TEST_F(StorePowerLoss, TheHarnessFindsACommitWithoutASync) {
   StoreSession session(kSeed, 15);
   {
     const WithoutSync relaxed;
-    const auto store = session.open();
-    session.register_robots(*store);
+    const auto store = session.open_with_robots();
     session.report(*store, 1, 40);
   }
   look_at(session);
@@ -252,8 +232,7 @@ TEST_F(StorePowerLoss, TheHarnessFindsACommitWithoutASync) {
 TEST_F(StorePowerLoss, TheHarnessFindsAReceiptBeforeTheCommit) {
   StoreSession session(kSeed, 15);
   {
-    const auto store = session.open();
-    session.register_robots(*store);
+    const auto store = session.open_with_robots();
     for (std::uint64_t number = 0; number < 60; ++number) {
       session.ledger().note([&](test::Receipts& noted) { noted.reports.insert(number); });
       static_cast<void>(test::report(*store, {test::ledger_attempt(number)}));

@@ -67,6 +67,12 @@ void StoreSession::register_robots(store::Store& store) {
   }
 }
 
+std::unique_ptr<store::Store> StoreSession::open_with_robots() {
+  std::unique_ptr<store::Store> store = open();
+  register_robots(*store);
+  return store;
+}
+
 void StoreSession::report(store::Store& store, std::uint64_t clients,
                           std::uint64_t attempts_of_each) {
   std::atomic<bool> refused = false;

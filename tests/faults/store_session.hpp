@@ -46,6 +46,7 @@ class StoreSession {
   static store::SqliteOptions small_options();
 
   void register_robots(store::Store& store);
+  std::unique_ptr<store::Store> open_with_robots();
   /// By so many clients at once, each one to three attempts at a time.
   void report(store::Store& store, std::uint64_t clients, std::uint64_t attempts_of_each);
   void retire(store::Store& store, std::uint64_t number);

@@ -40,15 +40,20 @@ class Server {
   test::ServerProcess& process() { return *process_; }
   std::uint32_t domain() const { return domain_.number(); }
 
-  std::vector<std::string> with_domain(const std::vector<std::string>& words,
-                                       const char* timeout_s = "30") const {
-    std::vector<std::string> arguments = {"--domain", std::to_string(domain_.number()), "--timeout",
-                                          timeout_s};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    return arguments;
+  /// Words of `kinship` for this server, from a line of them.
+  std::vector<std::string> with_domain(const std::string& line,
+                                       const std::string& timeout_s = "30") const {
+    return test::words("--domain " + std::to_string(domain()) + " --timeout " + timeout_s + " " +
+                       line);
   }
-  Answer kinship(const std::vector<std::string>& words, const char* timeout_s = "30") const {
-    return test::run_to_end("kinship", with_domain(words, timeout_s));
+  Answer kinship(const std::string& line, const std::string& timeout_s = "30") const {
+    return test::run_to_end("kinship", with_domain(line, timeout_s));
+  }
+  /// What must end with this code.
+  Answer ends(int code, const std::string& line) const {
+    Answer answer = kinship(line);
+    EXPECT_EQ(answer.code, code) << line << ": " << answer.out << answer.err;
+    return answer;
   }
   std::unique_ptr<link::Client> client(const std::filesystem::path& outbox) const {
     return std::make_unique<link::Client>(
@@ -62,10 +67,8 @@ class Server {
   std::unique_ptr<test::ServerProcess> process_;
 };
 
-inline std::vector<std::string> with(std::vector<std::string> words,
-                                     const std::vector<std::string>& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+inline void expect_has(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in: " << text;
 }
 
 inline std::size_t count_lines(const std::string& text) {

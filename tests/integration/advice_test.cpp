@@ -5,15 +5,13 @@
 #include <chrono>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "client/link/client.hpp"
-#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/problem_json.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/cell.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
@@ -85,49 +83,17 @@ class Advised : public testing::Test {
     ASSERT_EQ(client.flush(seconds(60)).accepted, kMisleading);
   }
 
-  /// Experience from another place: the robot was set up the wrong way round.
-  void report_far_paths(link::Client& client) const {
-    for (std::size_t i = 0; i < kMisleading; ++i) {
-      const double y = 0.005 * static_cast<double>(i);
-      Eigen::MatrixXd waypoints(4, 3);
-      waypoints << 2.4, 2.5, 2.6, 0.0, y, 0.1, 0.0, 0.1, y, 0.0, 0.1, 0.0;
-      report_path(client, waypoints);
-    }
-    ASSERT_EQ(client.flush(seconds(60)).accepted, kMisleading);
-  }
-
-  std::vector<ProblemResult> plan(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {problems_,
-                                          urdf_,
-                                          "--base",
-                                          "base",
-                                          "--tip",
-                                          "l4",
-                                          "--label",
-                                          "planar",
-                                          "--axes",
-                                          "x,y,yaw",
-                                          "--transfer",
-                                          "0.3 0 0 0 0 0 1",
-                                          "--task",
-                                          "wall",
-                                          "--report",
-                                          "--outbox",
-                                          directory_ / "plan-outbox",
-                                          "--domain",
-                                          std::to_string(domain_.number()),
-                                          "--timeout",
-                                          "60",
-                                          "--wait",
-                                          "120",
-                                          "--max-checks",
-                                          "3000"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    test::Program program("kinship-plan", arguments, log_);
+  std::vector<ProblemResult> plan(const std::string& more) const {
+    const test::Answer answer = cell_.run(
+        "kinship-plan", problems_ + " " + urdf_ +
+                            " --base base --tip l4 --label planar --axes x,y,yaw --task wall" +
+                            " --report --outbox " + (directory_ / "plan-outbox").string() +
+                            " --wait 120 --max-checks 3000 --transfer '0.3 0 0 0 0 0 1' " + more);
+    EXPECT_EQ(answer.code, 0) << answer.err;
     std::vector<ProblemResult> results;
-    for (std::string line = program.read_line(); !line.empty(); line = program.read_line())
+    std::istringstream lines(answer.out);
+    for (std::string line; std::getline(lines, line);)
       results.push_back(json::problem_result_from_json(line).value_or_throw());
-    EXPECT_EQ(program.wait(), 0) << test::read_text(log_);
     return results;
   }
 
@@ -152,26 +118,23 @@ class Advised : public testing::Test {
     }
   }
 
-  test::ReservedDomain domain_;
-  test::TemporaryDirectory directory_;
+  const test::TemporaryDirectory directory_;
+  test::Cell cell_{{.folder = directory_.path()}};
   const std::string urdf_ = directory_ / "planar.urdf";
   const std::string problems_ = directory_ / "problems.jsonl";
-  const std::string log_ = directory_ / "plan.log";
   const RobotDescription description_ = guided::test::planar_description();
   const Digest robot_ = guided::test::planar_robot().chain.digest();
 };
 
 TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  link::Client client(
-      {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)});
+  cell_.start();
+  link::Client& client = cell_.client();
   ASSERT_TRUE(client.register_robot(description_));
   report_misleading_paths(client);
 
   Counts guided, control;
   for (const ProblemResult& result :
-       plan({"--guidance", "require", "--guide", "mixture", "--control-share", "0.5"})) {
+       plan("--guidance require --guide mixture --control-share 0.5")) {
     ASSERT_TRUE(result.sampling_mode == SamplingMode::Guided ||
                 result.sampling_mode == SamplingMode::Control);
     EXPECT_EQ(result.share, result.sampling_mode == SamplingMode::Guided ? 0.9 : 0);
@@ -192,45 +155,10 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
   EXPECT_LT(advice.recommended_share, 0.1) << advice.evidence;
 
   Counts still_guided;
-  for (const ProblemResult& result : plan({"--guide", "mixture"}))
+  for (const ProblemResult& result : plan("--guide mixture"))
     if (result.sampling_mode == SamplingMode::Guided)
       still_guided.add(result);
   EXPECT_LT(still_guided.attempts, kProblems / 2) << "each machine goes on from what all know";
-}
-
-TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  link::Client client(
-      {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)});
-  ASSERT_TRUE(client.register_robot(description_));
-  report_far_paths(client);
-
-  std::size_t guided = 0;
-  std::vector<std::uint64_t> checks;
-  for (const ProblemResult& result :
-       plan({"--guidance", "require", "--guide", "mixture", "--control-share", "0"})) {
-    guided += result.sampling_mode == SamplingMode::Guided ? 1 : 0;
-    EXPECT_TRUE(result.gate_fired);
-    EXPECT_EQ(result.share, 0);
-    checks.push_back(result.collision_checks);
-  }
-  EXPECT_EQ(guided, kProblems);
-  EXPECT_NE(test::read_text(log_).find("uniform by the gate"), std::string::npos);
-  const Advice advice = advice_after(client, kProblems);
-  ASSERT_TRUE(advice.guided) << advice.evidence;
-  EXPECT_EQ(advice.guided->attempts, kProblems);
-  EXPECT_FALSE(advice.control);
-
-  std::size_t equal = 0;
-  const std::vector<ProblemResult> uniform = plan({"--share", "0"});
-  for (std::size_t i = 0; i < uniform.size(); ++i) {
-    EXPECT_EQ(uniform[i].sampling_mode, SamplingMode::Uniform);
-    equal += uniform[i].collision_checks == checks[i] ? 1U : 0U;
-  }
-  EXPECT_EQ(equal, kProblems);
-  EXPECT_EQ(advice_after(client, kProblems).guided->attempts, kProblems)
-      << "uniform by wish is no evidence";
 }
 
 }  // namespace

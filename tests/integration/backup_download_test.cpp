@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using admin_commands_test::Answer;
+using admin_commands_test::expect_has;
 using admin_commands_test::Server;
 using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
@@ -53,34 +54,32 @@ class BackupDownload : public testing::Test {
 TEST_F(BackupDownload, ABackupIsListedFetchedAndNeverOverAFileThatIsThere) {
   const Server server(folder_ / "fleet.db", arguments());
   fill(server, 2);
-  ASSERT_EQ(server.kinship({"backup", "monday.db"}).code, 0);
+  server.ends(0, "backup monday.db");
   std::ofstream(backups_ / "key.pem") << "secret";
   fs::create_symlink(folder_ / "fleet.db", backups_ / "link.db");
-  const Answer list = server.kinship({"backup", "list", "--json"});
-  EXPECT_NE(list.out.find("\"name\":\"monday.db\""), std::string::npos) << list.out << list.err;
+  const Answer list = server.kinship("backup list --json");
+  expect_has(list.out, "\"name\":\"monday.db\"");
   EXPECT_EQ(list.out.find("key.pem"), std::string::npos) << "is no backup";
   EXPECT_EQ(list.out.find("link.db"), std::string::npos);
-  EXPECT_EQ(server.kinship({"backup", "download", "key.pem", "--to", to()}).code, 3);
-  EXPECT_EQ(server.kinship({"backup", "download", "link.db", "--to", to()}).code, 3);
+  server.ends(3, "backup download key.pem --to " + to());
+  server.ends(3, "backup download link.db --to " + to());
   EXPECT_FALSE(fs::exists(to() + ".part")) << "nothing came";
 
-  const Answer answer = server.kinship({"backup", "download", "monday.db", "--to", to()});
-  EXPECT_EQ(answer.code, 0) << answer.err;
+  const Answer answer = server.ends(0, "backup download monday.db --to " + to());
   EXPECT_TRUE(is_same());
   EXPECT_EQ(fs::status(to()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
-  EXPECT_NE(answer.out.find("SHA-256 "), std::string::npos) << answer.out;
-  const Answer again = server.kinship({"backup", "download", "monday.db", "--to", to()});
+  expect_has(answer.out, "SHA-256 ");
+  const Answer again = server.kinship("backup download monday.db --to " + to());
   EXPECT_NE(again.code, 0);
-  EXPECT_NE(again.err.find("is there already"), std::string::npos) << again.err;
+  expect_has(again.err, "is there already");
 }
 
 TEST_F(BackupDownload, WhatIsLeftOfAnotherBackupIsFoundOutByItsDigest) {
   const Server server(folder_ / "fleet.db", arguments());
   fill(server, 2);
-  ASSERT_EQ(server.kinship({"backup", "monday.db"}).code, 0);
+  server.ends(0, "backup monday.db");
   std::ofstream(to() + ".part") << std::string(100'000, 'x');
-  const Answer answer = server.kinship({"backup", "download", "monday.db", "--to", to()});
-  EXPECT_EQ(answer.code, 0) << answer.err;
+  const Answer answer = server.ends(0, "backup download monday.db --to " + to());
   EXPECT_TRUE(is_same());
   EXPECT_EQ(answer.out.find("were here"), std::string::npos) << answer.out;
 }
@@ -91,14 +90,13 @@ TEST_F(BackupDownload, OneThatIsKilledGoesOnAndOneOutlivesTheServer) {
   {
     Server filler(folder_ / "other.db", arguments());
     fill(filler, 12);
-    ASSERT_EQ(filler.kinship({"backup", "monday.db"}).code, 0);
+    filler.ends(0, "backup monday.db");
   }
   const fs::path part = to() + ".part";
   const std::uintmax_t whole = fs::file_size(backups_ / "monday.db");
   ASSERT_GT(whole, 4'000'000U);
   {
-    test::Program download("kinship",
-                           server.with_domain({"backup", "download", "monday.db", "--to", to()}));
+    test::Program download("kinship", server.with_domain("backup download monday.db --to " + to()));
     ASSERT_TRUE(has_bytes(part, 1'000'000));
     download.signal(SIGKILL);
     download.wait();
@@ -106,14 +104,14 @@ TEST_F(BackupDownload, OneThatIsKilledGoesOnAndOneOutlivesTheServer) {
   const std::uintmax_t before = fs::file_size(part);
   ASSERT_LT(before, whole) << "the test is to meet it in the middle";
   EXPECT_FALSE(fs::exists(to()));
-  test::Program download(
-      "kinship", server.with_domain({"backup", "download", "monday.db", "--to", to()}, "2"));
+  test::Program download("kinship",
+                         server.with_domain("backup download monday.db --to " + to(), "2"));
   ASSERT_TRUE(has_bytes(part, before + 1));
   server.process().kill();
   server.start();
   const std::string said = download.read_all();
   EXPECT_EQ(download.wait(), 0);
-  EXPECT_NE(said.find(std::to_string(before) + " of them were here"), std::string::npos) << said;
+  expect_has(said, std::to_string(before) + " of them were here");
   EXPECT_TRUE(is_same());
   EXPECT_FALSE(fs::exists(part));
 }

@@ -11,8 +11,7 @@
 
 #include "proto/json/problem_json.hpp"
 #include "tests/support/box_mesh.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/cell.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::brought_robot_test {
@@ -101,19 +100,12 @@ class BroughtRobot : public testing::Test {
   }
 
   /// Runs kinship-plan for the lifter; what it writes is left in results_ and messages_.
-  int plan(const std::vector<std::string>& more, bool with_srdf = true) {
-    std::vector<std::string> arguments = {
-        "--robot",    directory_ / "lifter.urdf",
-        "--tip",      tip_,
-        "--package",  "lifter=" + (directory_ / "lifter").string(),
-        "--problems", directory_ / "problems.jsonl",
-        "--domain",   std::to_string(domain_.number()),
-        "--timeout",  timeout_,
-        "--json"};
-    if (with_srdf)
-      arguments.insert(arguments.end(), {"--srdf", directory_ / "lifter.srdf"});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const test::Answer answer = test::run_to_end("kinship-plan", arguments);
+  int plan(const std::string& more) {
+    const std::string folder = directory_.path().string();
+    const test::Answer answer = cell_.run(
+        "kinship-plan", "--robot " + folder + "/lifter.urdf --tip hand --package lifter=" + folder +
+                            "/lifter --problems " + folder + "/problems.jsonl --srdf " + folder +
+                            "/lifter.srdf --json " + more);
     messages_ = answer.err;
     results_.clear();
     std::istringstream lines(answer.out);
@@ -122,26 +114,21 @@ class BroughtRobot : public testing::Test {
     return answer.code;
   }
 
-  std::vector<std::string> with_server(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {
-        "--base",   "base",     "--axes", "x,y,z,yaw", "--transfer", "0.08 0 0 0 0 0 1",
-        "--task",   "past",     "--wait", "600",       "--outbox",   directory_ / "outbox",
-        "--server", "127.0.0.1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+  int plan_with_server(const std::string& more) {
+    return plan("--base base --axes x,y,z,yaw --task past --wait 600 --server 127.0.0.1 " + more +
+                " --outbox " + (directory_ / "plan_outbox").string() +
+                " --transfer '0.08 0 0 0 0 0 1'");
   }
 
-  std::string tip_ = "hand", timeout_ = "60";  // s
-  test::ReservedDomain domain_;
-  test::TemporaryDirectory directory_;
+  const test::TemporaryDirectory directory_;
+  test::Cell cell_{{.folder = directory_.path()}};
   std::vector<ProblemResult> results_;
   std::string messages_;
 };
 
 TEST_F(BroughtRobot, PlansReportsAndIsGuidedByItsOwnReports) {
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  EXPECT_EQ(plan(with_server({"--guidance", "auto", "--report", "yes"})), 0) << messages_;
+  cell_.start();
+  EXPECT_EQ(plan_with_server("--guidance auto --report yes"), 0) << messages_;
   ASSERT_EQ(results_.size(), 6U);
   for (const ProblemResult& result : results_) {
     EXPECT_TRUE(result.solved) << result.reason;
@@ -149,7 +136,7 @@ TEST_F(BroughtRobot, PlansReportsAndIsGuidedByItsOwnReports) {
   }
   EXPECT_NE(messages_.find("6 acknowledged, 0 pending, 0 refused"), std::string::npos) << messages_;
 
-  EXPECT_EQ(plan(with_server({"--guidance", "always"})), 0) << messages_;
+  EXPECT_EQ(plan_with_server("--guidance always"), 0) << messages_;
   ASSERT_EQ(results_.size(), 6U);
   for (const ProblemResult& result : results_) {
     EXPECT_TRUE(result.solved) << result.reason;
@@ -160,39 +147,13 @@ TEST_F(BroughtRobot, PlansReportsAndIsGuidedByItsOwnReports) {
 }
 
 TEST_F(BroughtRobot, ALabelOfAnotherRobotEndsTheRun) {
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  EXPECT_EQ(plan(with_server({"--label", "cell7"})), 0) << messages_;
-  const int code = plan({"--base", "carriage", "--label", "cell7", "--task", "past"});
+  cell_.start();
+  EXPECT_EQ(plan_with_server("--label cell7"), 0) << messages_;
+  const int code = plan("--base carriage --label cell7 --task past");
   EXPECT_EQ(code, 1) << messages_;
   EXPECT_TRUE(results_.empty());
   EXPECT_NE(messages_.find("cell7"), std::string::npos) << messages_;
   EXPECT_NE(messages_.find("nothing is planned"), std::string::npos) << messages_;
-}
-
-TEST_F(BroughtRobot, WithoutAServerItPlansUniformlyAndKeepsItsReportsUntilThereIsOne) {
-  timeout_ = "0.3";
-  EXPECT_EQ(plan(with_server({"--report", "yes"})), 0) << messages_;
-  timeout_ = "60";
-  ASSERT_EQ(results_.size(), 6U);
-  EXPECT_TRUE(results_[5].solved) << results_[5].reason;
-  EXPECT_NE(results_[5].guidance_reason, "");
-  EXPECT_NE(messages_.find("planned uniformly"), std::string::npos) << messages_;
-  EXPECT_NE(messages_.find("6 pending"), std::string::npos) << messages_;
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  EXPECT_EQ(plan(with_server({"--report", "yes", "--guidance", "uniform"})), 0) << messages_;
-  EXPECT_NE(messages_.find("12 acknowledged, 0 pending, 0 refused"), std::string::npos)
-      << messages_;
-}
-
-TEST_F(BroughtRobot, TheSrdfSaysWhichLinksMayTouch) {
-  EXPECT_EQ(plan({"--base", "base"}, false), 0) << messages_;
-  ASSERT_EQ(results_.size(), 6U);
-  EXPECT_FALSE(results_[0].solved);
-  EXPECT_NE(results_[0].reason.find("'cable'"), std::string::npos) << results_[0].reason;
-  EXPECT_EQ(plan({"--base", "base"}), 0) << messages_;
-  EXPECT_TRUE(results_.at(0).solved) << results_.at(0).reason;
 }
 
 TEST_F(BroughtRobot, GoesAroundMeshesThatStandBesideTheProblemFile) {
@@ -212,7 +173,7 @@ TEST_F(BroughtRobot, GoesAroundMeshesThatStandBesideTheProblemFile) {
   blocked.goal_configurations.col(0) << 0, M_PI / 4, 0, 0;
   write("problems.jsonl", json::to_json(shapes) + "\n" + json::to_json(meshes) + "\n" +
                               json::to_json(missing) + "\n" + json::to_json(blocked) + "\n");
-  EXPECT_EQ(plan({"--base", "base"}), 0) << messages_;
+  EXPECT_EQ(plan("--base base"), 0) << messages_;
   ASSERT_EQ(results_.size(), 4U);
   EXPECT_TRUE(results_[0].solved) << results_[0].reason;
   EXPECT_TRUE(results_[1].solved) << results_[1].reason;
@@ -222,14 +183,6 @@ TEST_F(BroughtRobot, GoesAroundMeshesThatStandBesideTheProblemFile) {
       << results_[2].reason;
   EXPECT_FALSE(results_[3].solved);
   EXPECT_NE(results_[3].reason.find("touches 'post'"), std::string::npos) << results_[3].reason;
-}
-
-TEST_F(BroughtRobot, AMimicJointOnTheChainIsRefusedByName) {
-  tip_ = "right";
-  EXPECT_EQ(plan({"--base", "base"}), 2);
-  EXPECT_TRUE(results_.empty());
-  EXPECT_NE(messages_.find("joint 'grip_too' on the chain mimics joint 'grip'"), std::string::npos)
-      << messages_;
 }
 
 }  // namespace

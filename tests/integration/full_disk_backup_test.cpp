@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using admin_commands_test::Answer;
+using admin_commands_test::expect_has;
 using admin_commands_test::Server;
 using test::SmallFileSystem;
 
@@ -45,27 +46,27 @@ std::string number_after(const std::string& words, const std::string& in) {
 TEST_F(FullDiskBackup, IsRefusedOrFailsInWordsAndLeavesNothing) {
   const Server server(folder_ / "fleet.db", {"--backup-folder", backups_.string()});
   test::report_incompressible_paths(*server.client(folder_ / "outbox"), 8);
-  const Answer refused = server.kinship({"backup", "monday.db"});
+  const Answer refused = server.kinship("backup monday.db");
   EXPECT_NE(refused.code, 0);
   for (const char* const part :
        {"monday.db': needs up to ", "but its file system has 2097152 left"})
-    EXPECT_NE(refused.err.find(part), std::string::npos) << refused.err;
+    expect_has(refused.err, part);
   EXPECT_EQ(disk_.names(), "");
 
   // Enough for the copy by the look before, and not for what SQLite lays beside it.
   const std::string needed = number_after("needs up to ", refused.err);
   disk_.resize(needed);
-  const Answer failed = server.kinship({"backup", "monday.db"});
+  const Answer failed = server.kinship("backup monday.db");
   EXPECT_NE(failed.code, 0);
   const std::string said = failed.out + failed.err;
   for (const char* const part : {"monday.db': ", "No space left on device"})
-    EXPECT_NE(said.find(part), std::string::npos) << said;
+    expect_has(said, part);
   EXPECT_EQ(disk_.names(), "");
-  EXPECT_EQ(server.kinship({"backup", "list"}).out, "(none)\n");
-  EXPECT_NE(server.kinship({"status"}).out.find("writable       yes"), std::string::npos);
+  EXPECT_EQ(server.kinship("backup list").out, "(none)\n");
+  EXPECT_NE(server.kinship("status").out.find("writable       yes"), std::string::npos);
 
   disk_.resize("40m");
-  EXPECT_EQ(server.kinship({"backup", "monday.db"}).code, 0) << "its name is free";
+  EXPECT_EQ(server.kinship("backup monday.db").code, 0) << "its name is free";
   EXPECT_EQ(disk_.names(), " monday.db");
 }
 

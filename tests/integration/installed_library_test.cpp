@@ -121,8 +121,8 @@ class InstalledLibrary : public testing::Test {
     ASSERT_NE(built.output.find("\nBUILT\n"), std::string::npos) << built.output;
   }
   void start_server() {
-    server_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
-        .store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+    server_ = std::make_unique<test::ServerProcess>(
+        test::ServerProcess::Options{.store = directory_ / "fleet.db", .domain = domain_.number()});
   }
   static std::vector<std::string> example(const std::string& name,
                                           std::vector<std::string> arguments) {

@@ -44,7 +44,7 @@ class PortTaker {
 class KinshipdProcess : public testing::Test {
  protected:
   test::ServerProcess::Options options(const char* store = "fleet.db") const {
-    return {.store = directory_ / store, .domain = domain_.number(), .arguments = {}};
+    return {.store = directory_ / store, .domain = domain_.number()};
   }
   /// Exit code of a kinshipd that is expected to end by itself; its messages go to `error_`.
   int run(const std::vector<std::string>& arguments) {
@@ -54,8 +54,8 @@ class KinshipdProcess : public testing::Test {
     return answer.code;
   }
 
-  int run_on(std::uint32_t domain) {
-    return run({"--store", (directory_ / "fleet.db").string(), "--domain", std::to_string(domain)});
+  int run_on(std::uint32_t domain, const char* store = "fleet.db") {
+    return run({"--store", (directory_ / store).string(), "--domain", std::to_string(domain)});
   }
 
   test::ReservedDomain domain_;
@@ -84,18 +84,14 @@ TEST_F(KinshipdProcess, EndsWellOnSigtermAndSigint) {
 TEST_F(KinshipdProcess, TheSecondOneOnAStoreFailsAndSaysWhy) {
   const test::ServerProcess server(options());
   const test::ReservedDomain other;
-  EXPECT_EQ(run({"--store", (directory_ / "fleet.db").string(), "--domain",
-                 std::to_string(other.number())}),
-            1);
+  EXPECT_EQ(run_on(other.number()), 1);
   EXPECT_EQ(output_, "");
   EXPECT_NE(error_.find("is open in another server"), std::string::npos) << error_;
 }
 
 TEST_F(KinshipdProcess, TheSecondOneOnADomainFailsAndSaysWhy) {
   const test::ServerProcess server(options());
-  EXPECT_EQ(run({"--store", (directory_ / "other.db").string(), "--domain",
-                 std::to_string(domain_.number())}),
-            1);
+  EXPECT_EQ(run_on(domain_.number(), "other.db"), 1);
   EXPECT_EQ(output_, "");
   EXPECT_NE(error_.find("domain " + std::to_string(domain_.number()) + ": another kinshipd has it"),
             std::string::npos)
@@ -108,9 +104,7 @@ TEST_F(KinshipdProcess, TheSecondOneOnADomainFailsAndSaysWhy) {
 TEST_F(KinshipdProcess, OneThatDoesNotAnswerIsStillAKinshipd) {
   test::ServerProcess server(options());
   ASSERT_EQ(kill(server.pid(), SIGSTOP), 0);
-  EXPECT_EQ(run({"--store", (directory_ / "other.db").string(), "--domain",
-                 std::to_string(domain_.number())}),
-            1);
+  EXPECT_EQ(run_on(domain_.number(), "other.db"), 1);
   EXPECT_NE(error_.find("another kinshipd has it"), std::string::npos) << error_;
   EXPECT_NE(error_.find("does not answer"), std::string::npos) << error_;
 }
@@ -146,25 +140,8 @@ TEST_F(KinshipdProcess, ADomainInTheRangeOfEphemeralPortsIsServedWhileItsPortsAr
   while (domain < 230 && !(PortTaker(discovery_port(domain)).has_it() &&
                            PortTaker(discovery_port(domain) + 1).has_it()))
     ++domain;
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain, .arguments = {}});
+  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain});
   EXPECT_EQ(test::read_text(directory_ / "fleet.db.log").find("ports"), std::string::npos);
-}
-
-TEST_F(KinshipdProcess, WhatIsNoStoreIsRefused) {
-  std::ofstream(directory_ / "notes.txt") << "not a database, but long enough to look like one";
-  EXPECT_EQ(run({"--store", (directory_ / "notes.txt").string(), "--domain",
-                 std::to_string(domain_.number())}),
-            1);
-  EXPECT_NE(error_.find("notes.txt': is no SQLite database"), std::string::npos) << error_;
-  EXPECT_FALSE(std::filesystem::exists(directory_ / "notes.txt.lock"));
-}
-
-TEST_F(KinshipdProcess, WrongUsageIsExitCodeTwoAndHelpIsZero) {
-  EXPECT_EQ(run({"--domain", "1000"}), 2);
-  EXPECT_EQ(run({"--what"}), 2);
-  EXPECT_EQ(run({"--help"}), 0);
-  EXPECT_NE(output_.find("Examples:"), std::string::npos);
 }
 
 /// What systemd would hear of a service.

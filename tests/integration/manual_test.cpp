@@ -14,16 +14,14 @@
 #include <set>
 #include <sstream>
 
-#include "client/link/client.hpp"
-#include "tests/support/panda_experience.hpp"
+#include "tests/support/cell.hpp"
 #include "tests/support/places.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/robots.hpp"
-#include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::manual_test {
 namespace {
+
+using Words = std::set<std::string>;
 
 const std::string kBin = test::bin_dir();
 const std::string kDrivers = test::source_dir() + "/tests/integration/completion/";
@@ -57,25 +55,9 @@ class Manual : public testing::Test {
     said_by(kBin + "/" + program + " " + option + " > " + (folder_.path() / name).string(), &code);
     EXPECT_EQ(code, 0) << program << " " << option;
   }
-  /// What a shell offers at the end of a line.
-  /// \param bin  where it finds the programs.
-  std::set<std::string> offered(const std::string& shell, const std::string& line,
-                                const std::string& bin = kBin) const {
-    const std::string options = shell == "bash" ? "--norc" : shell == "zsh" ? "-f" : "-N";
-    std::istringstream lines(said_by("PATH=" + bin + ":$PATH timeout 60 " + shell + " " + options +
-                                     " " + kDrivers + "complete." + shell + " " +
-                                     folder_.path().string() + " '" + line + "'"));
-    std::set<std::string> words;
-    for (std::string word; std::getline(lines, word);)
-      if (!word.empty())
-        words.insert(word.substr(0, word.find_last_not_of(' ') + 1));
-    return words;
-  }
 
   const test::TemporaryDirectory folder_;
 };
-
-using Words = std::set<std::string>;
 
 TEST_F(Manual, PagesAreAsManWantsThem) {
   if (!is_there("mandoc") || !is_there("man"))
@@ -99,77 +81,71 @@ TEST_F(Manual, PagesAreAsManWantsThem) {
 /// The scripts of all programs for one shell.
 class Shells : public Manual, public testing::WithParamInterface<const char*> {
  protected:
-  Shells() {
-    const std::string shell = GetParam();
+  void SetUp() override {
+    if (!is_there(shell_))
+      GTEST_SKIP() << "needs " << shell_ << " (deploy/packages-tests.txt)";
     for (const auto& [program, section] : kPrograms)
-      write(program, "--completion " + shell,
-            (shell == "zsh" ? "_" : "") + program + (shell == "fish" ? ".fish" : ""));
+      write(program, "--completion " + shell_,
+            (shell_ == "zsh" ? "_" : "") + program + (shell_ == "fish" ? ".fish" : ""));
   }
+  /// What the shell offers at the end of a line.
+  /// \param bin  where it finds the programs.
+  Words offered(const std::string& line, const std::string& bin = kBin) const {
+    const std::string options = shell_ == "bash" ? "--norc" : shell_ == "zsh" ? "-f" : "-N";
+    std::istringstream lines(said_by("PATH=" + bin + ":$PATH timeout 60 " + shell_ + " " + options +
+                                     " " + kDrivers + "complete." + shell_ + " " +
+                                     folder_.path().string() + " '" + line + "'"));
+    Words words;
+    for (std::string word; std::getline(lines, word);)
+      if (!word.empty())
+        words.insert(word.substr(0, word.find_last_not_of(' ') + 1));
+    return words;
+  }
+
+  const std::string shell_ = GetParam();
 };
 
 TEST_P(Shells, CompleteVerbsOptionsAndTheirWords) {
-  const std::string shell = GetParam();
-  if (!is_there(shell))
-    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
-  EXPECT_EQ(offered(shell, "kinship pa"), (Words{"paths"}));
-  EXPECT_EQ(offered(shell, "kinship --domain 7 paths "),
+  EXPECT_EQ(offered("kinship pa"), (Words{"paths"}));
+  EXPECT_EQ(offered("kinship --domain 7 paths "),
             (Words{"list", "show", "export", "import", "retire"}));
-  EXPECT_EQ(offered(shell, "kinship paths list -o "), (Words{"table", "wide", "json"}));
-  const Words options = offered(shell, "kinship paths list --");
+  EXPECT_EQ(offered("kinship paths list -o "), (Words{"table", "wide", "json"}));
+  const Words options = offered("kinship paths list --");
   for (const char* const option : {"--task", "--robot", "--limit", "--json", "--server"})
     EXPECT_TRUE(options.contains(option)) << option << ": " << testing::PrintToString(options);
   EXPECT_FALSE(options.contains("--file"));
   EXPECT_FALSE(options.contains("--no-wait")) << "is of another verb";
-  EXPECT_EQ(offered(shell, "kinship-plan --guidance r"), (Words{"require"}));
-  EXPECT_TRUE(offered(shell, "kinshipd re").contains("restore"));
-  EXPECT_TRUE(offered(shell, "kinship-experiments pl").contains("placement"));
+  EXPECT_EQ(offered("kinship-plan --guidance r"), (Words{"require"}));
+  EXPECT_TRUE(offered("kinshipd re").contains("restore"));
+  EXPECT_TRUE(offered("kinship-experiments pl").contains("placement"));
 }
 
 TEST_P(Shells, CompleteFilesWhereFilesAreMeant) {
-  const std::string shell = GetParam();
-  if (!is_there(shell))
-    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
   std::ofstream(folder_ / "experience.jsonl") << '\n';
-  const Words found = offered(shell, "kinship paths import " + (folder_ / "exper").string());
+  const Words found = offered("kinship paths import " + (folder_ / "exper").string());
   ASSERT_EQ(found.size(), 1U) << testing::PrintToString(found);
   EXPECT_TRUE(found.begin()->ends_with("experience.jsonl")) << *found.begin();
 }
 
 TEST_P(Shells, CompleteWhatTheServerKnowsAndNothingWithoutOne) {
-  const std::string shell = GetParam();
-  if (!is_there(shell))
-    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
-  const test::ReservedDomain domain;
-  const std::string number = std::to_string(domain.number());
-  EXPECT_EQ(offered(shell, "kinship --domain " + number + " robots show "), Words());
-  const test::ServerProcess server(
-      {.store = folder_ / "store.db", .domain = domain.number(), .arguments = {}});
-  link::Client client({.domain = domain.number(),
-                       .outbox = folder_ / "outbox",
-                       .timeout = std::chrono::seconds(30)});
-  for (const char* const robot : {"panda", "ur10e"})
-    ASSERT_TRUE(client.register_robot(test::model_description(robot)));
-  const Digest panda =
-      client.register_robot(test::model_description("panda")).value_or_throw().robot;
-  client.report(test::panda_attempt(panda, "sweep", 1));
-  ASSERT_EQ(client.flush(std::chrono::seconds(60)).accepted, 1U);
-  EXPECT_EQ(offered(shell, "kinship --domain " + number + " robots show "),
-            (Words{"panda", "ur10e"}));
-  EXPECT_EQ(offered(shell, "kinship --domain " + number + " paths list --task "), (Words{"sweep"}));
-  EXPECT_EQ(offered(shell, "kinship --domain " + number + " paths list --robot u"),
-            (Words{"ur10e"}));
+  test::Cell cell({.folder = folder_ / "cell"});
+  const std::string kinship = "kinship --domain " + std::to_string(cell.domain());
+  EXPECT_EQ(offered(kinship + " robots show "), Words());
+  cell.start();
+  cell.register_model("ur10e");
+  cell.report(cell.register_model("panda").robot, 1, 1);
+  EXPECT_EQ(offered(kinship + " robots show "), (Words{"panda", "ur10e"}));
+  EXPECT_EQ(offered(kinship + " paths list --task "), (Words{"sweep"}));
+  EXPECT_EQ(offered(kinship + " paths list --robot u"), (Words{"ur10e"}));
 }
 
 TEST_P(Shells, RunNothingThatAServerCallsItsRobots) {
-  const std::string shell = GetParam();
-  if (!is_there(shell))
-    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
   const std::filesystem::path ran = folder_ / "ran";
   const std::filesystem::path programs = folder_ / "programs";
   std::filesystem::create_directory(programs);
   std::ofstream(programs / "kinship") << "#!/bin/sh\necho 'a$(touch " << ran.string() << ")'\n";
   std::filesystem::permissions(programs / "kinship", std::filesystem::perms::owner_all);
-  offered(shell, "kinship robots show ", programs.string());
+  offered("kinship robots show ", programs.string());
   EXPECT_FALSE(std::filesystem::exists(ran));
 }
 

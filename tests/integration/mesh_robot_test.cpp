@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "client/link/client.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "tests/support/box_mesh.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/cell.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::mesh_robot_test {
@@ -65,10 +63,8 @@ Problem past_the_rock(int number) {
 
 class MeshRobots : public testing::Test {
  protected:
-  MeshRobots()
-      : server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
-        client_(
-            {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)}) {
+  MeshRobots() {
+    cell_.start();
     for (const std::vector<int>& lengths_mm : {kTeacher_mm, kPupil_mm})
       for (const int length_mm : lengths_mm)
         write("bar" + std::to_string(length_mm) + ".stl",
@@ -87,41 +83,18 @@ class MeshRobots : public testing::Test {
     return directory_.path() / name;
   }
 
-  Answer run(const std::string& program, std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(),
-                     {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
-    return test::run_to_end(program, arguments);
-  }
-
-  std::vector<std::string> of_robot(const std::string& name) const {
-    return {"--base", "base", "--tip", "tip", "--axes", "x,y,yaw", "--label", name};
-  }
-
   Answer plan_as_teacher() const {
-    std::vector<std::string> arguments = of_robot("teacher");
-    arguments.insert(arguments.end(),
-                     {"--robot", directory_ / "teacher.urdf", "--problems",
-                      directory_ / "problems.jsonl", "--task", "past", "--guidance", "uniform",
-                      "--report", "yes", "--outbox", directory_ / "plan_outbox", "--json"});
-    return run("kinship-plan", arguments);
+    return cell_.run("kinship-plan",
+                     "--base base --tip tip --axes x,y,yaw --label teacher --task past "
+                     "--guidance uniform --report yes --json --outbox " +
+                         (directory_ / "plan_outbox").string() + " --robot " +
+                         (directory_ / "teacher.urdf").string() + " --problems " +
+                         (directory_ / "problems.jsonl").string());
   }
 
-  Answer register_with_meshes(const std::string& name) const {
-    std::vector<std::string> arguments = of_robot(name);
-    arguments.insert(arguments.begin(),
-                     {"robots", "register", (directory_.path() / (name + ".urdf")).string()});
-    return run("kinship", arguments);
-  }
-
-  /// As a client from before registers: without what it could tell of the meshes.
-  RegisterReply register_without(const std::string& name) {
-    RobotDescription description;
-    description.label = name;
-    description.urdf = test::read_text((directory_.path() / (name + ".urdf")).string());
-    description.base_link = "base";
-    description.tip_link = "tip";
-    description.task_axes.matters = {true, true, false, false, false, true};
-    return client_.register_robot(description).value_or_throw();
+  Answer register_pupil() const {
+    return cell_.kinship("robots register " + (directory_ / "pupil.urdf").string() +
+                         " --base base --tip tip --axes x,y,yaw --label pupil");
   }
 
   Distribution fetch(const Digest& robot) {
@@ -130,85 +103,50 @@ class MeshRobots : public testing::Test {
     request.robot = robot;
     request.T_task_base = Eigen::Isometry3d::Identity();
     request.deadline = seconds(120);
-    const FetchReply reply = client_.fetch(request).value_or_throw();
+    const FetchReply reply = cell_.client().fetch(request).value_or_throw();
     EXPECT_TRUE(reply.distribution) << reply.message;
     return reply.distribution.value_or(Distribution());
   }
 
-  RobotSummary show(const std::string& name) {
-    AdminRequest request;
-    request.verb = AdminVerb::ShowRobot;
-    request.argument = name;
-    return json::row_from_json<RobotSummary>(client_.admin(request).value_or_throw().rows.at(0))
+  RobotSummary pupil() {
+    return json::row_from_json<RobotSummary>(cell_.ask(AdminVerb::ShowRobot, "pupil").rows.at(0))
         .value_or_throw();
   }
 
-  test::ReservedDomain domain_;
-  test::TemporaryDirectory directory_;
-  test::ServerProcess server_;
-  link::Client client_;
+  const test::TemporaryDirectory directory_;
+  test::Cell cell_{{.folder = directory_.path()}};
 };
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
+testing::AssertionResult has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos ? testing::AssertionSuccess()
+                                              : testing::AssertionFailure() << text;
 }
 
 TEST_F(MeshRobots, AreFilteredWithSolidsAroundTheirMeshesAndTheServerSaysSo) {
   const Answer planned = plan_as_teacher();
   ASSERT_EQ(planned.code, 0) << planned.err;
-  EXPECT_TRUE(has(planned.err, "'teacher', as the server filters for it: 4 links by 4 solids"))
-      << planned.err;
+  EXPECT_TRUE(has(planned.err, "'teacher', as the server filters for it: 4 links by 4 solids"));
   EXPECT_TRUE(
-      has(planned.err, "is reported with solids around its meshes and clouds (approximate)"))
-      << planned.err;
-  EXPECT_TRUE(has(planned.err, "6 acknowledged")) << planned.err;
+      has(planned.err, "is reported with solids around its meshes and clouds (approximate)"));
+  EXPECT_TRUE(has(planned.err, "6 acknowledged"));
 
-  const Answer registered = register_with_meshes("pupil");
+  const Answer registered = register_pupil();
   ASSERT_EQ(registered.code, 0) << registered.err;
-  EXPECT_TRUE(has(registered.out, "the server filters with: 4 links by 4 solids around meshes"))
-      << registered.out;
-  EXPECT_EQ(show("pupil").geometry_ms, 0);
+  EXPECT_TRUE(has(registered.out, "the server filters with: 4 links by 4 solids around meshes"));
+  EXPECT_EQ(pupil().geometry_ms, 0);
 
-  const Distribution distribution = fetch(show("pupil").robot);
+  const Distribution distribution = fetch(pupil().robot);
   ASSERT_EQ(distribution.sources.size(), 1U);
   EXPECT_GT(distribution.sources[0].filter_checks, 0U);
   EXPECT_GT(distribution.sources[0].scene_collisions, 0U);
   EXPECT_LT(distribution.sources[0].scene_collisions, distribution.sources[0].filter_checks);
   EXPECT_EQ(distribution.sources[0].paths_with_scene, 6U);
-  EXPECT_TRUE(has(distribution.filters, "self-collision: 4 links by 4 solids around meshes"))
-      << distribution.filters;
+  EXPECT_TRUE(has(distribution.filters, "self-collision: 4 links by 4 solids around meshes"));
   EXPECT_TRUE(has(distribution.filters,
-                  "recorded scenes: those of 6 of 6 paths, 6 of them with solids around meshes"))
-      << distribution.filters;
+                  "recorded scenes: those of 6 of 6 paths, 6 of them with solids around meshes"));
   const Answer explained =
-      run("kinship", {"distributions", "explain", "--distribution", distribution.id.hex()});
-  EXPECT_TRUE(has(explained.out, distribution.filters)) << explained.out << explained.err;
-}
-
-TEST_F(MeshRobots, ARegistrationWithoutShapesIsUpgradedByALaterOneWithThem) {
-  ASSERT_EQ(plan_as_teacher().code, 0);
-  const RegisterReply plain = register_without("pupil");
-  EXPECT_EQ(plain.geometry_grade, GeometryGrade::None);
-  const Distribution unfiltered = fetch(plain.robot);
-  EXPECT_TRUE(has(unfiltered.filters,
-                  "not filtered, for 'pupil': 4 links unknown, with meshes that only its clients "
-                  "have; register it again where its meshes are"))
-      << unfiltered.filters;
-  EXPECT_EQ(unfiltered.sources.at(0).filter_checks, 0U);
-
-  const Answer again = register_with_meshes("pupil");
-  EXPECT_TRUE(has(again.out, "(known already)")) << again.out << again.err;
-  EXPECT_TRUE(has(again.out, "better geometry than before, it counts from now on: 4 links by 4"))
-      << again.out;
-  EXPECT_GT(show("pupil").geometry_ms, 0);
-  EXPECT_EQ(show("pupil").robot, plain.robot);
-
-  const Distribution filtered = fetch(plain.robot);
-  EXPECT_NE(filtered.id, unfiltered.id);
-  EXPECT_GT(filtered.sources.at(0).filter_checks, 0U);
-  EXPECT_TRUE(has(filtered.filters, "recorded scenes: those of 6 of 6 paths")) << filtered.filters;
-  EXPECT_FALSE(register_without("pupil").took_geometry);
-  EXPECT_EQ(fetch(plain.robot).id, filtered.id) << "an older client takes nothing away";
+      cell_.kinship("distributions explain --distribution " + distribution.id.hex());
+  EXPECT_TRUE(has(explained.out, distribution.filters));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace kinship::quotas_test {
 namespace {
 
 using admin_commands_test::Answer;
+using admin_commands_test::expect_has;
 using admin_commands_test::Server;
 using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
@@ -37,8 +38,7 @@ class Quotas : public testing::Test {
     return made;
   }
   static std::vector<ClientUse> clients_of(const Server& server) {
-    const Answer answer = server.kinship({"status", "--clients", "--json"});
-    EXPECT_EQ(answer.code, 0) << answer.err;
+    const Answer answer = server.ends(0, "status --clients --json");
     std::vector<ClientUse> clients;
     const nlohmann::json document = nlohmann::json::parse(answer.out);
     for (const auto& row : document.at("rows"))
@@ -98,7 +98,7 @@ TEST_F(Quotas, AGreedyClientWaitsAndLosesNothingWhileItsNeighbourIsServed) {
   }
   EXPECT_EQ(greedy_rows, 1U);
   EXPECT_EQ(polite_rows, 1U);
-  EXPECT_NE(server.kinship({"status"}).out.find("client over quota"), std::string::npos);
+  EXPECT_NE(server.kinship("status").out.find("client over quota"), std::string::npos);
 }
 
 TEST_F(Quotas, NewRobotsAndTasksAreSoManyADayAndSayWhen) {
@@ -110,7 +110,7 @@ TEST_F(Quotas, NewRobotsAndTasksAreSoManyADayAndSayWhen) {
       client->register_robot(test::model_description("ur10e")).value_or_throw();
   EXPECT_EQ(second.status, RegisterStatus::Refused);
   EXPECT_EQ(second.retry_after, seconds(60)) << "a day is longer than a client is kept waiting";
-  EXPECT_NE(second.message.find("1 new robots a day"), std::string::npos) << second.message;
+  expect_has(second.message, "1 new robots a day");
 
   ASSERT_EQ(count(client->deliver(attempts(panda, 3)).value_or_throw(), ReceiptStatus::Stored), 3U);
   const dds::Participant participant({.domain = server.domain(), .server = "127.0.0.1"});
@@ -139,7 +139,7 @@ TEST_F(Quotas, WhatAClientIsSentCountsToo) {
     reply = client->fetch(request).value_or_throw();
   EXPECT_EQ(reply.status, FetchStatus::Busy);
   EXPECT_GT(reply.retry_after.count(), 0);
-  EXPECT_NE(reply.message.find("0.001 MB a second"), std::string::npos) << reply.message;
+  expect_has(reply.message, "0.001 MB a second");
 }
 
 /// Processor time that a process has taken.

@@ -7,17 +7,14 @@
 #include <fstream>
 #include <limits>
 
-#include "client/link/client.hpp"
+#include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/json/problem_json.hpp"
-#include "tests/support/child_process.hpp"
+#include "tests/support/cell.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/places.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/robots.hpp"
-#include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::recorded_scene_test {
@@ -50,53 +47,32 @@ Problem turn_before_the_wall(int number) {
 
 class RecordedScenes : public testing::Test {
  protected:
-  RecordedScenes()
-      : server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
-        client_(
-            {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)}) {
+  RecordedScenes() {
+    cell_.start();
     std::ofstream file(directory_ / "problems.jsonl");
     for (int i = 0; i < kProblems; ++i)
       file << json::to_json(turn_before_the_wall(i)) << '\n';
   }
 
-  void plan_and_report(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {(directory_ / "problems.jsonl").string(),
-                                          "--model",
-                                          test::source_dir() + "/robots/models/panda",
-                                          "--label",
-                                          "panda",
-                                          "--task",
-                                          "turn",
-                                          "--guidance",
-                                          "none",
-                                          "--report",
-                                          "--timeout",
-                                          "60",
-                                          "--domain",
-                                          std::to_string(domain_.number()),
-                                          "--outbox",
-                                          (directory_ / "plan_outbox").string(),
-                                          "--output",
-                                          (directory_ / "results.jsonl").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    test::Program plan("kinship-plan", arguments, directory_ / "plan.log");
-    ASSERT_EQ(plan.wait(), 0) << test::read_text(directory_ / "plan.log");
+  void plan_and_report(const std::string& more) {
+    const test::Answer plan = cell_.run(
+        "kinship-plan", (directory_ / "problems.jsonl").string() + " --model " +
+                            test::source_dir() + "/robots/models/panda --label panda --task turn" +
+                            " --guidance none --report --outbox " +
+                            (directory_ / "plan_outbox").string() + " --output " +
+                            (directory_ / "results.jsonl").string() + ' ' + more);
+    ASSERT_EQ(plan.code, 0) << plan.err;
   }
 
   /// The attempts that `paths export` hands out.
   std::vector<Attempt> exported() {
-    AdminRequest request;
-    request.verb = AdminVerb::ExportPaths;
     std::vector<Attempt> attempts;
-    do {
-      const AdminReply page = client_.admin(request).value_or_throw();
-      for (const std::string& row : page.rows) {
-        const json::ExperienceLine line = json::experience_line_from_json(row).value_or_throw();
-        if (const auto* const named = std::get_if<json::NamedAttempt>(&line))
-          attempts.push_back(named->attempt);
-      }
-      request.cursor = page.next_cursor;
-    } while (!request.cursor.empty());
+    for (const std::string& row :
+         link::rows_of(cell_.client(), {.verb = AdminVerb::ExportPaths}).value_or_throw()) {
+      const json::ExperienceLine line = json::experience_line_from_json(row).value_or_throw();
+      if (const auto* const named = std::get_if<json::NamedAttempt>(&line))
+        attempts.push_back(named->attempt);
+    }
     return attempts;
   }
 
@@ -104,29 +80,25 @@ class RecordedScenes : public testing::Test {
   Source source_of_ur10e() {
     FetchRequest request;
     request.task = "turn";
-    request.robot = client_.register_robot(test::model_description("ur10e")).value_or_throw().robot;
+    request.robot = cell_.register_model("ur10e").robot;
     request.T_task_base = Eigen::Isometry3d::Identity();
     request.deadline = seconds(120);
-    const FetchReply reply = client_.fetch(request).value_or_throw();
+    const FetchReply reply = cell_.client().fetch(request).value_or_throw();
     EXPECT_TRUE(reply.distribution)
         << reply.message << "; planned: " << test::read_text(directory_ / "results.jsonl");
-    AdminRequest explain;
-    explain.verb = AdminVerb::ExplainDistribution;
-    explain.argument = reply.distribution.value().id.hex();
-    const AdminReply row = client_.admin(explain).value_or_throw();
+    const AdminReply row =
+        cell_.ask(AdminVerb::ExplainDistribution, reply.distribution.value().id.hex());
     return json::row_from_json<Explanation>(row.rows.at(0))
         .value_or_throw()
         .distribution.sources.at(0);
   }
 
-  test::ReservedDomain domain_;
-  test::TemporaryDirectory directory_;
-  test::ServerProcess server_;
-  link::Client client_;
+  const test::TemporaryDirectory directory_;
+  test::Cell cell_{{.folder = directory_.path()}};
 };
 
 TEST_F(RecordedScenes, LeaveOutWhatAnotherRobotWouldTouchThere) {
-  plan_and_report({});
+  plan_and_report("");
   const std::vector<Attempt> attempts = exported();
   ASSERT_EQ(attempts.size(), static_cast<std::size_t>(kProblems));
   for (const Attempt& attempt : attempts) {
@@ -146,26 +118,8 @@ TEST_F(RecordedScenes, LeaveOutWhatAnotherRobotWouldTouchThere) {
   EXPECT_GT(source.configurations, 0U);
 }
 
-TEST_F(RecordedScenes, AConstraintIsOneAlsoWhereNothingElseIs) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Problem problem = turn_before_the_wall(0);
-  problem.scene = {};
-  problem.attached.clear();
-  problem.allowed_collisions.clear();
-  problem.constraint.emplace();
-  problem.constraint->bounds << -kInfinity, -kInfinity, -5, -kInfinity, -kInfinity, -kInfinity,  //
-      kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity;
-  std::ofstream(directory_ / "problems.jsonl") << json::to_json(problem) << '\n';
-  plan_and_report({});
-  const std::vector<Attempt> attempts = exported();
-  ASSERT_EQ(attempts.size(), 1U);
-  ASSERT_TRUE(attempts[0].scene && attempts[0].scene->constraint);
-  EXPECT_EQ(attempts[0].scene->constraint->bounds, problem.constraint->bounds);
-  EXPECT_TRUE(attempts[0].scene->objects.empty());
-}
-
 TEST_F(RecordedScenes, AreNotSentIfTheUserDoesNotWantIt) {
-  plan_and_report({"--record-scenes", "no"});
+  plan_and_report("--record-scenes no");
   for (const Attempt& attempt : exported())
     EXPECT_FALSE(attempt.scene);
   const Source source = source_of_ur10e();

@@ -102,12 +102,11 @@ class Site {
   }
 
   /// `kinship` as a process.
-  Answer kinship(const std::filesystem::path& credentials, std::vector<std::string> words) const {
-    std::vector<std::string> all = {"--domain", std::to_string(domain()), "--timeout", "30"};
-    if (!credentials.empty())
-      all.insert(all.end(), {"--security", credentials.string()});
-    all.insert(all.end(), words.begin(), words.end());
-    return run_to_end("kinship", all);
+  Answer kinship(const std::filesystem::path& credentials, const std::string& line) const {
+    return run_to_end(
+        "kinship",
+        words("--domain " + std::to_string(domain()) + " --timeout 30 " +
+              (credentials.empty() ? "" : "--security " + credentials.string()) + ' ' + line));
   }
 
  private:

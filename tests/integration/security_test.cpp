@@ -1,21 +1,9 @@
 // kinshipd with its security folder, and clients of every kind as processes and as a library: what
 // they may is theirs, and a name that is revoked is refused from then on.
 
-#include <gtest/gtest.h>
-
-#include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <vector>
 
-#include "client/link/client.hpp"
-#include "proto/security/security_folder.hpp"
-#include "tests/support/panda_experience.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/robots.hpp"
-#include "tests/support/server_process.hpp"
-#include "tests/support/temporary_directory.hpp"
+#include "tests/integration/secured_site.hpp"
 
 namespace kinship::security_test {
 namespace {
@@ -23,17 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-std::chrono::sys_seconds now() {
-  return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-}
-
-class SecuredServer : public testing::Test {
+class SecuredServer : public test::SecuredSite {
  protected:
-  fs::path add(const security::NewClient& client) const {
-    const fs::path out = folder_ / client.name.c_str();
-    fleet_.add(client, out, now());
-    return out;
-  }
   link::ClientOptions options(const fs::path& credentials) const {
     link::ClientOptions options;
     options.domain = domain_.number();
@@ -41,16 +20,18 @@ class SecuredServer : public testing::Test {
     options.outbox = folder_ / "outbox";
     return options;
   }
-  test::Answer kinship(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(),
-                     {"--domain", std::to_string(domain_.number()), "--timeout", "1"});
-    return test::run_to_end("kinship", arguments);
+  test::Answer kinship(const std::string& line) const {
+    return test::run_to_end("kinship", test::words("--domain " + std::to_string(domain_.number()) +
+                                                   " --timeout 1 " + line));
+  }
+  /// Waits until somebody with these credentials is told so.
+  void wait_until_told(const fs::path& credentials, const std::string& part) const {
+    const auto end = std::chrono::steady_clock::now() + 10s;
+    while (!kinship("status --security " + credentials.string()).says(part))
+      ASSERT_LT(std::chrono::steady_clock::now(), end);
   }
 
-  const test::TemporaryDirectory folder_;
   const test::ReservedDomain domain_;
-  const security::SecurityFolder fleet_ =
-      security::SecurityFolder::init(folder_ / "fleet", security::kDefaultDays, now());
   const test::ServerProcess server_{{.store = folder_ / "store.db",
                                      .domain = domain_.number(),
                                      .arguments = {"--security", folder_ / "fleet"}}};
@@ -83,36 +64,28 @@ TEST_F(SecuredServer, ARobotReportsFetchesAndHearsOfWhatIsNewer) {
 }
 
 TEST_F(SecuredServer, CommandsNeedCredentials) {
-  const fs::path admin = add({.name = "anna", .role = AccessRole::Admin});
-  EXPECT_EQ(kinship({"--security", admin, "status"}).code, 0);
-  EXPECT_EQ(kinship({"status"}).code, 4);
-  setenv("KINSHIP_SECURITY", admin.c_str(), 1);
-  EXPECT_EQ(kinship({"robots", "list"}).out, "(none)\n");
+  const std::string with_folder = "--security " + (folder_ / "fleet").string();
+  EXPECT_EQ(kinship("--security " + anna_.string() + " status").code, 0);
+  EXPECT_EQ(kinship("status").code, 4);
+  setenv("KINSHIP_SECURITY", anna_.c_str(), 1);
+  EXPECT_EQ(kinship("robots list").out, "(none)\n");
   unsetenv("KINSHIP_SECURITY");
-  EXPECT_NE(kinship({"--security", folder_ / "fleet", "status"}).code, 0);
-  fleet_.revoke("anna", now());
-  const auto is_told = [&] { return kinship({"--security", admin, "status"}).says("revoked"); };
-  const auto end = std::chrono::steady_clock::now() + 10s;
-  while (!is_told())
-    ASSERT_LT(std::chrono::steady_clock::now(), end);
+  EXPECT_NE(kinship(with_folder + " status").code, 0);
+  fleet_.revoke("anna", test::now_s());
+  wait_until_told(anna_, "revoked");
 }
 
 TEST_F(SecuredServer, FormerCredentialsAreGoodUntilTheyAreRevoked) {
-  const fs::path first = add({.name = "anna", .role = AccessRole::Admin});
   const fs::path second = folder_ / "anna-2";
-  fleet_.renew("anna", security::kDefaultDays, second, now());
-  EXPECT_EQ(kinship({"--security", first, "status"}).code, 0);
-  EXPECT_EQ(kinship({"--security", second, "status"}).code, 0);
+  const std::string with_second = "--security " + second.string() + ' ';
+  fleet_.renew("anna", security::kDefaultDays, second, test::now_s());
+  EXPECT_EQ(kinship("--security " + anna_.string() + " status").code, 0);
+  EXPECT_EQ(kinship(with_second + "status").code, 0);
   fleet_.revoke_former("anna");
-  const auto is_told = [&] {
-    return kinship({"--security", first, "status"}).says("credentials were replaced (1 of 2)");
-  };
-  const auto end = std::chrono::steady_clock::now() + 10s;
-  while (!is_told())
-    ASSERT_LT(std::chrono::steady_clock::now(), end);
-  EXPECT_EQ(kinship({"--security", second, "status"}).code, 0);
-  EXPECT_EQ(kinship({"--security", second, "tasks", "reset", "none"}).code, 3);
-  const test::Answer log = kinship({"--security", second, "audit", "--json"});
+  wait_until_told(anna_, "credentials were replaced (1 of 2)");
+  EXPECT_EQ(kinship(with_second + "status").code, 0);
+  EXPECT_EQ(kinship(with_second + "tasks reset none").code, 3);
+  const test::Answer log = kinship(with_second + "audit --json");
   EXPECT_EQ(log.code, 0);
   EXPECT_EQ(log.out.find("anna.2"), std::string::npos) << "one name, whichever credentials";
 }

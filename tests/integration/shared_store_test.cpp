@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <future>
 #include <iostream>
 #include <memory>
@@ -85,28 +84,6 @@ class SharedStore : public testing::Test {
   Digest panda_, ur10e_;
 };
 
-TEST_F(SharedStore, WhatOneServerIsToldTheOtherServes) {
-  one_->report(panda_, 1, 8);
-  const FetchReply made = other_->fetch(ur10e_);
-  ASSERT_EQ(made.status, FetchStatus::Ready) << made.message;
-  EXPECT_EQ(made.distribution->sources.at(0).paths, 8U);
-  // Made once: the first server takes it from the store.
-  const FetchReply taken = one_->fetch(ur10e_);
-  ASSERT_EQ(taken.status, FetchStatus::Ready) << taken.message;
-  EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
-}
-
-TEST_F(SharedStore, WhoeverAsksForAGenerationGetsItThoughAnotherServerMadeAnOlderOne) {
-  one_->report(panda_, 1, 8);
-  ASSERT_EQ(one_->fetch(panda_).status, FetchStatus::Ready);
-  one_->report(panda_, 100, 2);  // too few for a fit that nobody waits for
-  const std::uint64_t generation = std::stoull(query("SELECT generation FROM experience"));
-  const FetchReply reply = other_->fetch(panda_, generation);
-  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  EXPECT_EQ(reply.distribution->revision, 2U);
-  EXPECT_EQ(reply.distribution->sources.at(0).generation, generation);
-}
-
 TEST_F(SharedStore, TwoServersThatAreAskedAtOnceMakeOneFit) {
   one_->report(panda_, 1, 8);
   auto fits = std::make_unique<test::LockedTable>(url_, "fit_lease");
@@ -142,62 +119,12 @@ TEST_F(SharedStore, AFitWhoseServerIsKilledIsMadeByAnother) {
   EXPECT_EQ(late.distribution->revision, 1U);
 }
 
-TEST_F(SharedStore, AServerThatWasHeldUpInAFitStoresNothingOverThatOfAnother) {
-  one_->report(panda_, 1, 8);
-  auto paths = std::make_unique<test::LockedTable>(url_, "path");
-  std::future<FetchReply> of_one = begin_fetch(*one_);
-  paths->wait_until_wanted_by(1);
-  one_->signal(SIGSTOP);
-  paths.reset();
-  ASSERT_EQ(other_->fetch(ur10e_).status, FetchStatus::Ready);
-  one_->signal(SIGCONT);
-  const FetchReply reply = of_one.get();
-  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  EXPECT_EQ(reply.distribution->revision, 1U) << one_->log();
-  EXPECT_EQ(fits_of(*one_), 0) << one_->log();
-}
-
 TEST_F(SharedStore, WhatIsRetiredAtOneServerTheOtherServesNoMore) {
   one_->report(panda_, 1, 8);
   ASSERT_EQ(other_->fetch(ur10e_).status, FetchStatus::Ready);  // in its memory from now on
   ASSERT_EQ(one_->ask(AdminVerb::ResetTask, "sweep").status, AdminStatus::Ok);
   EXPECT_TRUE(comes_true([&] { return other_->fetch(ur10e_).status != FetchStatus::Ready; }));
   EXPECT_EQ(other_->fetch(ur10e_).status, FetchStatus::NoExperience);
-}
-
-TEST_F(SharedStore, WhatIsEvictedOrRenamedAtOneServerTheOtherNotices) {
-  one_->report(panda_, 1, 8);
-  const FetchReply first = other_->fetch(ur10e_);  // in its memory from now on
-  ASSERT_EQ(first.status, FetchStatus::Ready) << first.message;
-  ASSERT_EQ(other_->register_model("ur10e").message, "");
-  ASSERT_EQ(one_->ask(AdminVerb::EvictDistribution, first.distribution->id.hex()).status,
-            AdminStatus::Ok);
-  EXPECT_TRUE(comes_true([&] { return other_->fetch(ur10e_).distribution->revision == 2; }));
-
-  AdminRequest rename;
-  rename.verb = AdminVerb::RenameRobot;
-  rename.robot = "ur10e";
-  rename.argument = "arm-7";
-  ASSERT_EQ(one_->ask(rename).status, AdminStatus::Ok);
-  EXPECT_TRUE(comes_true(
-      [&] { return other_->register_model("ur10e").message == "known already, as 'arm-7'"; }));
-}
-
-TEST_F(SharedStore, AServerThatJoinsServesWhatOthersMadeAtOnce) {
-  one_->report(panda_, 1, 8);
-  const FetchReply made = one_->fetch(ur10e_);
-  ASSERT_EQ(made.status, FetchStatus::Ready) << made.message;
-  const std::unique_ptr<test::Cell> third = cell("third");
-  const auto began = Clock::now();
-  std::future<FetchReply> first = begin_fetch(*third);  // its client asks before there is a server
-  third->start();
-  const FetchReply taken = first.get();
-  const double joined_s = seconds_since(began);
-  std::cout << "the first fetch of a server that joins was answered after " << joined_s << " s\n";
-  ASSERT_EQ(taken.status, FetchStatus::Ready) << taken.message;
-  EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
-  EXPECT_EQ(fits_of(*third), 0);
-  EXPECT_LT(joined_s, 20);  // mostly well below 1; the machine may have other work
 }
 
 TEST_F(SharedStore, WithoutItsDatabaseAServerKnowsItsRobotsAndServesWhatIsInMemory) {
@@ -260,20 +187,6 @@ TEST_F(SharedStore, ThePasswordOfTheDatabaseIsSaidToNobodyAlsoWhenItCannotBeReac
     EXPECT_NE(std::string(error.what()).find("postgresql://"), std::string::npos) << error.what();
     EXPECT_EQ(std::string(error.what()).find("s3cret"), std::string::npos) << error.what();
   }
-}
-
-TEST_F(SharedStore, AServerThatIsKilledTakesNothingAlong) {
-  const Uuid report = one_->report(panda_, 1, 8).back();
-  one_->kill();
-  const FetchReply reply = other_->fetch(ur10e_);
-  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  EXPECT_EQ(other_->ask(AdminVerb::RetirePath, report.text()).status, AdminStatus::Ok);
-  one_->start();
-  one_->report(panda_, 100, 2);
-  EXPECT_EQ(query("SELECT count(*), count(DISTINCT report_uuid) FROM attempt"), "10\t10");
-  EXPECT_EQ(query("SELECT paths FROM experience"), "9");
-  EXPECT_EQ(one_->terminate(), 0);
-  EXPECT_EQ(other_->terminate(), 0);
 }
 
 }  // namespace

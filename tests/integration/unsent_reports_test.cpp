@@ -74,8 +74,7 @@ TEST_F(UnsentReports, AreStoredOnceByAServerThatDidNotKnowTheRobot) {
   EXPECT_GE(reported, results.size());      // each result's report came before it
   EXPECT_LE(reported, results.size() + 1);  // killed between the two
 
-  const test::ServerProcess server(
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain_.number()});
   for (int run = 0; run < 2; ++run) {  // the second one has nothing to send
     link::Client client({.domain = domain_.number(), .outbox = outbox_, .timeout = seconds(20)});
     const link::Client::OutboxState state = client.flush(seconds(60));

@@ -17,9 +17,8 @@ class Watch : public AdminCommands {
     watch_.emplace("kinship", words, folder_ / "watch.err");
   }
   /// On the server of the fixture; returns once its first words are there: those of the server.
-  void watch(std::vector<std::string> words) {
-    words.insert(words.begin(), "watch");
-    begin(server_.with_domain(words));
+  void watch(const std::string& options) {
+    begin(server_.with_domain("watch " + options));
     wait_for_words("the server is there");
   }
   std::string said() const { return test::read_text(folder_ / "watch.err"); }
@@ -36,10 +35,10 @@ class Watch : public AdminCommands {
 };
 
 TEST_F(Watch, TellsWhatHappensAndThatTheServerGoes) {
-  watch({"--json", "--task", "sweep"});
+  watch("--json --task sweep");
   teach(server_);
   const std::string event = watch_->read_line();
-  EXPECT_NE(event.find("\"kind\":\"report\""), std::string::npos) << event;
+  expect_has(event, "\"kind\":\"report\"");
   server_.process().terminate();
   wait_for_words("the server has gone");
   end();
@@ -47,10 +46,10 @@ TEST_F(Watch, TellsWhatHappensAndThatTheServerGoes) {
 
 TEST_F(Watch, TellsOfTheExperienceThatSomebodyAskedForAsAFetch) {
   teach(server_);
-  watch({"--json"});
-  EXPECT_EQ(server_.kinship({"tasks", "experience", "sweep"}).code, 0);
+  watch("--json");
+  server_.ends(0, "tasks experience sweep");
   const std::string event = watch_->read_line();
-  EXPECT_NE(event.find("\"kind\":\"fetch\",\"task\":\"sweep\""), std::string::npos) << event;
+  expect_has(event, "\"kind\":\"fetch\",\"task\":\"sweep\"");
   end();
 }
 
@@ -59,23 +58,20 @@ TEST_F(Watch, SaysAtOnceThatThereIsNoServerAndThenHowBusyItIs) {
   begin({"--domain", std::to_string(domain.number()), "watch", "--every", "1", "--robot", "panda"});
   EXPECT_EQ(watch_->read_line().substr(0, 28), "TIME                  KIND  ");
   wait_for_words("no server at 127.0.0.1, domain ");
-  const test::ServerProcess late(
-      {.store = folder_ / "late.db", .domain = domain.number(), .arguments = {}});
+  const test::ServerProcess late({.store = folder_ / "late.db", .domain = domain.number()});
   const std::string line = watch_->read_line();
-  EXPECT_NE(line.find("  rates       reports 0.0/s, fetches "), std::string::npos) << line;
-  EXPECT_NE(said().find("the server is there"), std::string::npos);
+  expect_has(line, "  rates       reports 0.0/s, fetches ");
+  expect_has(said(), "the server is there");
   end();
 }
 
 TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
   teach(server_);
-  const std::vector<std::string> fetch = {"distributions", "fetch", "--task", "sweep",
-                                          "--robot",       "panda", "--wait", "120"};
-  const std::vector<std::string> elsewhere = {"--placement", "0.5 0 0.25 0 0 0 1"};
-  ASSERT_EQ(server_.kinship(with(fetch, elsewhere)).code, 0);
-  ASSERT_EQ(server_.kinship(with(fetch, {"--sources", "panda", "--since", "90m"})).code, 0);
-  const std::string table = server_.kinship({"distributions", "list"}).out;
-  const std::string wide = server_.kinship({"distributions", "list", "-o", "wide"}).out;
+  const std::string fetch = "distributions fetch --task sweep --robot panda --wait 120";
+  server_.ends(0, fetch + " --placement '0.5 0 0.25 0 0 0 1'");
+  server_.ends(0, fetch + " --sources panda --since 90m");
+  const std::string table = server_.kinship("distributions list").out;
+  const std::string wide = server_.kinship("distributions list -o wide").out;
   const std::size_t newer = wide.find("only panda, since 2"), older = wide.find("0.5 0 0.25 0");
   ASSERT_NE(newer, std::string::npos) << wide;
   ASSERT_NE(older, std::string::npos) << wide;
@@ -85,16 +81,15 @@ TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
   const Attempt newest = test::panda_attempt(attempts_.front().robot, "sweep", 100);
   client->report(newest);
   ASSERT_EQ(client->flush(seconds(60)).accepted, 1U);
-  const std::string rows = server_.kinship({"paths", "list", "-o", "json"}).out;
+  const std::string rows = server_.kinship("paths list -o json").out;
   EXPECT_LT(rows.find(newest.report_uuid.text()), rows.find(attempts_[0].report_uuid.text()));
-  const std::string paths = server_.kinship({"paths", "list"}).out;
-  EXPECT_NE(paths.find(attempts_[0].report_uuid.text()), std::string::npos) << paths;
+  const std::string paths = server_.kinship("paths list").out;
+  expect_has(paths, attempts_[0].report_uuid.text());
   EXPECT_EQ(paths.find("MACHINE"), std::string::npos) << paths;
-  EXPECT_NE(server_.kinship({"paths", "list", "-o", "wide"}).out.find("MACHINE"),
-            std::string::npos);
-  std::istringstream lines(table + paths + server_.kinship({"robots", "list"}).out +
-                           server_.kinship({"tasks", "list"}).out +
-                           server_.kinship({"tasks", "show", "sweep"}).out);
+  expect_has(server_.ends(0, "paths list -o wide").out, "MACHINE");
+  std::istringstream lines(table + paths + server_.kinship("robots list").out +
+                           server_.kinship("tasks list").out +
+                           server_.kinship("tasks show sweep").out);
   for (std::string line; std::getline(lines, line);)
     EXPECT_LE(line.size(), 80U) << line;
 }
@@ -102,18 +97,17 @@ TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
 TEST_F(Watch, TakesARobotByItsDigestAndTellsNothingOfOthers) {
   teach(server_);
   const std::string panda = attempts_.front().robot.hex().substr(0, 8);
-  watch({"--json", "--robot", panda});
+  watch("--json --robot " + panda);
   for (const std::string robot : {"ur10e", "panda"})
-    EXPECT_EQ(server_.kinship({"distributions", "fetch", "--task", "dance", "--robot", robot}).code,
-              3);
+    server_.ends(3, "distributions fetch --task dance --robot " + robot);
   const std::string event = watch_->read_line();
-  EXPECT_NE(event.find("\"robot\":\"panda\""), std::string::npos) << event;
+  expect_has(event, "\"robot\":\"panda\"");
   end();
 }
 
 TEST_F(Watch, SaysThatItDoesNotKnowARobot) {
-  watch({"--robot", "nobody"});
-  EXPECT_NE(said().find("no robot 'nobody'"), std::string::npos);
+  watch("--robot nobody");
+  expect_has(said(), "no robot 'nobody'");
   end();
 }
 

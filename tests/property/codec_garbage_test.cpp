@@ -21,218 +21,50 @@ class Vandal {
  public:
   explicit Vandal(test::RandomValues& values) : values_(values) {}
 
-  void spoil(kinship_wire_Attempt& wire) {
-    switch (values_.below(12)) {
-      case 0:
-        return spoil(wire.machine);
-      case 1:
-        return spoil(wire.task);
-      case 2:
-        return spoil(wire.T_task_base);
-      case 3:
-        return shorten(wire.record);
-      case 4:
-        return spoil(wire.dof);
-      case 5:
-        return spoil(wire.waypoints);
-      case 6:
-      case 7:
-      case 8:
-        return wire.scene._length > 0 ? spoil(wire.scene._buffer[0]) : shorten(wire.scene);
-      default:
-        return spoil(wire.record._buffer[0]);
-    }
+  void spoil(kinship_wire_Attempt& w) {
+    one_of(w.machine, w.task, w.T_task_base, w.dof, w.waypoints, w.scene, w.scene, w.record,
+           w.record);
   }
-
-  void spoil(kinship_wire_RecordedScene& wire) {
-    const bool one_is_held = wire.held._length > 0 && values_.coin();
-    auto* const solid = one_is_held                ? &wire.held._buffer[0]
-                        : wire.objects._length > 0 ? &wire.objects._buffer[0]
-                                                   : nullptr;
-    if (wire.constraint._length > 0 && values_.below(3) == 0)
-      return spoil(wire.constraint._buffer[0]);
-    switch (solid == nullptr ? values_.below(3) : values_.below(7)) {
-      case 0:
-        return shorten(wire.objects);
-      case 1:
-        return shorten(wire.held);
-      case 2:
-        return shorten(wire.allowed_collisions);
-      case 3:
-        return spoil(solid->name);
-      case 4:
-        return spoil(solid->shape);
-      case 5:
-        return spoil(solid->size[values_.below(3)]);
-      default:
-        return spoil(solid->pose[values_.below(7)]);
-    }
+  void spoil(kinship_wire_RecordedScene& w) {
+    one_of(w.objects, w.held, w.allowed_collisions, w.constraint);
   }
-
-  void spoil(kinship_wire_TaskSpaceRegion& wire) {
-    switch (values_.below(3)) {
-      case 0:
-        return spoil(wire.T_task_region[values_.below(7)]);
-      case 1:
-        return spoil(wire.T_region_end[values_.below(7)]);
-      default:
-        return spoil(wire.bounds[values_.below(12)]);
-    }
+  void spoil(kinship_wire_SceneSolid& w) { one_of(w.name, w.shape, w.size, w.pose); }
+  void spoil(kinship_wire_SolidPair& w) { one_of(w.first, w.second); }
+  void spoil(kinship_wire_TaskSpaceRegion& w) { one_of(w.T_task_region, w.T_region_end, w.bounds); }
+  void spoil(kinship_wire_Rehearsal& w) { one_of(w.guide, w.processor_time_s, w.costs, w.message); }
+  void spoil(kinship_wire_GuideCost& w) {
+    one_of(w.guide, w.solved, w.mean_checks, w.median_checks);
   }
-
-  void spoil(kinship_wire_Rehearsal& wire) {
-    kinship_wire_GuideCost* const cost = wire.costs._length > 0 ? &wire.costs._buffer[0] : nullptr;
-    switch (cost == nullptr ? values_.below(4) : values_.below(8)) {
-      case 0:
-        return spoil(wire.guide);
-      case 1:
-        return spoil(wire.processor_time_s);
-      case 2:
-        return shorten(wire.costs);
-      case 3:
-        return spoil(wire.message);
-      case 4:
-        return spoil(cost->guide);
-      case 5:
-        cost->solved = cost->plans + 1;
-        return;
-      case 6:
-        return spoil(cost->mean_checks);
-      default:
-        return spoil(cost->median_checks);
-    }
+  void spoil(kinship_wire_PlanningRecord& w) {
+    one_of(w.outcome, w.planner, w.planner_options, w.planning_time_s, w.sampling_mode, w.share,
+           w.distribution_id);
   }
-
-  void spoil(kinship_wire_PlanningRecord& wire) {
-    switch (values_.below(7)) {
-      case 0:
-        return spoil(wire.outcome);
-      case 1:
-        return spoil(wire.planner);
-      case 2:
-        return spoil(wire.planner_options);
-      case 3:
-        return spoil(wire.planning_time_s);
-      case 4:
-        return spoil(wire.sampling_mode);
-      case 5:
-        return spoil(wire.share);
-      default:
-        return spoil(wire.distribution_id);
-    }
-  }
-
-  void spoil(kinship_wire_Selection& wire) {
-    switch (values_.below(4)) {
-      case 0:
-        return shorten(wire.sources);
-      case 1:  // no longer ascending
-        for (std::uint32_t i = 0; i < wire.sources._length; ++i)
-          wire.sources._buffer[i] = static_cast<std::uint8_t>(values_.below(256));
-        return;
-      case 2:
-        return spoil(wire.weighting);
-      default:
-        wire.since_ms = -1;
-        return;
-    }
-  }
-
-  void spoil(kinship_wire_ArmEvidence& wire) {
-    if (values_.coin())
-      wire.solved = wire.attempts + 1;
-    else
-      spoil(wire.checks_per_solution);
-  }
-
-  void spoil(kinship_wire_JudgedAttempt& wire) {
-    if (values_.coin())
-      spoil(wire.sampling_mode);
-    else
-      wire.age = static_cast<std::uint32_t>(values_.below(10));  // no longer oldest first
-  }
-
-  void spoil(kinship_wire_Source& wire) {
-    switch (values_.below(3)) {
-      case 0:
-        return spoil(wire.label);
-      case 1:
-        return spoil(wire.relation);
-      default:
-        return spoil(wire.mass);
-    }
-  }
-
-  void spoil(kinship_wire_Event& wire) {
-    switch (values_.below(4)) {
-      case 0:
-        return spoil(wire.kind);
-      case 1:
-        return spoil(wire.task);
-      case 2:
-        return spoil(wire.robot);
-      default:
-        return spoil(wire.text);
-    }
-  }
-
-  void spoil(kinship_wire_Announcement& wire) { spoil(wire.task); }
-
-  void spoil(kinship_wire_Distribution& wire) {
-    switch (values_.below(20)) {
-      case 19:
-        return wire.fit._length > 0 ? spoil(wire.fit._buffer[0].reason) : void();
-      case 0:
-        return spoil(wire.task);
-      case 1:
-        return spoil(wire.T_task_base);
-      case 2:
-        return spoil(wire.state);
-      case 8:
-        return wire.selection._length > 0 ? spoil(wire.selection._buffer[0]) : void();
-      case 9:
-        return wire.guided._length > 0 ? spoil(wire.guided._buffer[0]) : void();
-      case 10:
-        return wire.sources._length > 0 ? spoil(wire.sources._buffer[0]) : void();
-      case 11:
-        return wire.recent._length > 0 ? spoil(wire.recent._buffer[0]) : void();
-      case 12:
-        return spoil(wire.guided_share);
-      case 13:
-        return wire.component_scores._length > 0 ? spoil(wire.component_scores._buffer[0].score)
-                                                 : void();
-      case 14:
-        return wire.cuts._length > 0 ? spoil(wire.cuts._buffer[0].joint) : void();
-      case 3:
-        return spoil(wire.limits);
-      case 4:
-        return spoil(wire.held_out_score);
-      case 5:
-        return spoil(wire.recommended_share);
-      case 6:
-        return spoil(wire.evidence);
-      case 7:
-        wire.mixture._length = wire.kernels._length = 0;
-        return;
-      default:
-        break;
-    }
-    if (wire.kernels._length != 0) {
-      kinship_wire_Kernels& kernels = wire.kernels._buffer[0];
-      spoil(values_.coin() ? kernels.weights : kernels.covariance);
-    }
-    if (wire.mixture._length == 0)
-      return;
-    kinship_wire_Mixture& mixture = wire.mixture._buffer[0];
-    spoil(values_.coin() ? mixture.weights : values_.coin() ? mixture.means : mixture.covariances);
+  void spoil(kinship_wire_Selection& w) { one_of(w.sources, w.weighting, w.since_ms); }
+  void spoil(kinship_wire_ArmEvidence& w) { one_of(w.solved, w.checks_per_solution); }
+  void spoil(kinship_wire_JudgedAttempt& w) { one_of(w.sampling_mode, w.age); }
+  void spoil(kinship_wire_Source& w) { one_of(w.label, w.relation, w.mass); }
+  void spoil(kinship_wire_Event& w) { one_of(w.kind, w.task, w.robot, w.text); }
+  void spoil(kinship_wire_Announcement& w) { one_of(w.task); }
+  void spoil(kinship_wire_FitOrigin& w) { one_of(w.reason); }
+  void spoil(kinship_wire_ComponentScore& w) { one_of(w.components, w.score); }
+  void spoil(kinship_wire_JointCut& w) { one_of(w.joint, w.angle); }
+  void spoil(kinship_wire_Kernels& w) { one_of(w.weights, w.covariance); }
+  void spoil(kinship_wire_Mixture& w) { one_of(w.weights, w.means, w.covariances); }
+  void spoil(kinship_wire_Distribution& w) {
+    one_of(w.task, w.T_task_base, w.state, w.limits, w.held_out_score, w.recommended_share,
+           w.evidence, w.mixture, w.kernels, w.mixture, w.kernels, w.selection, w.guided, w.sources,
+           w.recent, w.guided_share, w.component_scores, w.cuts, w.fit);
   }
 
  private:
+  template <typename... Members>
+  void one_of(Members&... members) {
+    int wanted = values_.below(sizeof...(members));
+    static_cast<void>(((wanted-- == 0 && (spoil(members), true)) || ...));
+  }
   void spoil(char*& text) {
-    if (values_.coin()) {
+    if (values_.coin())
       text = nullptr;
-      return;
-    }
     for (char* c = text; c && *c != '\0'; ++c)
       if (values_.below(4) == 0)
         *c = static_cast<char>(values_.below(256));
@@ -242,21 +74,22 @@ class Vandal {
                                -std::numeric_limits<double>::infinity(), 2};
     number = kBad[values_.below(5)];
   }
-  void spoil(std::uint32_t& number) {
-    number = static_cast<std::uint32_t>(values_.generator()()) >>
-             static_cast<unsigned>(values_.below(32));
+  template <std::integral Number>
+  void spoil(Number& number) {
+    number = static_cast<Number>(values_.generator()() >> static_cast<unsigned>(values_.below(64)));
   }
-  void spoil(dds_sequence_octet& sequence) { shorten(sequence); }
-  void spoil(dds_sequence_double& sequence) {
-    if (values_.coin() && sequence._length > 0)
-      spoil(sequence._buffer[values_.below(static_cast<int>(sequence._length))]);
-    else
-      shorten(sequence);
+  template <typename Value, std::size_t N>
+  void spoil(Value (&values)[N]) {
+    spoil(values[values_.below(N)]);
   }
+  /// One of its elements, or it ends early.
   template <typename Sequence>
-  void shorten(Sequence& sequence) {
-    sequence._length =
-        static_cast<std::uint32_t>(values_.below(static_cast<int>(sequence._length) + 1));
+  requires requires(Sequence& sequence) { sequence._length; }
+  void spoil(Sequence& sequence) {
+    const auto length = static_cast<int>(sequence._length);
+    if (length > 0 && values_.coin())
+      return spoil(sequence._buffer[values_.below(length)]);
+    sequence._length = static_cast<std::uint32_t>(values_.below(length + 1));
     if (values_.below(4) == 0)
       sequence._buffer = nullptr;  // what a shorter message leaves
   }

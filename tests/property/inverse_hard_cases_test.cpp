@@ -23,11 +23,9 @@ namespace {
 
 using kinematics::Chain;
 using kinematics::ChainParts;
-using kinematics::JointType;
 using test::distance;
 
 constexpr std::uint64_t kSeed = 23;
-constexpr double kPi = std::numbers::pi;
 const std::vector<std::string> kModels = {"panda",  "iiwa14",    "iiwa7",       "ur10e",
                                           "sawyer", "sara_like", "planar_5r_a", "planar_7r_c"};
 
@@ -35,10 +33,7 @@ const std::vector<std::string> kModels = {"panda",  "iiwa14",    "iiwa7",       
 struct Asked {
   Asked(const Chain& chain, const Solver& solver, const Eigen::VectorXd& q,
         const InverseOptions& options = {})
-      : Asked(chain, solver, kinematics::T_base_tip(chain, q), options) {
-    for (const auto& solution : found.configurations.colwise())
-      recovered = recovered || distance(chain, solution, q) < 1e-3;
-  }
+      : Asked(chain, solver, kinematics::T_base_tip(chain, q), options) {}
 
   Asked(const Chain& chain, const Solver& solver, const Eigen::Isometry3d& T_base_tip,
         const InverseOptions& options = {})
@@ -57,7 +52,6 @@ struct Asked {
   bool solved() const { return found.configurations.cols() > 0; }
 
   InverseSolutions found;
-  bool recovered = false;
 };
 
 Eigen::VectorXd draw(const Chain& chain, std::mt19937_64& generator) {
@@ -89,18 +83,6 @@ TEST(InverseOfAnyChain, OfOneToTenJointsTurningAndSlidingOfAnySize) {
       }
 }
 
-TEST(InverseOfAnyChain, WithASlidingJointAnywhere) {
-  for (const std::string model : {"iiwa14", "ur10e", "planar_5r_a"})
-    for (const std::size_t at : {std::size_t{0}, std::size_t{2}, std::size_t{4}}) {
-      std::mt19937_64 generator(kSeed);
-      ChainParts parts = test::parts_of(test::model_chain(model));
-      parts.joints[at].type = JointType::Prismatic;
-      parts.joints[at].lower = -0.3;
-      parts.joints[at].upper = 0.5;
-      EXPECT_GE(solved_share(Chain(parts), 60, generator), 0.95) << model << " joint " << at;
-    }
-}
-
 TEST(InverseOfAnyChain, WithFreeTaskAxes) {
   std::mt19937_64 generator(kSeed);
   for (int mask = 1; mask < 63; mask += 4) {
@@ -111,35 +93,11 @@ TEST(InverseOfAnyChain, WithFreeTaskAxes) {
   }
 }
 
-TEST(InverseOfAnyChain, WithTwoJointsOnTheSameAxis) {
-  std::mt19937_64 generator(kSeed);
-  for (const std::size_t at : {std::size_t{1}, std::size_t{3}, std::size_t{5}}) {
-    ChainParts parts = test::parts_of(test::random_chain({}, generator));
-    parts.joints[at].T_previous_joint = Eigen::Isometry3d::Identity();
-    parts.joints[at].T_previous_joint.translation() = 0.2 * parts.joints[at - 1].axis;
-    parts.joints[at].axis = parts.joints[at - 1].axis;
-    EXPECT_GE(solved_share(Chain(parts), 40, generator), 0.95) << at;
-  }
-}
-
 class InverseOf : public testing::TestWithParam<std::string> {
  protected:
   Chain chain_ = test::model_chain(GetParam());
   std::mt19937_64 generator_{kSeed};
 };
-
-TEST_P(InverseOf, PosesExactlyAtALimit) {
-  const Solver solver(chain_);
-  int solved = 0, asked = 0;
-  for (Eigen::Index joint = 0; joint < chain_.dof(); ++joint)
-    for (const double limit : {chain_.lower()[joint], chain_.upper()[joint]})
-      for (int i = 0; i < 5; ++i, ++asked) {
-        Eigen::VectorXd q = draw(chain_, generator_);
-        q[joint] = limit;
-        solved += Asked(chain_, solver, q).solved() ? 1 : 0;
-      }
-  EXPECT_GE(solved, 0.98 * asked);
-}
 
 TEST_P(InverseOf, EveryJointAtALimit) {
   const Solver solver(chain_);
@@ -154,21 +112,6 @@ TEST_P(InverseOf, EveryJointAtALimit) {
   EXPECT_GE(solved, 0.9 * kPoses);  // a corner of the limits: of some arms the only configuration
 }
 
-/// Straight, folded, upright, wrist-singular.
-TEST_P(InverseOf, RoundAngles) {
-  const Solver solver(chain_);
-  int solved = 0, asked = 0;
-  std::uniform_int_distribution<int> quarter(-2, 2);
-  for (int i = 0; i < 100; ++i, ++asked) {
-    Eigen::VectorXd q(chain_.dof());
-    for (double& value : q)
-      value = 0.5 * kPi * quarter(generator_);
-    q = q.cwiseMax(chain_.lower()).cwiseMin(chain_.upper());
-    solved += Asked(chain_, solver, q).solved() ? 1 : 0;
-  }
-  EXPECT_GE(solved, 0.97 * asked);
-}
-
 TEST_P(InverseOf, OriginsPerturbed) {
   for (const double size : {1e-4, 1e-3, 5e-3}) {
     const Chain twin =
@@ -177,66 +120,6 @@ TEST_P(InverseOf, OriginsPerturbed) {
             .value();
     EXPECT_GE(solved_share(twin, 60, generator_), 0.98) << size;
   }
-}
-
-TEST_P(InverseOf, LimitsThatLeaveOneBranch) {
-  int recovered = 0;
-  constexpr int kPoses = 30;
-  for (int i = 0; i < kPoses; ++i) {
-    const Eigen::VectorXd q = draw(chain_, generator_);
-    ChainParts parts = test::parts_of(chain_);
-    for (Eigen::Index joint = 0; joint < q.size(); ++joint) {
-      parts.joints[static_cast<std::size_t>(joint)].lower = q[joint] - 0.2;
-      parts.joints[static_cast<std::size_t>(joint)].upper = q[joint] + 0.25;
-    }
-    const Chain narrow(parts);
-    recovered += Asked(narrow, Solver(narrow), q).solved() ? 1 : 0;
-  }
-  EXPECT_GE(recovered, 0.95 * kPoses);
-}
-
-TEST_P(InverseOf, LimitsWiderThanATurnAndContinuousJoints) {
-  ChainParts parts = test::parts_of(chain_);
-  for (std::size_t joint = 0; joint < parts.joints.size(); ++joint) {
-    parts.joints[joint].lower = -7;
-    parts.joints[joint].upper = 7;
-    if (joint % 2 == 1)
-      parts.joints[joint].type = JointType::Continuous;
-  }
-  const Chain wide(parts);
-  const Solver solver(wide);
-  for (int i = 0; i < 30; ++i) {
-    const Asked asked(wide, solver, draw(wide, generator_));
-    EXPECT_TRUE(asked.solved());
-    EXPECT_TRUE((asked.found.configurations.array().abs() <= kPi + 1e-9).all());
-  }
-}
-
-TEST_P(InverseOf, AToolWithALongOffset) {
-  ChainParts parts = test::parts_of(chain_);
-  if (GetParam().starts_with("planar"))
-    parts.T_tip_transfer.translation() << 2, 1, 0;
-  else
-    parts.T_tip_transfer.translation() << 0.5, 2, 1;
-  EXPECT_GE(solved_share(Chain(parts), 60, generator_), 0.98);
-}
-
-TEST_P(InverseOf, EveryInstructionSetGivesTheSameSolutions) {
-  constexpr int kPoses = 1000;
-  std::vector<Solver> solvers;
-  for (const InstructionSet& set : instruction_sets())
-    solvers.emplace_back(chain_, set.kernels, Solver::Engines::Descents);
-  std::vector<int> same(solvers.size(), 0);
-  for (int i = 0; i < kPoses; ++i) {
-    const Eigen::Isometry3d T = kinematics::T_base_tip(chain_, draw(chain_, generator_));
-    const Eigen::MatrixXd first = solvers.front().solve(T).configurations;
-    for (std::size_t s = 0; s < solvers.size(); ++s) {
-      const Eigen::MatrixXd other = solvers[s].solve(T).configurations;
-      same[s] += first.cols() == other.cols() && (first - other).norm() < 1e-5 ? 1 : 0;
-    }
-  }
-  for (std::size_t s = 0; s < solvers.size(); ++s)
-    EXPECT_GE(same[s], 0.999 * kPoses) << instruction_sets()[s].name;
 }
 
 TEST_P(InverseOf, AnyNumberOfThreadsGivesTheSameBytes) {
@@ -266,17 +149,6 @@ TEST_P(InverseOf, AnyNumberOfThreadsGivesTheSameBytes) {
 INSTANTIATE_TEST_SUITE_P(Models, InverseOf, testing::ValuesIn(kModels),
                          [](const auto& instance) { return instance.param; });
 
-TEST(InverseReasons, AMillimetreOutOfReach) {
-  const Chain chain = test::model_chain("iiwa14");
-  const Solver solver(chain);
-  Eigen::Isometry3d T = kinematics::T_base_tip(chain, Eigen::VectorXd::Zero(7));
-  EXPECT_TRUE(Asked(chain, solver, T).solved());
-  T.translation().z() -= 1e-3;
-  EXPECT_TRUE(Asked(chain, solver, T).solved());
-  T.translation().z() += 2e-3;
-  EXPECT_EQ(Asked(chain, solver, T).found.reason, NoSolution::OutOfReach);
-}
-
 TEST(InverseReasons, AMillimetreOutOfReachOfAnyArm) {
   std::mt19937_64 generator(kSeed);
   for (const std::string& model : kModels) {
@@ -288,28 +160,6 @@ TEST(InverseReasons, AMillimetreOutOfReachOfAnyArm) {
       T.translation().head<2>() *= 50;
       EXPECT_EQ(Asked(chain, solver, T).found.reason, NoSolution::OutOfReach) << model;
     }
-  }
-}
-
-TEST(InverseReasons, LimitsAreTheReasonWhereTheArmWouldReach) {
-  std::mt19937_64 generator(kSeed);
-  for (const std::string& model : kModels) {
-    const Chain chain = test::model_chain(model);
-    ChainParts parts = test::parts_of(chain);
-    for (kinematics::Joint& joint : parts.joints) {
-      joint.lower = 0.01;
-      joint.upper = 0.02;
-    }
-    const Chain narrow(parts);
-    const Solver solver(narrow);
-    int named = 0;
-    constexpr int kPoses = 20;
-    for (int i = 0; i < kPoses; ++i) {
-      const Asked asked(narrow, solver, kinematics::T_base_tip(chain, draw(chain, generator)));
-      EXPECT_FALSE(asked.solved());
-      named += asked.found.reason == NoSolution::Limits ? 1 : 0;
-    }
-    EXPECT_GE(named, 0.9 * kPoses) << model;
   }
 }
 

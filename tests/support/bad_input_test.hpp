@@ -20,7 +20,7 @@ namespace kinship::test {
 class BadInput : public testing::Test {
  protected:
   BadInput()
-      : server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
+      : server_({.store = directory_ / "fleet.db", .domain = domain_.number()}),
         client_({.domain = domain_.number(),
                  .outbox = directory_ / "outbox",
                  .timeout = std::chrono::seconds(60)}),

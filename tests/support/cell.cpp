@@ -14,6 +14,8 @@ constexpr const char* kTask = "sweep";
 
 Cell::Options with_folder(Cell::Options options) {
   std::filesystem::create_directories(options.folder);
+  if (options.store.empty())
+    options.store = options.folder / "fleet.db";
   return options;
 }
 
@@ -26,10 +28,15 @@ Cell::Cell(Options options)
                .timeout = std::chrono::seconds(60)}) {}
 
 void Cell::start() {
+  server_.reset();
   server_ = std::make_unique<ServerProcess>(ServerProcess::Options{.store = options_.store,
                                                                    .domain = domain_.number(),
                                                                    .arguments = options_.arguments,
                                                                    .log = options_.folder / "log"});
+}
+
+Answer Cell::run(const std::string& program, const std::string& line) const {
+  return run_to_end(program, words(line + " --timeout 60 --domain " + std::to_string(domain())));
 }
 
 RegisterReply Cell::register_model(const std::string& model) {

@@ -23,7 +23,7 @@ class Cell {
 
   struct Options {
     std::filesystem::path folder;             ///< of log and outbox; made if it is not there
-    std::string store;                        ///< file, or URL
+    std::string store = {};                   ///< file, or URL; empty: fleet.db in the folder
     std::vector<std::string> arguments = {};  ///< of kinshipd, further ones
   };
 
@@ -32,10 +32,18 @@ class Cell {
 
   /// The server; returns when it serves. \throws std::runtime_error with its log if it does not.
   void start();
+  ServerProcess& server() { return *server_; }
   void kill() { server_->kill(); }
   int terminate() { return server_->terminate(); }
   void signal(int number) const { server_->signal(number); }
   std::string log() const { return read_text(options_.folder / "log"); }
+
+  link::Client& client() { return client_; }
+  std::uint32_t domain() const { return domain_.number(); }
+  /// A program of the client from its start to its end, told domain and time limit.
+  /// \param line  its further words, see words().
+  Answer run(const std::string& program, const std::string& line) const;
+  Answer kinship(const std::string& line) const { return run("kinship", line); }
 
   RegisterReply register_model(const std::string& model);
   /// So many sweeps of a Panda, durable on return.

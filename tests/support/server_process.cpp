@@ -11,7 +11,8 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
-#include <iterator>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -134,6 +135,14 @@ int Program::wait() {
     waitpid(pid_, &status_, 0);
   is_running_ = false;
   return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+}
+
+std::vector<std::string> words(const std::string& line) {
+  std::istringstream stream(line);
+  std::vector<std::string> found;
+  for (std::string word; stream >> std::quoted(word, '\'', '\0');)
+    found.push_back(word);
+  return found;
 }
 
 Answer run_to_end(const std::string& name, const std::vector<std::string>& arguments) {

@@ -51,6 +51,9 @@ struct Answer {
   bool says(const std::string& words) const { return (out + err).find(words) != std::string::npos; }
 };
 
+/// The words of a line, apart at blanks; one that begins with ' goes on to the next '.
+std::vector<std::string> words(const std::string& line);
+
 /// A program from its start to its end.
 Answer run_to_end(const std::string& name, const std::vector<std::string>& arguments);
 
@@ -60,8 +63,8 @@ class ServerProcess {
   struct Options {
     std::filesystem::path store;  ///< or a URL
     std::uint32_t domain = 0;
-    std::vector<std::string> arguments;  ///< further ones
-    std::filesystem::path log = {};      ///< appended to; empty: <store>.log
+    std::vector<std::string> arguments = {};  ///< further ones
+    std::filesystem::path log = {};           ///< appended to; empty: <store>.log
   };
 
   /// Returns when it serves.

@@ -90,6 +90,15 @@ inline Attempt make_unsolved(const Digest& robot, const std::string& task, std::
   return attempt;
 }
 
+/// Whether a store gives back what was reported; another attempt of equal content may have the
+/// path.
+inline bool is_as_reported(const Attempt& found, const Attempt& wanted) {
+  return found.robot == wanted.robot && found.task == wanted.task &&
+         found.record.outcome == wanted.record.outcome &&
+         found.record.collision_checks == wanted.record.collision_checks &&
+         (!found.path || (wanted.path && found.path->waypoints() == wanted.path->waypoints()));
+}
+
 /// Ready, with two components.
 inline Distribution make_distribution(const Digest& robot, const std::string& task,
                                       std::uint64_t number) {

@@ -125,13 +125,6 @@ TEST(PlanProblem, TheGateCanBeLeftOpen) {
   EXPECT_EQ(guided.share, 0.9);
 }
 
-TEST(PlanProblem, WithoutGuidanceTheResultNamesNone) {
-  const ProblemResult result = planned(wall_problem()).result;
-  EXPECT_FALSE(result.distribution_id);
-  EXPECT_EQ(result.sampling_mode, SamplingMode::Uniform);
-  EXPECT_EQ(result.share, 0);
-}
-
 TEST(PlanProblem, RunningOutOfChecksIsATimeoutWithItsReason) {
   PlanSettings few;
   few.max_checks = 20;
@@ -434,44 +427,6 @@ TEST(PlanProblem, AGoalIsTurnedIntoTheTurnOfTheStart) {
   const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
   ASSERT_TRUE(answer.result.solved) << answer.result.reason;
   EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 2 * M_PI - 3, 1e-9);
-}
-
-TEST(PlanProblem, AGoalOfAContinuousJointMayBeBeyondHalfATurn) {
-  RobotDescription description = test::planar_description();
-  const std::string revolute = "type='revolute'";
-  description.urdf.replace(description.urdf.find(revolute), revolute.size(), "type='continuous'");
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
-  const PlannedRobot robot{chain, shapes};
-  Problem problem = wall_problem();
-  problem.scene.objects.clear();
-  problem.start[0] = 3;
-  problem.goal_configurations(0, 0) = 4;
-  const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
-  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
-  EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 4, 1e-9);
-}
-
-TEST(PlanProblem, AStartNearALimitLeavesEveryPostureOfAWideJointInReach) {
-  const PlannedRobot robot = planar_robot("-6.2", "6.2");
-  Problem problem = wall_problem();
-  problem.scene.objects.clear();
-  problem.start[0] = 6;
-  for (const double goal : {0.5, -0.2, -6.2}) {  // -0.2 is 6.08, -6.2 is 0.083
-    problem.goal_configurations(0, 0) = goal;
-    const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
-    ASSERT_TRUE(answer.result.solved) << answer.result.reason;
-    const double end = answer.result.waypoints->rightCols(1)(0);
-    EXPECT_NEAR(end, goal < 0 ? goal + 2 * M_PI : goal, 1e-9);
-  }
-}
-
-TEST(PlanProblem, AStartThatIsTheGoalIsAPathOfTwoWaypoints) {
-  Problem problem = wall_problem();
-  problem.goal_configurations = problem.start;
-  const PlannedProblem answer = planned(problem);
-  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
-  EXPECT_EQ(answer.result.waypoints->cols(), 2);
 }
 
 TEST(PlanProblem, StopsWhenAsked) {

@@ -57,31 +57,18 @@ Eigen::MatrixXd sweep(double first, double stride, Eigen::Index count) {
 
 TEST(CollisionWorld, SeveralAtOnceAreAnsweredAsIfOneAfterTheOther) {
   CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
-  for (const Eigen::Index count : {1, 5, 8, 9, 16, 17, 50})
-    for (const double first : {-1.0, -0.5, -0.1, 0.0, 0.5}) {
-      const Eigen::MatrixXd qs = sweep(first, 0.02, count);
-      Eigen::Index free = 0;
-      while (free < count && !world.collides(qs.col(free)))
-        ++free;
-      const std::uint64_t before = world.checks();
-      EXPECT_EQ(world.free_ahead(qs), free) << count << " from " << first;
-      EXPECT_EQ(world.checks() - before, static_cast<std::uint64_t>(std::min(free + 1, count)));
-    }
-}
-
-TEST(CollisionWorld, TheFirstFreeOneOfSeveralIsFoundAsIfOneAfterTheOther) {
-  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
-  for (const Eigen::Index count : {1, 5, 8, 9, 16, 17, 50})
-    for (const double first : {-0.5, -0.08, -0.02, 0.0, 0.05}) {
-      const Eigen::MatrixXd qs = sweep(first, 0.007, count);
-      Eigen::Index colliding = 0;
-      while (colliding < count && world.collides(qs.col(colliding)))
-        ++colliding;
-      const std::uint64_t before = world.checks();
-      EXPECT_EQ(world.colliding_ahead(qs), colliding) << count << " from " << first;
-      EXPECT_EQ(world.checks() - before,
-                static_cast<std::uint64_t>(std::min(colliding + 1, count)));
-    }
+  for (const bool collide : {false, true})
+    for (const Eigen::Index count : {1, 5, 8, 9, 16, 17, 50})
+      for (const double first : {-1.0, -0.5, -0.1, -0.08, -0.02, 0.0, 0.05, 0.5}) {
+        const Eigen::MatrixXd qs = sweep(first, collide ? 0.007 : 0.02, count);
+        Eigen::Index ahead = 0;
+        while (ahead < count && world.collides(qs.col(ahead)) == collide)
+          ++ahead;
+        const std::uint64_t before = world.checks();
+        EXPECT_EQ(collide ? world.colliding_ahead(qs) : world.free_ahead(qs), ahead)
+            << count << " from " << first;
+        EXPECT_EQ(world.checks() - before, static_cast<std::uint64_t>(std::min(ahead + 1, count)));
+      }
 }
 
 TEST(CollisionWorld, AnglesOfManyTurnsAreAnsweredLikeTheSameWithoutTurns) {

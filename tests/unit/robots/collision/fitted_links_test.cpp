@@ -9,6 +9,8 @@
 #include "robots/geometry/known_shapes.hpp"
 #include "robots/geometry/mesh_cover.hpp"
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/random_chain.hpp"
+#include "tests/support/robots.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision::fitted_links_test {
@@ -36,13 +38,6 @@ geometry::RobotShapes bent_arm(int joints) {
   return shapes;
 }
 
-Eigen::VectorXd random_q(const kinematics::Chain& chain, std::mt19937_64& generator) {
-  Eigen::VectorXd q(chain.dof());
-  for (Eigen::Index i = 0; i < q.size(); ++i)
-    q[i] = std::uniform_real_distribution<double>(chain.lower()[i], chain.upper()[i])(generator);
-  return q;
-}
-
 /// As a server that cannot read the meshes has it.
 geometry::RobotShapes as_known(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
                                const FittedRobot& fitted) {
@@ -67,7 +62,7 @@ TEST(FittedLinks, SolidsAreNeverApartWhereTheMeshesTouch) {
   std::mt19937_64 generator(kSeed);
   int collisions = 0, lost = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Eigen::VectorXd q = random_q(chain, generator);
+    const Eigen::VectorXd q = test::random_configuration(chain, generator);
     const auto touching = of_meshes.find_contacts(q);
     const auto held = of_solids.find_contacts(q);
     for (const auto& names : touching)
@@ -96,14 +91,6 @@ MeshAndSolids random_mesh(std::mt19937_64& generator) {
   return both;
 }
 
-Eigen::Isometry3d random_pose(std::mt19937_64& generator) {
-  std::normal_distribution<double> normal;
-  const auto next = [&] { return normal(generator); };
-  Eigen::Isometry3d T(Eigen::Quaterniond(next(), next(), next(), next()).normalized());
-  T.translation() << 2 * next(), 2 * next(), 2 * next();
-  return T;
-}
-
 TEST(FittedLinks, WhatTouchesAMeshTouchesOneOfItsSolids) {
   std::mt19937_64 generator(kSeed);
   const Eigen::Matrix3Xd box = test::BoxMesh({0.3, 0.3, 0.3}).triangles();
@@ -112,7 +99,7 @@ TEST(FittedLinks, WhatTouchesAMeshTouchesOneOfItsSolids) {
   for (int i = 0; i < 60; ++i) {
     const MeshAndSolids both = random_mesh(generator);
     for (int k = 0; k < 100; ++k) {
-      const Eigen::Isometry3d T_other = random_pose(generator);
+      const Eigen::Isometry3d T_other = test::random_pose(4, generator);
       const bool exact = touch(both.mesh, Eigen::Isometry3d::Identity(), other, T_other);
       const bool held = std::ranges::any_of(both.solids, [&](const auto& solid) {
         return touch(solid.first, solid.second, other, T_other);
@@ -136,7 +123,7 @@ TEST(FittedLinks, TheFilterLosesFewFreeConfigurationsAndFindsCollisions) {
   std::mt19937_64 generator(kSeed);
   int free = 0, lost = 0, colliding = 0, found = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Eigen::VectorXd q = random_q(chain, generator);
+    const Eigen::VectorXd q = test::random_configuration(chain, generator);
     const bool left_out = filter.collides(q);
     ++(exact.collides(q) ? colliding : free);
     (exact.collides(q) ? found : lost) += left_out ? 1 : 0;

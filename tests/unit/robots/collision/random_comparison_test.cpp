@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "robots/collision/convex_distance.hpp"
 #include "robots/collision/solid.hpp"
+#include "tests/property/random_worlds.hpp"
 #include "tests/support/box_mesh.hpp"
 #include "tests/unit/robots/collision/nearest_points.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
@@ -13,53 +12,13 @@ namespace {
 
 using namespace test_support;
 
-constexpr std::uint64_t kSeed = 31;
 constexpr double kTouching_m = 1e-7, kApart_m = 1e-4;  // between them the reference cannot say
 
-class RandomWorld {
- public:
-  double number(double lower, double upper) {
-    return std::uniform_real_distribution<double>(lower, upper)(generator_);
-  }
-
-  Shape shape() {
-    const auto size = [&] { return 0.02 + 0.3 * std::pow(number(0, 1), 2); };
-    switch (generator_() % 4) {
-      case 0:
-        return BoxShape{{size(), size(), size()}};
-      case 1:
-        return CylinderShape{size(), size()};
-      case 2:
-        return SphereShape{size()};
-      default:
-        return CapsuleShape{size(), size()};
-    }
-  }
-
-  /// Half of the poses have axes along those of the base: faces and edges meet exactly there.
-  Eigen::Isometry3d pose(double reach_m) {
-    Eigen::Isometry3d T =
-        shift(number(-reach_m, reach_m), number(-reach_m, reach_m), number(-reach_m, reach_m));
-    if (generator_() % 2 == 0) {
-      std::normal_distribution<double> normal;
-      const Eigen::Quaterniond q(normal(generator_), normal(generator_), normal(generator_),
-                                 normal(generator_));
-      T.linear() = q.normalized().toRotationMatrix();
-    } else if (generator_() % 2 == 0) {
-      T.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
-    }
-    return T;
-  }
-
- private:
-  std::mt19937_64 generator_{kSeed};
-};
-
 TEST(Touch, AgreesWithAlternatingProjections) {
-  RandomWorld random;
+  test::Random random;
   int touching = 0, apart = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Shape a = random.shape(), b = random.shape();
+    const Shape a = random.shape(0.6), b = random.shape(0.6);
     const Eigen::Isometry3d T_base_a = random.pose(0.2), T_base_b = random.pose(0.2);
     const double distance = distance_m(a, T_base_a, b, T_base_b);
     if (distance > kTouching_m && distance < kApart_m)
@@ -75,10 +34,10 @@ TEST(Touch, AgreesWithAlternatingProjections) {
 }
 
 TEST(ConvexDistance, IsNeverAboveThatOfAlternatingProjectionsAndHardlyBelow) {
-  RandomWorld random;
+  test::Random random;
   int apart = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Shape a = random.shape(), b = random.shape();
+    const Shape a = random.shape(0.6), b = random.shape(0.6);
     const double reach_m = i % 2 == 0 ? 0.3 : 1;
     const Eigen::Isometry3d T_base_a = random.pose(reach_m), T_base_b = random.pose(reach_m);
     const double distance = distance_m(a, T_base_a, b, T_base_b);
@@ -94,13 +53,13 @@ TEST(ConvexDistance, IsNeverAboveThatOfAlternatingProjectionsAndHardlyBelow) {
 }
 
 TEST(CloseDistance, OfAMeshIsNeverAboveThatOfAlternatingProjections) {
-  RandomWorld random;
+  test::Random random;
   int apart = 0;
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3d size(random.number(0.05, 0.5), random.number(0.05, 0.5),
                                random.number(0.05, 0.5));
     const Eigen::Matrix3Xd triangles = test::BoxMesh(size).triangles().colwise() - size / 2;
-    const Shape a = BoxShape{size}, b = random.shape();
+    const Shape a = BoxShape{size}, b = random.shape(0.6);
     const Eigen::Isometry3d T_base_a = random.pose(0.5), T_base_b = random.pose(0.5);
     const double distance = distance_m(a, T_base_a, b, T_base_b);
     if (distance < kApart_m)
@@ -134,13 +93,13 @@ std::vector<Eigen::Isometry3d> shape_poses(const geometry::RobotShapes& shapes,
 }
 
 TEST(CollisionWorld, AgreesWithDistancesOfAPlanarArm) {
-  RandomWorld random;
+  test::Random random;
   constexpr int kJoints = 4;
   const auto shapes = toy_shapes(kJoints);
   Surroundings surroundings;
   surroundings.T_task_base = random.pose(1.0);
   for (int i = 0; i < 6; ++i)
-    surroundings.scene.objects.push_back({"object" + std::to_string(i), random.shape(),
+    surroundings.scene.objects.push_back({"object" + std::to_string(i), random.shape(0.6),
                                           surroundings.T_task_base * random.pose(1.2)});
   CollisionWorld world(toy_chain(kJoints), shapes, surroundings);
   const Eigen::Isometry3d T_base_task = surroundings.T_task_base.inverse();

@@ -16,6 +16,7 @@
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
+#include "tests/unit/robots/inverse/checked_inverse.hpp"
 
 namespace kinship::inverse::elimination_test {
 namespace {
@@ -166,16 +167,6 @@ TEST(Elimination, IsLeftOutWhereThereIsAClosedForm) {
   EXPECT_EQ(Solver(test::arms::industrial()).elimination(), nullptr);
 }
 
-/// Branches that leave the limits are enough to say why there is no solution.
-kinematics::Chain with_limits(const kinematics::Chain& chain, double limit_rad) {
-  kinematics::ChainParts parts = test::parts_of(chain);
-  for (kinematics::Joint& joint : parts.joints) {
-    joint.lower = -limit_rad;
-    joint.upper = limit_rad;
-  }
-  return kinematics::Chain(std::move(parts));
-}
-
 /// Where the last branches of an arm have just met, what is left of them must not count as one
 /// beyond the limits.
 TEST(Elimination, LimitsAreNotBlamedWhereNoBranchIs) {
@@ -183,8 +174,8 @@ TEST(Elimination, LimitsAreNotBlamedWhereNoBranchIs) {
   int unreached = 0;
   for (int i = 0; i < kArms; ++i) {
     const kinematics::Chain chain =
-        with_limits(test::random_chain({}, generator), std::numbers::pi);
-    const Solver solver(chain), narrow(with_limits(chain, 1.5));
+        with_limits(test::random_chain({}, generator), -std::numbers::pi, std::numbers::pi);
+    const Solver solver(chain), narrow(with_limits(chain, -1.5, 1.5));
     ASSERT_NE(narrow.elimination(), nullptr);
     for (int pose = 0; pose < kPoses; ++pose) {
       Eigen::Isometry3d T =
@@ -213,7 +204,7 @@ TEST(Elimination, LimitsAreNotBlamedWhereNoBranchIs) {
 TEST(Elimination, TellsThatLimitsAreInTheWay) {
   std::mt19937_64 generator(kSeed);
   const kinematics::Chain chain = test::random_chain({}, generator);
-  const kinematics::Chain narrow = with_limits(chain, 0.01);
+  const kinematics::Chain narrow = with_limits(chain, -0.01, 0.01);
   const Solver solver(narrow);
   ASSERT_NE(solver.elimination(), nullptr);
   int limits = 0;

@@ -18,7 +18,6 @@ namespace {
 
 using kinematics::JointType;
 using test::distance;
-using test::planar_axes;
 using test::planar_pose;
 using test::PlanarArm;
 constexpr double kPi = std::numbers::pi;
@@ -44,14 +43,6 @@ TEST(Inverse, FindsBothBranchesOfAThreeJointArmWithYaw) {
   EXPECT_TRUE(contains(solutions, q));
 }
 
-TEST(Inverse, APoseBeyondTheArmIsOutOfReach) {
-  const auto chain = PlanarArm{.lengths_m = {1, 1}, .yaw = false}.chain();
-  const auto solutions = inverse(chain, planar_pose(2.001, 0, 0));
-  EXPECT_EQ(solutions.configurations.cols(), 0);
-  EXPECT_EQ(solutions.configurations.rows(), 2);
-  EXPECT_EQ(solutions.reason, NoSolution::OutOfReach);
-}
-
 TEST(Inverse, RedundantArmFillsUpToLAtLeastDApart) {
   const auto chain = PlanarArm{.lengths_m = {0.3, 0.25, 0.2, 0.15, 0.1}, .limit = 2.5}.chain();
   const auto solutions =
@@ -61,15 +52,6 @@ TEST(Inverse, RedundantArmFillsUpToLAtLeastDApart) {
     for (Eigen::Index b = 0; b < a; ++b)
       EXPECT_GE(distance(chain, solutions.configurations.col(a), solutions.configurations.col(b)),
                 0.5);
-}
-
-TEST(Inverse, ALargerDistanceLeavesFewerSolutions) {
-  const auto chain = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1}, .limit = 2.5}.chain();
-  const Eigen::Isometry3d T = planar_pose(0.5, 0.3, 0.8);
-  const auto dense = inverse(chain, T, {.max_solutions = 0, .min_distance = 0.2});
-  const auto sparse = inverse(chain, T, {.max_solutions = 0, .min_distance = 2});
-  EXPECT_GT(dense.configurations.cols(), 2 * sparse.configurations.cols());
-  EXPECT_GE(sparse.configurations.cols(), 1);
 }
 
 TEST(Inverse, WithoutADistanceTheSameSolutionStillCountsOnce) {
@@ -95,29 +77,6 @@ TEST(Inverse, DistanceIsWrappedForContinuousJointsOnly) {
   const auto solutions = inverse(arm.chain(), T, options);
   ASSERT_EQ(solutions.configurations.cols(), 1);
   EXPECT_LE(solutions.configurations.cwiseAbs().maxCoeff(), kPi);
-}
-
-TEST(Inverse, PrismaticJointsSlideWithinTheirLimits) {
-  kinematics::ChainParts parts;  // a gantry: x, y and a turn about z
-  parts.base_link = "base";
-  parts.tip_link = "tip";
-  for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
-    kinematics::Joint joint;
-    joint.name = "slide";
-    joint.type = JointType::Prismatic;
-    joint.axis = axis;
-    joint.lower = -0.5;
-    joint.upper = 2;
-    parts.joints.push_back(joint);
-  }
-  parts.joints.push_back({.name = "turn", .lower = -1, .upper = 1});
-  parts.task_axes = planar_axes(true);
-  const kinematics::Chain chain(parts);
-
-  const auto solutions = inverse(chain, planar_pose(1.5, -0.3, 0.4));
-  ASSERT_EQ(solutions.configurations.cols(), 1);
-  EXPECT_TRUE(contains(solutions, Eigen::Vector3d(1.5, -0.3, 0.4)));
-  EXPECT_EQ(inverse(chain, planar_pose(1.5, -0.8, 0.4)).reason, NoSolution::Limits);
 }
 
 TEST(Inverse, RefusesWhatIsNoQuestion) {

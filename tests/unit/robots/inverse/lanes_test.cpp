@@ -10,6 +10,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/random_chain.hpp"
+#include "tests/support/robots.hpp"
 
 namespace kinship::inverse::lanes_test {
 namespace {
@@ -25,13 +26,6 @@ std::vector<kinematics::Chain> many_chains() {
       chains.push_back(test::random_chain(
           {.joints = joints, .length_m = length_m, .sliding_share = 0.3}, generator));
   return chains;
-}
-
-Eigen::VectorXd draw(const kinematics::Chain& chain, std::mt19937_64& generator) {
-  std::uniform_real_distribution<double> uniform(0, 1);
-  return Eigen::VectorXd::NullaryExpr(chain.dof(), [&](Eigen::Index j) {
-    return chain.lower()[j] + uniform(generator) * (chain.upper()[j] - chain.lower()[j]);
-  });
 }
 
 double pose_value(const Eigen::Isometry3d& T, int i) {
@@ -51,8 +45,9 @@ TEST(Lanes, TheCheckMeasuresWhatForwardKinematicsSay) {
       LaneCheck check;
       Eigen::Matrix<double, 2, kLanes> expected;
       for (int lane = 0; lane < kLanes; ++lane) {
-        const Eigen::VectorXd q = draw(chain, generator);
-        const Eigen::Isometry3d T = kinematics::T_base_transfer(chain, draw(chain, generator));
+        const Eigen::VectorXd q = test::random_configuration(chain, generator);
+        const Eigen::Isometry3d T =
+            kinematics::T_base_transfer(chain, test::random_configuration(chain, generator));
         const TaskError error =
             task_error(T, kinematics::T_base_transfer(chain, q), chain.task_axes());
         expected.col(lane) << error.head<3>().norm(), error.tail<3>().norm();
@@ -75,7 +70,7 @@ struct Descents {
       : chain(of), lanes(lane_chain(of)) {
     std::uniform_real_distribution<double> uniform(-off, off);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Eigen::VectorXd q = draw(chain, generator);
+      const Eigen::VectorXd q = test::random_configuration(chain, generator);
       const Eigen::Isometry3d T = kinematics::T_base_transfer(chain, q);
       for (int i = 0; i < 12; ++i)
         batch.target[i][lane] = pose_value(T, i) / (i < 9 ? 1 : lanes.length_m);

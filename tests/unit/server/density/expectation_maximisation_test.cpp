@@ -139,21 +139,6 @@ TEST(Expectation, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(Expectation, InstructionSetsDifferByRoundingOnly) {
-  const Example example = random_points(7, 3000);
-  const Mixture start = uneven_start(example, 30);
-  const Expectation baseline =
-      expectation(start, example.points, {.kernels = find_simd_kernels(InstructionSet::Baseline)});
-  for (const InstructionSet set : {InstructionSet::Avx2, InstructionSet::Avx512}) {
-    const SimdKernels* kernels = find_simd_kernels(set);
-    if (kernels == nullptr)
-      continue;
-    const Expectation other = expectation(start, example.points, {.kernels = kernels});
-    EXPECT_NEAR(other.mean_log_likelihood, baseline.mean_log_likelihood, 1e-11);
-    EXPECT_LT((other.moments.sums - baseline.moments.sums).cwiseAbs().maxCoeff(), 1e-9);
-  }
-}
-
 /// The log-likelihoods that scikit-learn 1.2.1 finds (GaussianMixture, reg_covar 1e-4, tol 0, the
 /// same start) after 1 and 7 iterations.
 TEST(ExpectationMaximisation, EqualsScikitLearns) {

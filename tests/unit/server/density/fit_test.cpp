@@ -50,14 +50,6 @@ std::string refusal(const Eigen::MatrixXd& configurations, const Eigen::VectorXd
   return result ? "accepted" : result.error().message;
 }
 
-void expect_same_mixture(const Mixture& a, const Mixture& b, double tolerance) {
-  ASSERT_EQ(a.size(), b.size());
-  EXPECT_LT((a.weights() - b.weights()).cwiseAbs().maxCoeff(), tolerance);
-  EXPECT_LT((a.means() - b.means()).cwiseAbs().maxCoeff(), tolerance);
-  for (std::size_t k = 0; k < a.covariances().size(); ++k)
-    EXPECT_LT((a.covariances()[k] - b.covariances()[k]).cwiseAbs().maxCoeff(), tolerance);
-}
-
 TEST(FitMixture, RecoversAKnownMixture) {
   const Mixture known = known_mixture();
   const Mixture fitted = fit(draws_of(known, 20'000), {.components = 3, .tolerance = 1e-6}).mixture;
@@ -92,15 +84,6 @@ TEST(FitMixture, SameSeedSameBytesAnotherSeedAnotherStart) {
   EXPECT_NE(first.means(), other.means());
 }
 
-TEST(FitMixture, ConfigurationsWithoutWeightDoNotCount) {
-  Eigen::MatrixXd configurations = draws_of(known_mixture(), 1000);
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(1000);
-  weights.tail(100).setZero();
-  const FitOptions options{.components = 6};
-  expect_same_mixture(fit_mixture(configurations, weights, options)->mixture,
-                      fit(configurations.leftCols(900), options).mixture, 1e-12);
-}
-
 TEST(FitMixture, ComponentsAreLimitedByTheDistinctConfigurations) {
   EXPECT_LE(fit(draws_of(known_mixture(), 60), {.components = 50}).mixture.size(), 10);
   const Eigen::MatrixXd repeated = draws_of(known_mixture(), 10).replicate(1, 100);
@@ -108,19 +91,10 @@ TEST(FitMixture, ComponentsAreLimitedByTheDistinctConfigurations) {
   EXPECT_EQ(fit(draws_of(known_mixture(), 3), {.components = 50}).mixture.size(), 1);
 }
 
-TEST(FitMixture, ConstantJointAndCollinearConfigurationsGetTheFloor) {
+TEST(FitMixture, AConstantJointGetsTheFloor) {
   Eigen::MatrixXd constant = draws_of(known_mixture(), 500);
   constant.row(1).setConstant(0.7);
-  const Mixture flat = fit(constant, {.components = 3}).mixture;
-  EXPECT_TRUE((flat.means().row(1).array() - 0.7).abs().maxCoeff() < 1e-12);
-  EXPECT_NEAR(flat.covariances()[0](1, 1), 1e-4, 1e-12);
-
-  Eigen::MatrixXd collinear = draws_of(known_mixture(), 500);
-  collinear.row(1) = 3 * collinear.row(0);
-  EXPECT_TRUE(kinship::mixture::log_density(fit(collinear, {.components = 3}).mixture, collinear)
-                  .array()
-                  .isFinite()
-                  .all());
+  EXPECT_NEAR(fit(constant, {.components = 3}).mixture.covariances()[0](1, 1), 1e-4, 1e-12);
 }
 
 TEST(FitMixture, DegenerateConfigurationsWithoutFloorAreRefused) {

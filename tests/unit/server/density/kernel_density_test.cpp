@@ -132,24 +132,6 @@ TEST(KernelDensity, WeighsItsKernelsAsTheConfigurations) {
   EXPECT_NEAR(mixture.weights().sum(), 1, 1e-12);
 }
 
-TEST(KernelDensity, RepetitionIsWeightAndOrderIsNothing) {
-  const Eigen::MatrixXd points = normal_points(3, 60);
-  const KernelDensityOptions options = options_for(points);
-  Eigen::VectorXd doubled = Eigen::VectorXd::Ones(60);
-  doubled[11] = 2;
-  const KernelDensity weighted = estimate_kernel_density(points, doubled, options).value_or_throw();
-
-  Eigen::MatrixXd repeated(3, 61);
-  repeated << points.col(11), points;
-  KernelDensityOptions of_repeated = options;
-  of_repeated.path_of_configuration.insert(of_repeated.path_of_configuration.begin(), 1);
-  const KernelDensity again = estimate(repeated, of_repeated);
-  EXPECT_EQ(again.bandwidth, weighted.bandwidth);
-  EXPECT_EQ(again.mixture.means(), weighted.mixture.means());
-  EXPECT_TRUE(again.mixture.weights().isApprox(weighted.mixture.weights(), 1e-14));
-  EXPECT_TRUE(again.mixture.covariance(0).isApprox(weighted.mixture.covariance(0), 1e-12));
-}
-
 TEST(KernelDensity, ManyConfigurationsAreSampledByWeight) {
   const Eigen::MatrixXd points = normal_points(3, 9000);
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(9000);
@@ -167,20 +149,6 @@ TEST(KernelDensity, ManyConfigurationsAreSampledByWeight) {
   other_seed.seed = 1;
   EXPECT_EQ(estimate_kernel_density(points, weights, options)->mixture.means(), mixture.means());
   EXPECT_NE(estimate_kernel_density(points, weights, other_seed)->mixture.means(), mixture.means());
-}
-
-TEST(KernelDensity, BytesDoNotDependOnThreads) {
-  const Eigen::MatrixXd points = normal_points(4, 800);
-  KernelDensityOptions options = options_for(points, 20);
-  const KernelDensity one = estimate(points, options);
-  for (const int threads : {2, 3}) {
-    options.computation.threads = threads;
-    const KernelDensity several = estimate(points, options);
-    EXPECT_EQ(several.held_out_score, one.held_out_score);
-    EXPECT_EQ(several.bandwidth, one.bandwidth);
-    EXPECT_EQ(several.mixture.means(), one.mixture.means());
-    EXPECT_EQ(several.mixture.covariances(), one.mixture.covariances());
-  }
 }
 
 TEST(KernelDensity, WithAPathTheBandwidthIsARuleAndWithTwoItIsMeasured) {

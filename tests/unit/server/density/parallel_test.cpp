@@ -100,11 +100,5 @@ TEST(ForEachPart, KeepsItsThreads) {
   EXPECT_EQ(seen.size(), kThreads);
 }
 
-TEST(ForEachPart, APartMayHavePartsItself) {
-  std::atomic<int> done = 0;
-  for_each_part(3, 5, [&](int /*part*/) { for_each_part(3, 7, [&](int /*inner*/) { ++done; }); });
-  EXPECT_EQ(done, 35);
-}
-
 }  // namespace
 }  // namespace kinship::density::parallel_test

@@ -153,23 +153,6 @@ TEST(ShapeTracker, TakesAPostureLikeTheSources) {
   EXPECT_LT(mean_distance({.tracks = 10}), 0.5 * chosen);  // and pulled
 }
 
-TEST(ShapeTracker, EndsWhereAFilterSaysNo) {
-  const Filters filters{.self = test::one_by_one([](const auto& q) { return q[0] > 1; }),
-                        .scene = {}};
-  const Tracking all(kSource, kTarget, {.least_coverage = 0});
-  const Tracking some(kSource, kTarget, {.least_coverage = 0}, filters);
-  const auto lowest = [](const Tracking& run) {
-    double value = 10;
-    for (const Track& track : run.tracks)
-      value = std::min(value, track.configurations.row(0).minCoeff());
-    return value;
-  };
-  EXPECT_LT(lowest(all), 1);
-  EXPECT_GT(lowest(some), 1);
-  EXPECT_GT(some.counted.self_collisions(), 0U);
-  EXPECT_EQ(some.counted.scene_collisions(), 0U);
-}
-
 /// Filters are asked about several poses of an extension at once, whichever way it goes.
 TEST(ShapeTracker, NoTrackHoldsWhatAFilterRejects) {
   const Tracking all(kSource, kTarget, {.least_coverage = 0});
@@ -190,13 +173,6 @@ TEST(ShapeTracker, NoTrackHoldsWhatAFilterRejects) {
         }
       }
   EXPECT_GT(cut, 50U);
-}
-
-TEST(ShapeTracker, DependsOnSeedAndPathOnly) {
-  const Tracking one(kSource, kTarget), same(kSource, kTarget);
-  ASSERT_EQ(one.tracks.size(), same.tracks.size());
-  for (std::size_t i = 0; i < one.tracks.size(); ++i)
-    EXPECT_EQ(one.tracks[i].configurations, same.tracks[i].configurations);
 }
 
 TEST(TransferWithTracks, ConfigurationsOfAPoseStandInTheOrderOfTheTracks) {
