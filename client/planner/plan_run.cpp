@@ -214,7 +214,7 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());
   ServerLine server(
-      options, robot.description,
+      options, robot,
       [&robot] { return collision::fit_robot(robot.chain, robot.shapes); }, streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";

@@ -163,19 +163,14 @@ Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& /*uri*
   return std::optional<Eigen::Matrix3Xd>();
 }
 
-Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
-                                const MeshSource& meshes) {
-  std::string complaints;
-  const auto model = kinematics::parse_urdf(description.urdf, &complaints);
-  if (!model)
-    return model.error();
+Result<RobotShapes> read_shapes(const kinematics::RobotModel& robot, const MeshSource& meshes) {
   // urdfdom goes on without the element that it cannot read: a solid must not vanish like that.
-  if (complaints.find("collision element") != std::string::npos)
-    return invalid_input("URDF: " + complaints);
-  auto links = read_links(**model, chain, meshes);
+  if (robot.urdf.complaints.find("collision element") != std::string::npos)
+    return invalid_input("URDF: " + robot.urdf.complaints);
+  auto links = read_links(*robot.urdf.tree, robot.chain, meshes);
   if (!links)
     return links.error();
-  auto pairs = read_pairs(description, chain);
+  auto pairs = read_pairs(robot.description, robot.chain);
   if (!pairs)
     return pairs.error();
   return RobotShapes{fuse_capsules(links->shapes), *std::move(pairs), links->left_out,

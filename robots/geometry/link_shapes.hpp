@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "proto/types/scene.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::geometry {
 
@@ -46,14 +45,14 @@ Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri);
 /// A MeshSource for callers with the URDF's text only: it leaves every mesh out of the shapes.
 Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
 
-/// Reads the collision elements of a description's URDF for the links of its chain: boxes,
+/// Reads the collision elements of a robot's URDF for the links of its chain: boxes,
 /// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule; a
 /// mesh keeps its triangles, with the URDF's scale, in the box or capsule of fit_shape around them.
 /// Shapes come in the order of the links; a link paired with itself is left out.
 /// \return InvalidInput with the link named for a size that is not finite and positive, a mesh
-///         scaled by 0 or without area, or a pair that names no link; the error of parse_urdf; the
-///         error of `meshes`, with the link named.
-Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
+///         scaled by 0 or without area, or a pair that names no link; a collision element that
+///         the parser left out; the error of `meshes`, with the link named.
+Result<RobotShapes> read_shapes(const kinematics::RobotModel& robot,
                                 const MeshSource& meshes = refuse_mesh);
 
 }  // namespace kinship::geometry

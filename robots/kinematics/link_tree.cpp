@@ -202,21 +202,14 @@ Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf) {
   const Result<UrdfModel> model = parse_urdf(urdf);
   if (!model)
     return model.error();
-  std::vector<urdf::LinkConstSharedPtr> found = {(*model)->getRoot()};
-  std::vector<TreeLink> tree = {read_link_of(**model, *found[0], -1)};
+  std::vector<urdf::LinkConstSharedPtr> found = {model->tree->getRoot()};
+  std::vector<TreeLink> tree = {read_link_of(*model->tree, *found[0], -1)};
   for (std::size_t i = 0; i < found.size(); ++i)
     for (const auto& joint : found[i]->child_joints) {
-      found.push_back((*model)->getLink(joint->child_link_name));
-      tree.push_back(read_link_of(**model, *found.back(), static_cast<int>(i)));
+      found.push_back(model->tree->getLink(joint->child_link_name));
+      tree.push_back(read_link_of(*model->tree, *found.back(), static_cast<int>(i)));
     }
   return tree;
-}
-
-Result<std::string> read_robot_name(const std::string& urdf) {
-  const Result<UrdfModel> model = parse_urdf(urdf);
-  if (!model)
-    return model.error();
-  return (*model)->getName();
 }
 
 std::vector<ChainEnds> suggest_ends(const std::vector<TreeLink>& tree) {

@@ -36,9 +36,6 @@ struct TreeLink {
 /// \return the error of parse_urdf() for any other text.
 Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf);
 
-/// The robot's name in a URDF. \return the error of parse_urdf() for any other text.
-Result<std::string> read_robot_name(const std::string& urdf);
-
 /// Base and tip links that make an arm of a tree.
 struct ChainEnds {
   std::vector<std::string> bases;  ///< no joint of its own between them; the likeliest first

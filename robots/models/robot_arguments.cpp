@@ -11,7 +11,6 @@
 #include "proto/types/pose.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/geometry/visual_solids.hpp"
-#include "robots/kinematics/urdf.hpp"
 #include "robots/models/mesh_files.hpp"
 #include "robots/models/model_folder.hpp"
 #include "robots/models/text_file.hpp"
@@ -90,14 +89,14 @@ std::string stranger_warning(const std::filesystem::path& srdf,
 }
 
 /// \throws Failure with the fault.
-void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
-               std::vector<std::string>& warnings) {
+void add_pairs(const std::filesystem::path& srdf, DescribedRobot& robot) {
   const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
   if (const auto error = check_expanded(srdf, text, ".srdf"))
     throw Failure(*error);
-  const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  kinematics::RobotModel model = kinematics::read_model(robot.description).value_or_throw();
+  robot.urdf = std::move(model.urdf);
   std::vector<geometry::SrdfStranger> strangers;
-  const auto pairs = geometry::read_srdf(text, chain, &strangers);
+  const auto pairs = geometry::read_srdf(text, model.chain, &strangers);
   if (!pairs)
     throw Failure(pairs.error().code, srdf.string() + ": " + pairs.error().message);
   if (pairs->empty() && strangers.empty())
@@ -106,8 +105,8 @@ void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
                       ": has no disable_collisions element, so it says nothing of this robot; "
                       "'kinship robots suggest-srdf' makes one that does");
   for (const geometry::SrdfStranger& stranger : strangers)
-    warnings.push_back(stranger_warning(srdf, stranger));
-  auto& all = description.never_colliding;
+    robot.warnings.push_back(stranger_warning(srdf, stranger));
+  auto& all = robot.description.never_colliding;
   all.insert(all.end(), pairs->begin(), pairs->end());
   if (all.size() > kMaxCollisionPairs)
     throw Failure(ErrorCode::TooLarge,
@@ -116,11 +115,12 @@ void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
 }
 
 /// \throws Failure with the fault.
-RobotDescription put_together(const RobotArguments& arguments, std::vector<std::string>& warnings) {
+DescribedRobot put_together(const RobotArguments& arguments) {
   std::error_code unreadable;  // is for read_urdf_file to tell
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
-  RobotDescription description = is_folder ? read_model_folder(arguments.source).value_or_throw()
-                                           : read_urdf_file(arguments.source);
+  DescribedRobot robot{is_folder ? read_model_folder(arguments.source).value_or_throw()
+                                 : read_urdf_file(arguments.source)};
+  RobotDescription& description = robot.description;
   if (!is_folder && (arguments.base_link.empty() || arguments.tip_link.empty()))
     throw Failure(
         ErrorCode::InvalidInput,
@@ -145,8 +145,8 @@ RobotDescription put_together(const RobotArguments& arguments, std::vector<std::
   for (const std::string& held : arguments.held)
     add_held_joint(held, description);
   if (!arguments.srdf.empty())
-    add_pairs(arguments.srdf, description, warnings);
-  return description;
+    add_pairs(arguments.srdf, robot);
+  return robot;
 }
 
 }  // namespace
@@ -172,17 +172,16 @@ bool says_transfer(const RobotArguments& arguments) {
   return !arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable);
 }
 
-Result<RobotDescription> describe_robot(const RobotArguments& arguments,
-                                        std::vector<std::string>* warnings) {
+Result<DescribedRobot> describe_robot(const RobotArguments& arguments) {
   try {
-    std::vector<std::string> said;
-    RobotDescription description = put_together(arguments, said);
-    if (warnings != nullptr)
-      *warnings = std::move(said);
-    return description;
+    return put_together(arguments);
   } catch (const Failure& failure) {
     return failure.error();
   }
+}
+
+Result<kinematics::RobotModel> read_model(DescribedRobot robot) {
+  return kinematics::read_model(std::move(robot.description), std::move(robot.urdf));
 }
 
 }  // namespace kinship::models

@@ -109,7 +109,7 @@ inline std::vector<Robot> robots(Random& random) {
        {"panda", "iiwa7", "iiwa14", "ur10e", "sawyer", "sara_like", "planar_5r_a", "planar_7r_c"}) {
     const kinematics::Chain chain = model_chain(name);
     all.push_back(
-        {name, chain, geometry::read_shapes(model_description(name), chain).value_or_throw()});
+        {name, chain, geometry::read_shapes(robot_model(name)).value_or_throw()});
   }
   for (const double sliding_share : {0.0, 0.0, 0.4, 0.4})
     all.push_back(random_robot(6, sliding_share, random));

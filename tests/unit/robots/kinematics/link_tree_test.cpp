@@ -57,8 +57,6 @@ TEST(LinkTree, TellsJointsLimitsMimicsAndSolids) {
 
 TEST(LinkTree, SaysWhatIsWrongWithATextThatIsNone) {
   EXPECT_FALSE(read_link_tree("<robot"));
-  EXPECT_FALSE(read_robot_name("<robot"));
-  EXPECT_EQ(read_robot_name("<robot name='r2'><link name='a'/></robot>").value_or_throw(), "r2");
 }
 
 Urdf arm(int joints) {
