@@ -17,7 +17,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/edge_prover.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/models/scene_meshes.hpp"
+#include "robots/models/mesh_files.hpp"
 
 namespace kinship::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "proto/tables/table.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/gripping_joint.hpp"
+#include "robots/kinematics/link_tree.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/suggested_ends.hpp"
 

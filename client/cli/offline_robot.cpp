@@ -42,8 +42,8 @@ void print_warnings(const char* command, const std::vector<std::string>& warning
 }
 
 std::optional<kinematics::RobotModel> read_robot(const char* command,
-                                         const models::RobotArguments& arguments, std::ostream& err,
-                                         int& code) {
+                                                 const models::RobotArguments& arguments,
+                                                 std::ostream& err, int& code) {
   auto described = models::describe_robot(arguments);
   if (!described) {
     code = refuse(command, described.error(), err);

@@ -25,8 +25,8 @@ void print_warnings(const char* command, const std::vector<std::string>& warning
 /// if there is none: wrong usage if the arguments are wrong, failed if Kinship cannot use the
 /// robot.
 std::optional<kinematics::RobotModel> read_robot(const char* command,
-                                         const models::RobotArguments& arguments, std::ostream& err,
-                                         int& code);
+                                                 const models::RobotArguments& arguments,
+                                                 std::ostream& err, int& code);
 
 /// A robot's collision geometry: planning needs it, kinematics and the server do not.
 /// \return empty if it is not known here, with the reason on `err`.

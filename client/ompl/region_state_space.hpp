@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "robots/planning/constrained_stepper.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 namespace kinship::planning {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/geometry/mesh_cover.hpp"
-#include "robots/geometry/shape_rules.hpp"
 
 namespace kinship::geometry {
 namespace {

@@ -55,4 +55,22 @@ Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
 Result<RobotShapes> read_shapes(const kinematics::RobotModel& robot,
                                 const MeshSource& meshes = refuse_mesh);
 
+/// Tolerance of radii and centres for a cylinder and two spheres to count as one capsule, m.
+inline constexpr double kFusionTolerance_m = 1e-5;
+
+/// Replaces each cylinder that has a sphere of its radius at both ends, on the same link, by the
+/// capsule that the three make up, and drops the spheres. URDF has no capsule of its own. Two
+/// capsules may share an end sphere. The other shapes keep their order.
+std::vector<LinkShape> fuse_capsules(const std::vector<LinkShape>& shapes);
+
+/// Name of the collision elements that with_visual_solids() makes.
+inline constexpr const char* kFromVisual = "kinship:from_visual";
+
+/// The URDF with the visuals of every link without collision element copied as collision elements,
+/// with their origins.
+/// \param except  links that get none.
+/// \return InvalidInput for a text that is no XML with a `robot` element.
+Result<std::string> with_visual_solids(const std::string& urdf,
+                                       const std::vector<std::string>& except = {});
+
 }  // namespace kinship::geometry

@@ -38,8 +38,7 @@ Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   const MeshFiles files(is_folder ? arguments.source : arguments.source.parent_path(),
                         *std::move(packages));
-  auto read =
-      geometry::read_shapes(robot, [&](const std::string& uri) { return files.read(uri); });
+  auto read = geometry::read_shapes(robot, [&](const std::string& uri) { return files.read(uri); });
   if (!read)
     return read.error();
   geometry::RobotShapes shapes = *std::move(read);

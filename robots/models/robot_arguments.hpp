@@ -6,9 +6,19 @@
 #include <vector>
 
 #include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::models {
+
+inline constexpr std::string_view kChainFile = "chain.toml";
+inline constexpr std::string_view kUrdfFile = "robot.urdf";
+
+/// The robot of a folder with chain.toml and robot.urdf (README.md). The URDF is taken as text;
+/// kinematics::read_chain judges it.
+/// \return the description; NotFound if the folder or one of its files is missing; InvalidInput
+///         or TooLarge that names file, field and value otherwise.
+Result<RobotDescription> read_model_folder(const std::filesystem::path& folder);
 
 /// A robot as a command line names it: a model folder, or a URDF file with the missing data.
 /// Arguments beside a model folder replace the values of its chain.toml.

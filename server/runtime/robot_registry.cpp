@@ -73,12 +73,12 @@ RegisterReply RobotRegistry::register_robot(const Candidate& candidate, std::int
   if (auto refusal = refusal_of_known(robot, may_take))
     return *std::move(refusal);
   const bool is_in_memory = store_.is_shared() && find_in_memory(reply.robot) != nullptr;
-  const Result<RegisterStatus> status = is_in_memory
-                                            ? RegisterStatus::Known
-                                            : store_.register_robot({.digest = reply.robot,
-                                                                     .description = robot.description,
-                                                                     .dof = reply.dof,
-                                                                     .registered_ms = now_ms});
+  const Result<RegisterStatus> status =
+      is_in_memory ? RegisterStatus::Known
+                   : store_.register_robot({.digest = reply.robot,
+                                            .description = robot.description,
+                                            .dof = reply.dof,
+                                            .registered_ms = now_ms});
   if (!status)
     return refused(status.error());
   // Another client may have registered it meanwhile.
@@ -149,8 +149,10 @@ std::optional<RegisterReply> RobotRegistry::refusal_of_known(const kinematics::R
   // Registering its robot writes a damaged row anew, so its label still counts.
   const std::optional<std::string> label = known ? known.value()->label : listed_label(digest);
   if (!label) {
-    RegisterReply later = refused({known.error().code, "the label under which this robot is known "
-                                                       "cannot be read: " + known.error().message});
+    RegisterReply later = refused({known.error().code,
+                                   "the label under which this robot is known "
+                                   "cannot be read: " +
+                                       known.error().message});
     later.retry_after = kMended;
     return later;
   }
@@ -179,12 +181,13 @@ void RobotRegistry::take_geometry(const kinematics::RobotModel& robot, std::int6
     return;
   better.label = known.value()->label;
   better.geometry_revision = known.value()->geometry_revision + 1;
-  reply.took_geometry = store_.replace_geometry({.digest = reply.robot,
-                                                 .description = robot.description,
-                                                 .dof = static_cast<std::uint32_t>(robot.chain.dof()),
-                                                 .registered_ms = now_ms,
-                                                 .geometry_revision = better.geometry_revision,
-                                                 .geometry_ms = now_ms});
+  reply.took_geometry =
+      store_.replace_geometry({.digest = reply.robot,
+                               .description = robot.description,
+                               .dof = static_cast<std::uint32_t>(robot.chain.dof()),
+                               .registered_ms = now_ms,
+                               .geometry_revision = better.geometry_revision,
+                               .geometry_ms = now_ms});
   if (!reply.took_geometry)
     return;
   // A robot renamed or removed meanwhile is not kept; nor may one read before the write be.
@@ -307,15 +310,13 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot,
                  "robot " + robot.short_hex() + " is not known here; register it first"};
   const std::string name = "robot '" + record->description.label + "' (" + robot.short_hex() + ")";
   const bool is_same_text = candidate && candidate->description.urdf == record->description.urdf;
-  const Result<kinematics::RobotModel> model =
-      kinematics::read_model(std::move(record->description),
-                             is_same_text ? candidate->urdf : kinematics::UrdfModel());
+  const Result<kinematics::RobotModel> model = kinematics::read_model(
+      std::move(record->description), is_same_text ? candidate->urdf : kinematics::UrdfModel());
   if (!model)
     return Error{ErrorCode::Storage, name + " cannot be read any more: " + model.error().message};
   const Digest digest = model->chain.digest();
   if (digest != robot)
-    return Error{ErrorCode::Storage,
-                 name + " now reads as another robot, " + digest.short_hex()};
+    return Error{ErrorCode::Storage, name + " now reads as another robot, " + digest.short_hex()};
   Robot known = robot_of(*model);
   known.geometry_revision = record->geometry_revision;
   return keep(std::move(known), changes_before);

@@ -35,9 +35,8 @@ void Service::register_robot(RobotDescription description,
     if (const auto known = robots_.register_known(*robot, asked.may_take))
       return announce_registered(asked, *known);
     begin(short_task_pool_, registration, [this, registration, robot] {
-      announce_registered(*registration,
-                          robots_.register_robot(*robot, options_.clock.unix_ms(),
-                                                 registration->may_take));
+      announce_registered(*registration, robots_.register_robot(*robot, options_.clock.unix_ms(),
+                                                                registration->may_take));
     });
   });
 }

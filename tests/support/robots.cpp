@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "robots/models/model_folder.hpp"
+#include "robots/models/robot_arguments.hpp"
 #include "tests/support/places.hpp"
 
 namespace kinship::test {

@@ -42,8 +42,7 @@ TEST_P(Model, IsFreeWhereItStandsReady) {
 class ModelOfCapsules : public Model {};
 
 TEST_P(ModelOfCapsules, HasCapsules) {
-  const auto shapes =
-      geometry::read_shapes(test::robot_model(GetParam()));
+  const auto shapes = geometry::read_shapes(test::robot_model(GetParam()));
   ASSERT_TRUE(shapes);
   EXPECT_TRUE(std::any_of(shapes->shapes.begin(), shapes->shapes.end(), [](const auto& shape) {
     return std::holds_alternative<CapsuleShape>(shape.shape);

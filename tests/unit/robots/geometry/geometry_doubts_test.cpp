@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "robots/geometry/visual_solids.hpp"
+#include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "robots/geometry/shape_rules.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
 
