@@ -9,7 +9,6 @@
 #include "client/c/handles.hpp"
 #include "proto/types/task_axes.hpp"
 #include "robots/collision/fitted_links.hpp"
-#include "robots/kinematics/urdf.hpp"
 #include "robots/models/loaded_robot.hpp"
 
 namespace kinship::c_library {
@@ -86,22 +85,21 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   return arguments;
 }
 
-/// The description with solids around its meshes, if it has any.
-RobotDescription read_file(const kinship_robot_file& given) {
+/// With solids around its meshes, if it has any.
+kinematics::RobotModel read_file(const kinship_robot_file& given) {
   models::LoadedRobot robot = read_robot_file(given);
   robot.description.mesh_solids =
       collision::fit_robot(robot.chain, robot.shapes).value_or_throw().mesh_solids;
-  return std::move(robot.description);
+  return robot;
 }
 
-kinship_code register_with(link::Client& line, const RobotDescription& description,
+kinship_code register_with(link::Client& line, const kinematics::RobotModel& model,
                            kinship_robot& robot, size_t* dof) {
-  const auto chain = kinematics::read_chain(description).value_or_throw();
-  const Digest digest = chain.digest();
+  const Digest digest = model.chain.digest();
   std::ranges::copy(digest.bytes, robot.digest);
   if (dof != nullptr)
-    *dof = static_cast<size_t>(chain.dof());
-  const auto reply = line.register_robot(description);
+    *dof = static_cast<size_t>(model.chain.dof());
+  const auto reply = line.register_robot(model);
   if (!reply)
     return remember(reply.error());
   return reply->status == RegisterStatus::Refused ? remember(KINSHIP_REFUSED, reply->message)
@@ -112,16 +110,16 @@ kinship_code register_with(link::Client& line, const RobotDescription& descripti
 
 models::LoadedRobot read_robot_file(const kinship_robot_file& given) {
   const models::RobotArguments arguments = read_file_arguments(given);
-  std::vector<std::string> warnings;
-  RobotDescription description = models::describe_robot(arguments, &warnings).value_or_throw();
+  models::DescribedRobot described = models::describe_robot(arguments).value_or_throw();
+  RobotDescription& description = described.description;
   if (given.T_tip_transfer != nullptr)
     description.T_tip_transfer = read_pose(given.T_tip_transfer, "file->T_tip_transfer");
   for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
     description.held_joints[joint] = value;
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  geometry::RobotShapes shapes =
-      models::load_shapes(arguments, description, chain).value_or_throw();
-  return {std::move(description), std::move(chain), std::move(shapes), std::move(warnings)};
+  std::vector<std::string> warnings = std::move(described.warnings);
+  kinematics::RobotModel model = models::read_model(std::move(described)).value_or_throw();
+  geometry::RobotShapes shapes = models::load_shapes(arguments, model).value_or_throw();
+  return {std::move(model), std::move(shapes), std::move(warnings)};
 }
 
 }  // namespace kinship::c_library
@@ -133,7 +131,10 @@ kinship_code kinship_register(kinship_client* client, const kinship_robot_descri
   return guarded([&] {
     require(client, "client");
     require(robot, "robot");
-    return register_with(client->line, read_description(read_structure(description, "description")),
+    return register_with(client->line,
+                         kinship::kinematics::read_model(
+                             read_description(read_structure(description, "description")))
+                             .value_or_throw(),
                          *robot, dof);
   });
 }

@@ -17,7 +17,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/edge_prover.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/models/scene_meshes.hpp"
+#include "robots/models/mesh_files.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -43,7 +43,7 @@ void print_forward(const ForwardAnswer& answer, bool json, std::ostream& out) {
 
 /// The world that solutions must not touch, or come near to, as kinship-plan has it.
 struct CheckedWorld {
-  CheckedWorld(const DescribedRobot& robot, const geometry::RobotShapes& shapes,
+  CheckedWorld(const kinematics::RobotModel& robot, const geometry::RobotShapes& shapes,
                const collision::Surroundings& surroundings)
       : world(robot.chain, shapes, surroundings), prover(world) {}
   collision::CollisionWorld world;
@@ -116,11 +116,11 @@ Result<collision::Surroundings> read_surroundings(const InverseCommandOptions& o
 
 /// The world not to be touched; none unless it was asked for, or with an exit code in `code`.
 std::unique_ptr<CheckedWorld> make_world(const InverseCommandOptions& options,
-                                         const DescribedRobot& robot, std::ostream& err,
+                                         const kinematics::RobotModel& robot, std::ostream& err,
                                          int& code) {
   if (!options.collision_free)
     return nullptr;
-  const auto geometry = read_geometry(kInverse, options.robot, robot.description, err);
+  const auto geometry = read_geometry(kInverse, options.robot, robot, err);
   if (!geometry) {
     code = kFailed;
     return nullptr;

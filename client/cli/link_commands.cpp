@@ -14,7 +14,7 @@
 #include "proto/tables/table.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/gripping_joint.hpp"
+#include "robots/kinematics/link_tree.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/suggested_ends.hpp"
 
@@ -54,7 +54,7 @@ std::vector<PossibleEnds> possible_ends(const std::vector<kinematics::ChainEnds>
 struct LookedAt {
   models::RobotArguments arguments;
   models::LinksOfFile links;
-  DescribedRobot robot;
+  kinematics::RobotModel robot;
 };
 
 std::optional<LookedAt> look_at(const char* command, models::RobotArguments arguments,
@@ -121,7 +121,7 @@ RobotLinks describe_links(const LookedAt& looked_at,
                    .has_geometry = geometry.has_value(),
                    .unchecked = {},
                    .mobile_base = kinematics::describe_mobile_base(looked_at.links.tree)};
-  const auto held = kinematics::held_values(looked_at.robot.description).value_or_throw();
+  const auto held = kinematics::held_values(looked_at.robot);
   for (std::size_t i = 0; i < looked_at.links.tree.size(); ++i)
     links.links.push_back(row_of(looked_at, i, held));
   if (geometry)
@@ -336,8 +336,7 @@ int list_links(const LinksOptions& options, std::ostream& out, std::ostream& err
     return kDone;
   }
   const LookedAt looked_at{std::move(arguments), *std::move(tree), *std::move(robot)};
-  const auto geometry =
-      read_geometry(kLinks, looked_at.arguments, looked_at.robot.description, err);
+  const auto geometry = read_geometry(kLinks, looked_at.arguments, looked_at.robot, err);
   const RobotLinks links = describe_links(looked_at, geometry);
   if (options.json)
     out << json::to_json(links) << '\n';

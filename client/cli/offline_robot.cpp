@@ -7,7 +7,6 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
-#include "robots/kinematics/urdf.hpp"
 #include "robots/models/loaded_robot.hpp"
 
 namespace kinship::cli {
@@ -42,33 +41,29 @@ void print_warnings(const char* command, const std::vector<std::string>& warning
     err << command << ": warning: " << warning << '\n';
 }
 
-std::optional<DescribedRobot> read_robot(const char* command,
-                                         const models::RobotArguments& arguments, std::ostream& err,
-                                         int& code) {
-  std::vector<std::string> warnings;
-  auto description = models::describe_robot(arguments, &warnings);
-  if (!description) {
-    code = refuse(command, description.error(), err);
+std::optional<kinematics::RobotModel> read_robot(const char* command,
+                                                 const models::RobotArguments& arguments,
+                                                 std::ostream& err, int& code) {
+  auto described = models::describe_robot(arguments);
+  if (!described) {
+    code = refuse(command, described.error(), err);
     return std::nullopt;
   }
-  print_warnings(command, warnings, err);
-  auto chain = kinematics::read_chain(*description);
-  if (!chain) {
-    refuse(command, chain.error(), err);
+  print_warnings(command, described->warnings, err);
+  auto robot = models::read_model(*std::move(described));
+  if (!robot) {
+    refuse(command, robot.error(), err);
     code = kFailed;
     return std::nullopt;
   }
-  return DescribedRobot{*std::move(description), *std::move(chain)};
+  return *std::move(robot);
 }
 
 std::optional<geometry::RobotShapes> read_geometry(const char* command,
                                                    const models::RobotArguments& arguments,
-                                                   const RobotDescription& description,
+                                                   const kinematics::RobotModel& robot,
                                                    std::ostream& err) {
-  const auto chain = kinematics::read_chain(description);
-  if (!chain)
-    return std::nullopt;
-  auto shapes = models::load_shapes(arguments, description, *chain);
+  auto shapes = models::load_shapes(arguments, robot);
   if (shapes)
     return *std::move(shapes);
   err << command << ": without collision geometry: " << shapes.error().message << '\n';

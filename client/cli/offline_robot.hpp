@@ -8,20 +8,14 @@
 
 #include "proto/types/result.hpp"
 #include "proto/types/robot_check.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/inverse/solver.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 /// A robot of the command line, without a server.
 namespace kinship::cli {
-
-struct DescribedRobot {
-  RobotDescription description;
-  kinematics::Chain chain;
-};
 
 /// Prints the warnings of reading a robot's files, a line each.
 void print_warnings(const char* command, const std::vector<std::string>& warnings,
@@ -30,16 +24,15 @@ void print_warnings(const char* command, const std::vector<std::string>& warning
 /// The robot that the arguments describe, its warnings on `err`. Empty with an exit code in `code`
 /// if there is none: wrong usage if the arguments are wrong, failed if Kinship cannot use the
 /// robot.
-std::optional<DescribedRobot> read_robot(const char* command,
-                                         const models::RobotArguments& arguments, std::ostream& err,
-                                         int& code);
+std::optional<kinematics::RobotModel> read_robot(const char* command,
+                                                 const models::RobotArguments& arguments,
+                                                 std::ostream& err, int& code);
 
 /// A robot's collision geometry: planning needs it, kinematics and the server do not.
-/// \return empty if it is not known here, with the reason on `err`, except for a description that
-///         is no chain.
+/// \return empty if it is not known here, with the reason on `err`.
 std::optional<geometry::RobotShapes> read_geometry(const char* command,
                                                    const models::RobotArguments& arguments,
-                                                   const RobotDescription& description,
+                                                   const kinematics::RobotModel& robot,
                                                    std::ostream& err);
 
 /// T_task_base of a --placement; empty if the text is.

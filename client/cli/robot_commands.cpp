@@ -15,8 +15,8 @@
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/tables/table.hpp"
 #include "proto/types/number_text.hpp"
-#include "robots/collision/always_touching.hpp"
 #include "robots/collision/fitted_links.hpp"
+#include "robots/collision/pair_sampling.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/geometry_doubts.hpp"
 #include "robots/geometry/link_shapes.hpp"
@@ -41,13 +41,13 @@ void warn_of_geometry(const char* command, const kinematics::Chain& chain,
 
 /// Tells the server of the meshes that are here, or `err` why not.
 void add_mesh_solids(const char* command, const models::RobotArguments& arguments,
-                     RobotDescription& description, std::ostream& err) {
-  const auto geometry = read_geometry(command, arguments, description, err);
+                     const kinematics::RobotModel& robot, RobotDescription& description,
+                     std::ostream& err) {
+  const auto geometry = read_geometry(command, arguments, robot, err);
   if (!geometry)
     return;
-  const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  warn_of_geometry(command, chain, *geometry, err);
-  auto fitted = collision::fit_robot(chain, *geometry);
+  warn_of_geometry(command, robot.chain, *geometry, err);
+  auto fitted = collision::fit_robot(robot.chain, *geometry);
   if (fitted)
     description.mesh_solids = std::move(fitted).value().mesh_solids;
   else
@@ -223,7 +223,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (!robot)
     return code;
   const kinematics::Chain& chain = robot->chain;
-  const auto geometry = read_geometry(kCommand, options.robot, robot->description, err);
+  const auto geometry = read_geometry(kCommand, options.robot, *robot, err);
   warn_without_transfer(kCommand, options.robot, robot->description, err);
   RobotCheck check;
   std::string geometry_words = "not known";
@@ -258,14 +258,14 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
 int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
                    std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "robots register";
-  std::vector<std::string> warnings;
-  auto described = models::describe_robot(arguments, &warnings);
+  auto described = models::describe_robot(arguments);
   if (!described)
     return refuse(kCommand, described.error(), err);
-  print_warnings(kCommand, warnings, err);
-  RobotDescription description = *std::move(described);
+  print_warnings(kCommand, described->warnings, err);
+  RobotDescription description = described->description;
   warn_without_transfer(kCommand, arguments, description, err);
-  add_mesh_solids(kCommand, arguments, description, err);
+  if (const auto robot = models::read_model(*std::move(described)))  // else the server says why not
+    add_mesh_solids(kCommand, arguments, *robot, description, err);
   const auto reply = server.register_robot(description);
   if (!reply)
     return refuse(kCommand, reply.error(), err);

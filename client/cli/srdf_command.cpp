@@ -125,18 +125,17 @@ int suggest_srdf(const SuggestSrdfOptions& options, std::ostream& out, std::ostr
   const auto robot = read_robot(kSuggestSrdf, arguments, err, code);
   if (!robot)
     return code;
-  const auto geometry = read_geometry(kSuggestSrdf, arguments, robot->description, err);
+  const auto geometry = read_geometry(kSuggestSrdf, arguments, *robot, err);
   if (!geometry)
     return kFailed;
   if (links->is_suggested)
     err << kSuggestSrdf << ": base and tip are suggested ones: --base " << robot->chain.base_link()
         << " --tip " << robot->chain.tip_link() << '\n';
   const SrdfSuggestion suggestion = suggest(options, robot->chain, *geometry, err);
-  auto name = kinematics::read_robot_name(robot->description.urdf);
   const bool has_file = !options.output.empty();
   if (has_file || !options.json) {
     files::OutputFile file(options.output, out);
-    file.stream() << srdf_of(std::move(name).value_or_throw(), suggestion);
+    file.stream() << srdf_of(kinematics::name_in_urdf(*robot), suggestion);
     file.keep();
   }
   if (options.json)

@@ -16,7 +16,6 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/unreached.hpp"
 #include "robots/planning/birrt.hpp"
-#include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/path_vertices.hpp"
@@ -26,7 +25,6 @@
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/repetition_roadmap.hpp"
 #include "robots/planning/shortcut.hpp"
-#include "robots/planning/start_configuration.hpp"
 
 namespace kinship::guided {
 namespace {

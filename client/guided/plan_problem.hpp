@@ -18,7 +18,7 @@
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
-#include "robots/planning/search_recorder.hpp"
+#include "robots/planning/tree.hpp"
 
 namespace kinship::guided {
 

@@ -89,6 +89,8 @@ struct Client::Line {
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
 
+  Result<RegisterReply> send(const RobotDescription& description);
+
   const dds::OwningProcess process;
   const milliseconds timeout;
   const Uuid client_id = Uuid::random();
@@ -126,11 +128,21 @@ Result<RegisterReply> Client::register_robot(const RobotDescription& description
     // An unreadable robot has no reports; the server names its fault.
     if (const auto chain = kinematics::read_chain(description))
       line_->outbox->keep_robot(chain->digest(), description);
-  const Clock::time_point deadline = Clock::now() + line_->timeout;
+  return line_->send(description);
+}
+
+Result<RegisterReply> Client::register_robot(const kinematics::RobotModel& robot) {
+  if (line_->outbox)
+    line_->outbox->keep_robot(robot.chain.digest(), robot.description);
+  return line_->send(robot.description);
+}
+
+Result<RegisterReply> Client::Line::send(const RobotDescription& description) {
+  const Clock::time_point deadline = Clock::now() + timeout;
   Result<RegisterReply> reply = ask_until_final<RegisterReply>(
-      deadline, line_->sleep, [&] { return line_->registering.call(description, deadline); });
-  if (line_->sender && reply && reply->status != RegisterStatus::Refused)
-    line_->sender->retry();
+      deadline, sleep, [&] { return registering.call(description, deadline); });
+  if (sender && reply && reply->status != RegisterStatus::Refused)
+    sender->retry();
   return reply;
 }
 

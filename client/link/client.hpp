@@ -16,6 +16,10 @@
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 
+namespace kinship::kinematics {
+struct RobotModel;
+}
+
 namespace kinship::link {
 
 struct ClientOptions {
@@ -52,6 +56,7 @@ class Client {
   /// \return the reply, or Unavailable if no server answered within the timeout.
   /// \throws Failure(Storage) if the outbox cannot be written.
   Result<RegisterReply> register_robot(const RobotDescription& description);
+  Result<RegisterReply> register_robot(const kinematics::RobotModel& robot);  ///< read before
 
   /// Puts the attempt into the outbox (durable on return) and wakes the sender.
   /// \throws Failure(InvalidInput) if the server would refuse it anyway; Failure(Storage) if the

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "robots/planning/birrt.hpp"
-#include "robots/planning/cbirrt2.hpp"
 
 namespace kinship::ompl_planners {
 

@@ -19,7 +19,7 @@
 #include "robots/collision/fitted_links.hpp"
 #include "robots/geometry/geometry_doubts.hpp"
 #include "robots/models/loaded_robot.hpp"
-#include "robots/models/scene_meshes.hpp"
+#include "robots/models/mesh_files.hpp"
 
 namespace kinship::planner {
 namespace {
@@ -213,8 +213,8 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());
   ServerLine server(
-      options, robot.description,
-      [&robot] { return collision::fit_robot(robot.chain, robot.shapes); }, streams.messages, stop);
+      options, robot, [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
+      streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};

@@ -24,10 +24,10 @@ guided::NoGuidance why_not(const Error& error) {
 
 }  // namespace
 
-ServerLine::ServerLine(const PlanOptions& options, RobotDescription description, FitRobot fit,
+ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot, FitRobot fit,
                        std::ostream& messages, const std::function<bool()>& stop)
     : options_(options),
-      description_(std::move(description)),
+      robot_(std::move(robot)),
       fit_(std::move(fit)),
       messages_(messages),
       stop_(stop) {
@@ -70,20 +70,20 @@ Result<Reply> ServerLine::wait_for(const std::function<Result<Reply>()>& call) {
 }
 
 Result<RegisterReply> ServerLine::send_description() {
-  return wait_for<RegisterReply>([this] { return client_->register_robot(description_); });
+  return wait_for<RegisterReply>([this] { return client_->register_robot(robot_); });
 }
 
 /// \return whether there are any, which were not there before.
 bool ServerLine::add_mesh_solids() {
-  if (!description_.mesh_solids.solids.empty())
+  if (!robot_.description.mesh_solids.solids.empty())
     return false;
   Result<collision::FittedRobot> fitted = fit_();
   if (!fitted)
-    messages_ << "robot '" << description_.label
+    messages_ << "robot '" << robot_.description.label
               << "': no solids around its meshes: " << fitted.error().message << '\n';
   else
-    description_.mesh_solids = std::move(fitted).value().mesh_solids;
-  return !description_.mesh_solids.solids.empty();
+    robot_.description.mesh_solids = std::move(fitted).value().mesh_solids;
+  return !robot_.description.mesh_solids.solids.empty();
 }
 
 void ServerLine::register_robot() {
@@ -93,7 +93,7 @@ void ServerLine::register_robot() {
       reply->geometry_grade < GeometryGrade::Approximate && add_mesh_solids())
     reply = send_description();
   if (reply && !reply->geometry.empty() && reply->geometry_grade != GeometryGrade::Exact)
-    messages_ << "robot '" << description_.label
+    messages_ << "robot '" << robot_.description.label
               << "', as the server filters for it: " << reply->geometry << '\n';
   trouble_.reset();
   is_robot_refused_ = reply && reply->status == RegisterStatus::Refused;
@@ -102,10 +102,10 @@ void ServerLine::register_robot() {
   else if (is_robot_refused_)
     trouble_ = Error{ErrorCode::InvalidInput, "the server refused it: " + reply->message};
   if (trouble_)
-    messages_ << "robot '" << description_.label << "' not registered: " << trouble_->message
+    messages_ << "robot '" << robot_.description.label << "' not registered: " << trouble_->message
               << '\n';
   else if (!reply->message.empty())
-    messages_ << "robot '" << description_.label << "': " << reply->message << '\n';
+    messages_ << "robot '" << robot_.description.label << "': " << reply->message << '\n';
 }
 
 /// \return nothing, or why the named robots cannot be the sources.

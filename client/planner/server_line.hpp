@@ -12,8 +12,8 @@
 #include "client/planner/plan_options.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "proto/types/attempt.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/collision/fitted_links.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::planner {
 
@@ -29,7 +29,7 @@ class ServerLine {
   ///                  geometry of the robot. Borrowed.
   /// \param messages  for people; borrowed.
   /// \param stop      called during waits for a server; true ends the wait. Borrowed.
-  ServerLine(const PlanOptions& options, RobotDescription description, FitRobot fit,
+  ServerLine(const PlanOptions& options, kinematics::RobotModel robot, FitRobot fit,
              std::ostream& messages, const std::function<bool()>& stop);
 
   /// Fetches guidance for every placement of the problems and writes the answers to `messages`.
@@ -67,7 +67,7 @@ class ServerLine {
   void flush();
 
   const PlanOptions options_;
-  RobotDescription description_;
+  kinematics::RobotModel robot_;
   const FitRobot fit_;
   std::ostream& messages_;
   const std::function<bool()>& stop_;

@@ -100,10 +100,10 @@ Eigen::MatrixXd draw_samples(const Distribution& distribution) {
 }
 
 models::LoadedRobot known_robot(const RobotDescription& description, std::string& shapes) {
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  geometry::KnownShapes known = geometry::read_known_shapes(description, chain).value_or_throw();
+  kinematics::RobotModel robot = kinematics::read_model(description).value_or_throw();
+  geometry::KnownShapes known = geometry::read_known_shapes(robot).value_or_throw();
   shapes = geometry::describe(known);
-  return {description, std::move(chain), std::move(known.shapes)};
+  return {std::move(robot), std::move(known.shapes)};
 }
 
 }  // namespace

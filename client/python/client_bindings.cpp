@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -117,17 +118,17 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
 }
 
 RegisterReply register_robot(const ClientHandle& client, const Robot& robot) {
-  RobotDescription description;
+  std::optional<kinematics::RobotModel> model;
   {
     const py::gil_scoped_release unlocked;  // solids are fitted around meshes
-    description = robot.description_for_server();
+    model = robot.model_for_server();
   }
-  const RegisterReply reply = client
-                                  .wait_for<Result<RegisterReply>>(
-                                      [description = std::move(description)](link::Client& line) {
-                                        return line.register_robot(description);
-                                      })
-                                  .value_or_throw();
+  const RegisterReply reply =
+      client
+          .wait_for<Result<RegisterReply>>([model = *std::move(model)](link::Client& line) {
+            return line.register_robot(model);
+          })
+          .value_or_throw();
   if (reply.status == RegisterStatus::Refused)
     raise_error("Refused", "robot '" + robot.description().label + "': " + reply.message);
   return reply;

@@ -30,25 +30,24 @@ int index_of_link(const Robot& robot, const std::string& name) {
 
 std::shared_ptr<Robot> Robot::load(const models::RobotArguments& arguments,
                                    std::vector<std::string>& warnings) {
-  RobotDescription description = models::describe_robot(arguments, &warnings).value_or_throw();
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  auto shapes = models::load_shapes(arguments, description, chain);
-  return std::make_shared<Robot>(std::move(description), std::move(chain), std::move(shapes));
+  models::DescribedRobot described = models::describe_robot(arguments).value_or_throw();
+  warnings = std::move(described.warnings);
+  kinematics::RobotModel model = models::read_model(std::move(described)).value_or_throw();
+  auto shapes = models::load_shapes(arguments, model);
+  return std::make_shared<Robot>(std::move(model), std::move(shapes));
 }
 
 std::shared_ptr<Robot> Robot::of_description(RobotDescription description) {
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  auto shapes = geometry::read_shapes(description, chain);
-  return std::make_shared<Robot>(std::move(description), std::move(chain), std::move(shapes));
+  kinematics::RobotModel model = kinematics::read_model(std::move(description)).value_or_throw();
+  auto shapes = geometry::read_shapes(model);
+  return std::make_shared<Robot>(std::move(model), std::move(shapes));
 }
 
-Robot::Robot(RobotDescription description, kinematics::Chain chain,
-             Result<geometry::RobotShapes> shapes)
-    : description_(std::move(description)),
-      chain_(std::move(chain)),
-      digest_(chain_.digest()),
+Robot::Robot(kinematics::RobotModel model, Result<geometry::RobotShapes> shapes)
+    : model_(std::move(model)),
+      digest_(chain().digest()),
       shapes_(std::move(shapes)),
-      solver_(chain_) {}
+      solver_(chain()) {}
 
 std::vector<Eigen::Isometry3d> Robot::poses(const Eigen::MatrixXd& qs,
                                             const std::string& frame) const {
@@ -59,9 +58,9 @@ std::vector<Eigen::Isometry3d> Robot::poses(const Eigen::MatrixXd& qs,
   std::vector<Eigen::Isometry3d> T_base_frames;
   T_base_frames.reserve(static_cast<std::size_t>(qs.cols()));
   for (const auto& q : qs.colwise())
-    T_base_frames.push_back(is_tip        ? kinematics::T_base_tip(chain_, q)
-                            : is_transfer ? kinematics::T_base_transfer(chain_, q)
-                                          : kinematics::link_poses(chain_, q)[link]);
+    T_base_frames.push_back(is_tip        ? kinematics::T_base_tip(chain(), q)
+                            : is_transfer ? kinematics::T_base_transfer(chain(), q)
+                                          : kinematics::link_poses(chain(), q)[link]);
   return T_base_frames;
 }
 
@@ -70,28 +69,28 @@ Eigen::MatrixXd Robot::inverse(const Eigen::Isometry3d& T_base_frame, const std:
   if (frame != kTip && frame != kTransfer)
     throw std::invalid_argument("frame '" + frame + "', must be " + kTip + " or " + kTransfer);
   const Eigen::Isometry3d T_base_tip =
-      frame == kTip ? T_base_frame : T_base_frame * chain_.T_tip_transfer().inverse();
+      frame == kTip ? T_base_frame : T_base_frame * chain().T_tip_transfer().inverse();
   return solver_.solve(T_base_tip, options).configurations;
 }
 
 std::shared_ptr<const guided::PlannedRobot> Robot::planned() const {
   if (!shapes_)
     throw Failure(shapes_.error());
-  if (const auto error = geometry::find_missing_solids(chain_, *shapes_))
+  if (const auto error = geometry::find_missing_solids(chain(), *shapes_))
     throw Failure(*error);
   const std::scoped_lock lock(mutex_);
   if (!planned_)
-    planned_ = std::make_shared<const guided::PlannedRobot>(chain_, *shapes_);
+    planned_ = std::make_shared<const guided::PlannedRobot>(chain(), *shapes_);
   return planned_;
 }
 
-RobotDescription Robot::description_for_server() const {
-  RobotDescription description = description_;
+kinematics::RobotModel Robot::model_for_server() const {
+  kinematics::RobotModel model = model_;
   if (!shapes_)
-    return description;
-  if (auto fitted = collision::fit_robot(chain_, *shapes_))
-    description.mesh_solids = std::move(fitted).value().mesh_solids;
-  return description;
+    return model;
+  if (auto fitted = collision::fit_robot(model.chain, *shapes_))
+    model.description.mesh_solids = std::move(fitted).value().mesh_solids;
+  return model;
 }
 
 }  // namespace kinship::python

@@ -9,10 +9,9 @@
 #include "client/guided/plan_problem.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/solver.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 namespace kinship::python {
@@ -22,19 +21,18 @@ class Robot {
  public:
   /// Loads a robot with its collision meshes, or with the reason why they cannot be read:
   /// kinematics and the server need none.
-  /// \throws Failure as models::describe_robot and kinematics::read_chain.
-  /// \param warnings  of models::describe_robot.
+  /// \throws Failure as models::describe_robot and kinematics::read_model.
+  /// \param warnings  of models::describe_robot().
   static std::shared_ptr<Robot> load(const models::RobotArguments& arguments,
                                      std::vector<std::string>& warnings);
 
   /// A robot of a server's or file's description, which has no files: its meshes are not known.
   static std::shared_ptr<Robot> of_description(RobotDescription description);
 
-  Robot(RobotDescription description, kinematics::Chain chain,
-        Result<geometry::RobotShapes> shapes);
+  Robot(kinematics::RobotModel model, Result<geometry::RobotShapes> shapes);
 
-  const RobotDescription& description() const noexcept { return description_; }
-  const kinematics::Chain& chain() const noexcept { return chain_; }
+  const RobotDescription& description() const noexcept { return model_.description; }
+  const kinematics::Chain& chain() const noexcept { return model_.chain; }
   const Digest& digest() const noexcept { return digest_; }
   const inverse::Solver& solver() const noexcept { return solver_; }
 
@@ -56,12 +54,11 @@ class Robot {
   /// Its collision geometry; to be called after planned(), which checks that it is known.
   const geometry::RobotShapes& shapes() const { return shapes_.value(); }
 
-  /// The description with solids around its known meshes, if any.
-  RobotDescription description_for_server() const;
+  /// The robot with solids around its known meshes, if any, in its description.
+  kinematics::RobotModel model_for_server() const;
 
  private:
-  RobotDescription description_;
-  kinematics::Chain chain_;
+  kinematics::RobotModel model_;
   Digest digest_;
   Result<geometry::RobotShapes> shapes_;
   inverse::Solver solver_;

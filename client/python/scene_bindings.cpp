@@ -13,7 +13,7 @@
 #include "proto/json/problem_json.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/problem.hpp"
-#include "robots/models/scene_meshes.hpp"
+#include "robots/models/mesh_files.hpp"
 
 namespace kinship::python {
 namespace {

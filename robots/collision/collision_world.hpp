@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "robots/collision/body.hpp"
-#include "robots/collision/body_pairs.hpp"
 #include "robots/collision/lane_world.hpp"
 #include "robots/collision/robot_solids.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "robots/collision/body_pairs.hpp"
+#include "robots/collision/body.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/motion_bounds.hpp"
 

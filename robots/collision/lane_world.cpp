@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include "proto/types/limits.hpp"
 #include "proto/types/turn.hpp"
 
 namespace kinship::collision {
+namespace {
+
+constexpr double kAlike = 1e-12;
+constexpr std::size_t kTried = 4;  // axes of so many boxes
+
+}  // namespace
 
 static_assert(kLaneJoints == kMaxDof);
 
@@ -171,6 +178,27 @@ LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const 
                         others_.data()};
   set.kernel(scene, question_, places_.empty() ? nullptr : places_.front().values);
   return {(question_.maybe | beyond) & asked, question_.surely & asked & ~beyond};
+}
+
+bool is_of_quarter_turns(const Eigen::Matrix3d& R) {
+  const Eigen::Array33d sizes = R.cwiseAbs().array();
+  return (sizes < kAlike || (sizes - 1).abs() < kAlike).all();
+}
+
+Eigen::Matrix3d common_axes(const std::vector<Eigen::Matrix3d>& axes) {
+  Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
+  std::ptrdiff_t most = 0;
+  for (std::size_t i = 0; i < std::min(kTried, axes.size()); ++i) {
+    const std::ptrdiff_t alike =
+        std::count_if(axes.begin(), axes.end(), [&](const Eigen::Matrix3d& other) {
+          return is_of_quarter_turns(axes[i].transpose() * other);
+        });
+    if (alike > most) {
+      most = alike;
+      best = axes[i];
+    }
+  }
+  return best;
 }
 
 }  // namespace kinship::collision

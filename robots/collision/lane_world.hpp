@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
 #include "robots/collision/body.hpp"
-#include "robots/collision/body_pairs.hpp"
 #include "robots/collision/lanes.hpp"
 #include "robots/kinematics/chain.hpp"
 
@@ -112,5 +112,13 @@ class LaneWorld {
   std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
   bool has_room_ = true;      // for all joints and bodies; else everything may collide
 };
+
+/// Whether a rotation maps axes to axes: a box turned by it is a box along the axes again.
+bool is_of_quarter_turns(const Eigen::Matrix3d& R);
+
+/// The axes along which most of some boxes lie, among the axes of the first few; the identity for
+/// none.
+/// \param axes  of each box, one per column.
+Eigen::Matrix3d common_axes(const std::vector<Eigen::Matrix3d>& axes);
 
 }  // namespace kinship::collision

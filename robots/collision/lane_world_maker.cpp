@@ -5,9 +5,8 @@
 #include <map>
 
 #include "proto/types/turn.hpp"
-#include "robots/collision/lane_layout.hpp"
 #include "robots/collision/lane_world.hpp"
-#include "robots/kinematics/axis_turns.hpp"
+#include "robots/kinematics/joint_motion.hpp"
 
 /// Makes a LaneWorld of a robot and its surroundings.
 namespace kinship::collision {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "robots/collision/always_touching.hpp"
+#include "robots/collision/pair_sampling.hpp"
 
 namespace kinship::collision {
 

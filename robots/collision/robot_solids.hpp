@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "robots/collision/body.hpp"
-#include "robots/collision/body_pairs.hpp"
 
 namespace kinship::collision {
 

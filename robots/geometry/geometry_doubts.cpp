@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "robots/geometry/shape_rules.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 
 namespace kinship::geometry {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/geometry/mesh_cover.hpp"
-#include "robots/geometry/shape_rules.hpp"
 
 namespace kinship::geometry {
 namespace {
@@ -63,16 +63,16 @@ GeometryGrade grade_of(const KnownShapes& known) {
 
 }  // namespace
 
-Result<KnownShapes> read_known_shapes(const RobotDescription& description,
-                                      const kinematics::Chain& chain) {
-  auto shapes = read_shapes(description, chain, leave_out_mesh);
+Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot) {
+  const MeshSolids& mesh_solids = robot.description.mesh_solids;
+  auto shapes = read_shapes(robot, leave_out_mesh);
   if (!shapes)
     return shapes.error();
   KnownShapes known;
   known.shapes = *std::move(shapes);
   const std::size_t pairs_before = known.shapes.never_colliding.size();
   std::set<int> covered;
-  if (const auto error = add_solids(description.mesh_solids, chain, known.shapes, covered))
+  if (const auto error = add_solids(mesh_solids, robot.chain, known.shapes, covered))
     return *error;
   std::erase_if(known.shapes.left_out, [&](int link) { return covered.contains(link); });
   std::set<int> with_shape;
@@ -85,7 +85,7 @@ Result<KnownShapes> read_known_shapes(const RobotDescription& description,
   known.exact_links = static_cast<int>(with_shape.size());
   known.approximate_links = static_cast<int>(covered.size());
   known.unknown_links = static_cast<int>(known.shapes.left_out.size());
-  known.mesh_solids = static_cast<int>(description.mesh_solids.solids.size());
+  known.mesh_solids = static_cast<int>(mesh_solids.solids.size());
   known.unfiltered_pairs = static_cast<int>(known.shapes.never_colliding.size() - pairs_before);
   known.grade = grade_of(known);
   return known;

@@ -4,9 +4,8 @@
 
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::geometry {
 
@@ -21,10 +20,9 @@ struct KnownShapes {
   GeometryGrade grade = GeometryGrade::None;
 };
 
-/// \return also the errors of read_shapes on the URDF; InvalidInput for mesh solids of a link that
+/// \return also the errors of read_shapes; InvalidInput for mesh solids of a link that
 ///         is missing or has no mesh, and for an invalid size or pair.
-Result<KnownShapes> read_known_shapes(const RobotDescription& description,
-                                      const kinematics::Chain& chain);
+Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot);
 
 /// E.g. "7 links by exact shapes, 1 link by 3 solids around meshes (approximate; 2 pairs of links
 /// not compared)".

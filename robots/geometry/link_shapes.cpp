@@ -1,18 +1,31 @@
 #include "robots/geometry/link_shapes.hpp"
 
+#include <tinyxml2.h>
 #include <urdf_model/model.h>
-
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
-#include "robots/geometry/capsule_fusion.hpp"
 #include "robots/geometry/fitted_shape.hpp"
-#include "robots/geometry/shape_rules.hpp"
-#include "robots/geometry/visual_solids.hpp"
 #include "robots/kinematics/urdf_model.hpp"
 
 namespace kinship::geometry {
 namespace {
+
+/// Index of a sphere of that link, radius and centre in the link's frame.
+std::optional<std::size_t> find_sphere(const std::vector<LinkShape>& shapes, int link,
+                                       double radius_m, const Eigen::Vector3d& p_link_center) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const auto* sphere = std::get_if<SphereShape>(&shapes[i].shape);
+    if (sphere != nullptr && shapes[i].link == link &&
+        std::abs(sphere->radius_m - radius_m) <= kFusionTolerance_m &&
+        (shapes[i].T_link_shape.translation() - p_link_center).norm() <= kFusionTolerance_m)
+      return i;
+  }
+  return std::nullopt;
+}
 
 std::optional<Shape> to_shape(const urdf::Geometry& geometry) {
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry))
@@ -153,7 +166,41 @@ Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& desc
   return pairs;
 }
 
+void add_collision(const tinyxml2::XMLElement& visual, tinyxml2::XMLElement& link) {
+  tinyxml2::XMLDocument& document = *link.GetDocument();
+  tinyxml2::XMLElement* const collision = document.NewElement("collision");
+  collision->SetAttribute("name", kFromVisual);
+  for (const char* part : {"origin", "geometry"})
+    if (const tinyxml2::XMLElement* const found = visual.FirstChildElement(part))
+      collision->InsertEndChild(found->DeepClone(&document));
+  link.InsertEndChild(collision);
+}
+
 }  // namespace
+
+std::vector<LinkShape> fuse_capsules(const std::vector<LinkShape>& shapes) {
+  std::vector<LinkShape> fused = shapes;
+  std::vector<bool> covered(shapes.size(), false);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const auto* cylinder = std::get_if<CylinderShape>(&shapes[i].shape);
+    if (cylinder == nullptr)
+      continue;
+    const Eigen::Vector3d p_shape_end(0, 0, cylinder->length_m / 2);
+    const auto top = find_sphere(shapes, shapes[i].link, cylinder->radius_m,
+                                 shapes[i].T_link_shape * p_shape_end);
+    const auto bottom = find_sphere(shapes, shapes[i].link, cylinder->radius_m,
+                                    shapes[i].T_link_shape * -p_shape_end);
+    if (!top || !bottom || top == bottom)
+      continue;
+    covered[*top] = covered[*bottom] = true;
+    fused[i].shape = CapsuleShape{cylinder->radius_m, cylinder->length_m};
+  }
+  std::vector<LinkShape> kept;
+  for (std::size_t i = 0; i < fused.size(); ++i)
+    if (!covered[i])
+      kept.push_back(fused[i]);
+  return kept;
+}
 
 Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri) {
   return invalid_input("mesh '" + uri + "' is out of reach here");
@@ -163,23 +210,42 @@ Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& /*uri*
   return std::optional<Eigen::Matrix3Xd>();
 }
 
-Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
-                                const MeshSource& meshes) {
-  std::string complaints;
-  const auto model = kinematics::parse_urdf(description.urdf, &complaints);
-  if (!model)
-    return model.error();
+Result<RobotShapes> read_shapes(const kinematics::RobotModel& robot, const MeshSource& meshes) {
   // urdfdom goes on without the element that it cannot read: a solid must not vanish like that.
-  if (complaints.find("collision element") != std::string::npos)
-    return invalid_input("URDF: " + complaints);
-  auto links = read_links(**model, chain, meshes);
+  if (robot.urdf.complaints.find("collision element") != std::string::npos)
+    return invalid_input("URDF: " + robot.urdf.complaints);
+  auto links = read_links(*robot.urdf.tree, robot.chain, meshes);
   if (!links)
     return links.error();
-  auto pairs = read_pairs(description, chain);
+  auto pairs = read_pairs(robot.description, robot.chain);
   if (!pairs)
     return pairs.error();
   return RobotShapes{fuse_capsules(links->shapes), *std::move(pairs), links->left_out,
                      links->visual_only, links->from_visual};
+}
+
+Result<std::string> with_visual_solids(const std::string& urdf,
+                                       const std::vector<std::string>& except) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(urdf.data(), urdf.size()) != tinyxml2::XML_SUCCESS)
+    return invalid_input("URDF: line " + std::to_string(document.ErrorLineNum()) +
+                         ": not well-formed XML");
+  tinyxml2::XMLElement* const robot = document.FirstChildElement("robot");
+  if (robot == nullptr)
+    return invalid_input("URDF: no <robot> element");
+  for (auto* link = robot->FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    const char* const name = link->Attribute("name");
+    if (link->FirstChildElement("collision") != nullptr ||
+        (name != nullptr && std::ranges::count(except, name) > 0))
+      continue;
+    for (const auto* visual = link->FirstChildElement("visual"); visual != nullptr;
+         visual = visual->NextSiblingElement("visual"))
+      add_collision(*visual, *link);
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return std::string(printer.CStr());
 }
 
 }  // namespace kinship::geometry

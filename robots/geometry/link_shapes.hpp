@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "proto/types/scene.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::geometry {
 
@@ -46,14 +45,32 @@ Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri);
 /// A MeshSource for callers with the URDF's text only: it leaves every mesh out of the shapes.
 Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
 
-/// Reads the collision elements of a description's URDF for the links of its chain: boxes,
+/// Reads the collision elements of a robot's URDF for the links of its chain: boxes,
 /// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule; a
 /// mesh keeps its triangles, with the URDF's scale, in the box or capsule of fit_shape around them.
 /// Shapes come in the order of the links; a link paired with itself is left out.
 /// \return InvalidInput with the link named for a size that is not finite and positive, a mesh
-///         scaled by 0 or without area, or a pair that names no link; the error of parse_urdf; the
-///         error of `meshes`, with the link named.
-Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
+///         scaled by 0 or without area, or a pair that names no link; a collision element that
+///         the parser left out; the error of `meshes`, with the link named.
+Result<RobotShapes> read_shapes(const kinematics::RobotModel& robot,
                                 const MeshSource& meshes = refuse_mesh);
+
+/// Tolerance of radii and centres for a cylinder and two spheres to count as one capsule, m.
+inline constexpr double kFusionTolerance_m = 1e-5;
+
+/// Replaces each cylinder that has a sphere of its radius at both ends, on the same link, by the
+/// capsule that the three make up, and drops the spheres. URDF has no capsule of its own. Two
+/// capsules may share an end sphere. The other shapes keep their order.
+std::vector<LinkShape> fuse_capsules(const std::vector<LinkShape>& shapes);
+
+/// Name of the collision elements that with_visual_solids() makes.
+inline constexpr const char* kFromVisual = "kinship:from_visual";
+
+/// The URDF with the visuals of every link without collision element copied as collision elements,
+/// with their origins.
+/// \param except  links that get none.
+/// \return InvalidInput for a text that is no XML with a `robot` element.
+Result<std::string> with_visual_solids(const std::string& urdf,
+                                       const std::vector<std::string>& except = {});
 
 }  // namespace kinship::geometry

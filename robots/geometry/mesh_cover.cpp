@@ -1,16 +1,189 @@
 #include "robots/geometry/mesh_cover.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
-
-#include "robots/geometry/tight_fit.hpp"
+#include <variant>
+#include <vector>
 
 namespace kinship::geometry {
 namespace {
+
+constexpr double kTightSlack_m = 1e-9;  // rounding must not leave a point outside
+constexpr int kBallSteps = 40;
+constexpr int kDirections = 256, kFewDirections = 48;  // in which extreme points are looked for
+
+enum class Kind { Box, Cylinder, Capsule };
+constexpr std::array<Kind, 3> kKinds = {Kind::Box, Kind::Cylinder, Kind::Capsule};
+
+struct TightShape {
+  FittedShape fitted;
+  double volume_m3 = std::numeric_limits<double>::infinity();
+};
+
+/// Near the centre of the smallest ball around points, rows x n.
+template <int kRows>
+Eigen::Matrix<double, kRows, 1> ball_center(
+    const Eigen::Matrix<double, kRows, Eigen::Dynamic>& points) {
+  Eigen::Matrix<double, kRows, 1> center =
+      (points.rowwise().minCoeff() + points.rowwise().maxCoeff()) / 2;
+  for (int step = 1; step <= kBallSteps; ++step) {
+    Eigen::Index farthest = 0;
+    (points.colwise() - center).colwise().squaredNorm().maxCoeff(&farthest);
+    center += (points.col(farthest) - center) / (step + 2.0);
+  }
+  return center;
+}
+
+Eigen::Isometry3d placed(const Eigen::Matrix3d& axes, const Eigen::Vector3d& p_axes_center) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = axes;
+  T.translation() = axes * p_axes_center;
+  return T;
+}
+
+TightShape sized(const Shape& shape, const Eigen::Isometry3d& T) {
+  return {{shape, T}, volume_m3(shape)};
+}
+
+TightShape box_along(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                     const Eigen::Matrix3d& axes) {
+  const Eigen::Matrix3Xd turned = axes.transpose() * points;
+  const Eigen::Vector3d low = turned.rowwise().minCoeff(), high = turned.rowwise().maxCoeff();
+  const Eigen::Vector3d size = (high - low).cwiseMax(kMinFitted_m).array() + 2 * kTightSlack_m;
+  return sized(BoxShape{size}, placed(axes, (low + high) / 2));
+}
+
+/// A cylinder or capsule along z of `axes`.
+TightShape round_along(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                       const Eigen::Matrix3d& axes, Kind kind) {
+  Eigen::Matrix3Xd turned = axes.transpose() * points;
+  Eigen::Vector3d center;
+  center.head<2>() = ball_center<2>(turned.topRows<2>());
+  center.z() = (turned.row(2).minCoeff() + turned.row(2).maxCoeff()) / 2;
+  turned.colwise() -= center;
+  const Eigen::ArrayXd squared_m2 = turned.topRows<2>().colwise().squaredNorm();
+  const double radius_m =
+      std::max(std::sqrt(squared_m2.maxCoeff()), kMinFitted_m / 2) + kTightSlack_m;
+  const Eigen::ArrayXd z = turned.row(2).transpose();
+  if (kind == Kind::Cylinder) {
+    const double length_m = std::max(2 * z.abs().maxCoeff(), kMinFitted_m) + 2 * kTightSlack_m;
+    return sized(CylinderShape{radius_m, length_m}, placed(axes, center));
+  }
+  // A point at height z is inside if the end of the axis reaches z less covered_m.
+  const Eigen::ArrayXd covered_m = (radius_m * radius_m - squared_m2).max(0.0).sqrt();
+  double top = (z - covered_m).maxCoeff(), bottom = (z + covered_m).minCoeff();
+  if (top < bottom)
+    top = bottom = (top + bottom) / 2;
+  center.z() += (top + bottom) / 2;
+  return sized(CapsuleShape{radius_m, top - bottom + 2 * kTightSlack_m}, placed(axes, center));
+}
+
+TightShape along(const Eigen::Ref<const Eigen::Matrix3Xd>& points, const Eigen::Matrix3d& axes,
+                 Kind kind) {
+  return kind == Kind::Box ? box_along(points, axes) : round_along(points, axes, kind);
+}
+
+TightShape sphere_around(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  const Eigen::Vector3d center = ball_center<3>(points);
+  const double radius_m = std::sqrt((points.colwise() - center).colwise().squaredNorm().maxCoeff());
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = center;
+  return sized(SphereShape{std::max(radius_m, kMinFitted_m / 2) + kTightSlack_m}, T);
+}
+
+/// Right-handed, as columns; the identity of a single point.
+Eigen::Matrix3d spread_axes(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean().eval();
+  const Eigen::Matrix3d covariance = centred * centred.transpose();
+  Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  if (axes.determinant() < 0)
+    axes.col(0) = -axes.col(0);
+  return axes;
+}
+
+struct Choice {
+  Kind kind = Kind::Box;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  double volume_m3 = std::numeric_limits<double>::infinity();
+};
+
+/// Every kind along every axis of the frame and of the spread, the best of each kind.
+std::array<Choice, 3> first_choices(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  std::array<Choice, 3> best;
+  for (const Eigen::Matrix3d& axes :
+       {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), spread_axes(points)})
+    for (std::size_t k = 0; k < kKinds.size(); ++k)
+      for (Eigen::Index last = 0; last < (kKinds.at(k) == Kind::Box ? 1 : 3); ++last) {
+        Eigen::Matrix3d turned;
+        turned << axes.col((last + 1) % 3), axes.col((last + 2) % 3), axes.col(last);
+        const double volume = along(points, turned, kKinds.at(k)).volume_m3;
+        if (volume < best.at(k).volume_m3)
+          best.at(k) = {kKinds.at(k), turned, volume};
+      }
+  return best;
+}
+
+/// Turns the axes by smaller and smaller steps while the volume falls.
+void turn(const Eigen::Matrix3Xd& points, Choice& choice) {
+  constexpr double kLargest_rad = 0.4, kSmallest_rad = 0.005;
+  for (double step_rad = kLargest_rad; step_rad > kSmallest_rad; step_rad /= 2) {
+    bool is_better = true;
+    for (int rounds = 0; is_better && rounds < 4; ++rounds) {
+      is_better = false;
+      for (Eigen::Index axis = 0; axis < 3; ++axis)
+        for (const double sign : {1.0, -1.0}) {
+          const Eigen::Matrix3d axes =
+              choice.axes *
+              Eigen::AngleAxisd(sign * step_rad, Eigen::Vector3d::Unit(axis)).toRotationMatrix();
+          const double volume = along(points, axes, choice.kind).volume_m3;
+          if (volume < choice.volume_m3 * (1 - 1e-6)) {
+            choice = {choice.kind, axes, volume};
+            is_better = true;
+          }
+        }
+    }
+  }
+}
+
+/// The points farthest in each of many directions: they nearly decide how large a solid has to be.
+Eigen::Matrix3Xd extreme_points(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int directions) {
+  if (points.cols() <= directions)
+    return points;
+  std::vector<Eigen::Index> kept;
+  constexpr double kGoldenAngle_rad = 2.399963229728653;
+  for (int i = 0; i < directions; ++i) {
+    const double z = 1 - (2 * i + 1.0) / directions, r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d direction(r * std::cos(kGoldenAngle_rad * i),
+                                    r * std::sin(kGoldenAngle_rad * i), z);
+    Eigen::Index farthest = 0;
+    (direction.transpose() * points).maxCoeff(&farthest);
+    kept.push_back(farthest);
+  }
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  Eigen::Matrix3Xd extreme(3, static_cast<Eigen::Index>(kept.size()));
+  for (Eigen::Index i = 0; i < extreme.cols(); ++i)
+    extreme.col(i) = points.col(kept[static_cast<std::size_t>(i)]);
+  return extreme;
+}
+
+FittedShape smallest(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                     const std::array<Choice, 3>& choices) {
+  TightShape best = sphere_around(points);
+  for (const Choice& choice : choices) {
+    TightShape shape = along(points, choice.axes, choice.kind);
+    if (shape.volume_m3 < best.volume_m3)
+      best = std::move(shape);
+  }
+  return best.fitted;
+}
 
 constexpr Eigen::Index kTrialTriangles = 300;  // of a piece, by which cuts are compared
 constexpr std::array<double, 5> kCuts = {0.2, 0.35, 0.5, 0.65, 0.8};  // of a solid's extent
@@ -133,6 +306,36 @@ double total_m3(const std::vector<Piece>& pieces) {
 }
 
 }  // namespace
+
+double volume_m3(const Shape& shape) {
+  struct Volume {
+    double operator()(const BoxShape& box) const { return box.size.prod(); }
+    double operator()(const CylinderShape& cylinder) const {
+      return std::numbers::pi * cylinder.radius_m * cylinder.radius_m * cylinder.length_m;
+    }
+    double operator()(const SphereShape& sphere) const {
+      return 4.0 / 3.0 * std::numbers::pi * std::pow(sphere.radius_m, 3);
+    }
+    double operator()(const CapsuleShape& capsule) const {
+      return (*this)(CylinderShape{capsule.radius_m, capsule.length_m}) +
+             (*this)(SphereShape{capsule.radius_m});
+    }
+  };
+  return std::visit(Volume{}, shape);
+}
+
+FittedShape fit_quickly(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  const Eigen::Matrix3Xd extreme = extreme_points(points, kFewDirections);
+  return smallest(extreme, first_choices(extreme));
+}
+
+FittedShape fit_tightly(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  const Eigen::Matrix3Xd extreme = extreme_points(points, kDirections);
+  std::array<Choice, 3> choices = first_choices(extreme);
+  for (Choice& choice : choices)
+    turn(extreme, choice);
+  return smallest(points, choices);
+}
 
 std::vector<FittedShape> cover_mesh(const Eigen::Matrix3Xd& corners, const CoverOptions& options) {
   std::vector<Piece> pieces;

@@ -7,6 +7,18 @@
 
 namespace kinship::geometry {
 
+double volume_m3(const Shape& shape);
+
+/// A box, cylinder, capsule or sphere that holds every point, smaller than that of fit_shape: along
+/// the frame's axes, the principal ones, and both turned step by step while the volume falls; round
+/// ones about the middle of the smallest circle. Conservative; not the smallest possible.
+/// \param points  3 x n, n >= 1, finite, m.
+/// Circles and spheres: Badoiu and Clarkson, Smaller core-sets for balls (2003).
+FittedShape fit_tightly(const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+/// The same without turning, to compare many sets of points.
+FittedShape fit_quickly(const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
 struct CoverOptions {
   int max_shapes = 8;      ///< around one mesh
   double min_gain = 0.02;  ///< a cut must lower the volume of all shapes together by this part

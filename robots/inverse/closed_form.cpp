@@ -2,7 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include "proto/types/turn.hpp"
+#include "robots/inverse/counter_generator.hpp"
+#include "robots/inverse/joint_space.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -13,6 +19,79 @@ constexpr std::size_t kJoints = 6;
 std::string joint_range(int first, int second, int third) {
   return std::to_string(first + 1) + "-" + std::to_string(second + 1) + "-" +
          std::to_string(third + 1);
+}
+
+constexpr int kTrials = 32;
+constexpr double kSmallestSlack = 1e-7;
+constexpr double kSlackPerDeviation = 4;
+constexpr double kRecovered_rad = 1e-4;       // of an exact structure; singular poses are coarse
+constexpr double kNearlyRecovered_rad = 0.3;  // before the polish
+constexpr double kRecoveredShare = 0.9;
+constexpr double kNearlyRecoveredShare = 0.5;
+constexpr std::uint64_t kSeed = 0x6b696e;
+constexpr int kMaxPlanarChoices = 60;
+constexpr double kBetter = 1.15;  // less than that is chance, and the first choice stands
+
+using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
+
+/// Random configurations within the limits and the poses that they reach.
+struct Samples {
+  std::vector<Configuration> configurations;
+  std::vector<Eigen::Isometry3d> poses;
+};
+
+Configuration random_configuration(const kinematics::Chain& chain, CounterGenerator& generator) {
+  Configuration q(chain.dof());
+  for (Eigen::Index j = 0; j < q.size(); ++j)
+    q[j] = chain.lower()[j] + generator.uniform() * (chain.upper()[j] - chain.lower()[j]);
+  return q;
+}
+
+Samples sample(const kinematics::Chain& chain) {
+  Samples samples;
+  CounterGenerator generator(kSeed);
+  for (int i = 0; i < kTrials; ++i) {
+    samples.configurations.push_back(random_configuration(chain, generator));
+    samples.poses.push_back(kinematics::T_base_transfer(chain, samples.configurations.back()));
+  }
+  return samples;
+}
+
+double largest_difference(const kinematics::Chain& chain, const double* a, const Configuration& b) {
+  double largest = 0;
+  for (Eigen::Index j = 0; j < b.size(); ++j) {
+    const bool turns =
+        chain.joints()[static_cast<std::size_t>(j)].type != kinematics::JointType::Prismatic;
+    const double difference = a[j] - b[j];
+    largest = std::max(largest, std::abs(turns ? wrapped(difference) : difference));
+  }
+  return largest;
+}
+
+std::vector<int> others(int dof, const std::vector<int>& joints) {
+  std::vector<int> rest;
+  for (int j = 0; j < dof; ++j)
+    if (!std::ranges::binary_search(joints, j))
+      rest.push_back(j);
+  return rest;
+}
+
+/// Which joints of a planar arm may be left free: every ascending choice while they are few, else
+/// neighbours.
+std::vector<std::vector<int>> planar_choices(int dof, int count) {
+  std::vector<std::vector<int>> result;
+  for (int a = 0; a < dof; ++a)
+    for (int b = a + 1; b < dof; ++b) {
+      if (count == 2)
+        result.push_back({a, b});
+      for (int c = b + 1; c < dof && count == 3; ++c)
+        result.push_back({a, b, c});
+    }
+  if (result.size() > kMaxPlanarChoices)
+    std::erase_if(result, [](const std::vector<int>& free) {
+      return free.back() - free.front() >= static_cast<int>(free.size());
+    });
+  return result;
 }
 
 }  // namespace
@@ -83,6 +162,125 @@ void ClosedForm::append_planar(const Displacement& T, std::span<const double> lo
     for (std::size_t i = 0; i < free_.size(); ++i)
       q[free_[i]] = found.angles[static_cast<std::size_t>(b)][i];
   }
+}
+
+/// Puts forms together and tries them.
+struct ClosedFormSearch {
+  const kinematics::Chain& chain;
+  AxisChain axes = axes_of(chain);
+
+  ClosedForm form(std::vector<int> locks, double deviation) const {
+    ClosedForm result;
+    result.locks_ = std::move(locks);
+    result.free_ = others(static_cast<int>(chain.dof()), result.locks_);
+    for (const int joint : result.locks_)
+      result.prismatic_.push_back(axes.axes[static_cast<std::size_t>(joint)].prismatic);
+    for (const int joint : result.free_)
+      result.windows_.push_back(window(joint, deviation));
+    result.T_transfer_base_ = axes.T_base_transfer.inverse();
+    result.scale_m_ = axes.scale_m;
+    result.slack_ = std::max(kSmallestSlack, kSlackPerDeviation * deviation);
+    return result;
+  }
+
+  TurnWindow window(int index, double deviation) const {
+    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(index)];
+    if (joint.type != kinematics::JointType::Revolute)
+      return {};
+    const double margin =
+        deviation > kExactStructure ? ClosedForm::kNearMargin_rad : ClosedForm::kExactMargin_rad;
+    return TurnWindow::around(0.5 * (joint.lower + joint.upper),
+                              0.5 * (joint.upper - joint.lower) + margin);
+  }
+
+  std::vector<ClosedForm> candidates() const {
+    std::vector<ClosedForm> result;
+    const int dof = static_cast<int>(chain.dof());
+    if (const auto planar = PlanarForm::of(axes, chain)) {
+      for (const std::vector<int>& free : planar_choices(dof, planar->free_joints())) {
+        result.push_back(form(others(dof, free), planar->deviation()));
+        result.back().planar_ = planar;
+      }
+      return result;
+    }
+    if (!chain.task_axes().all())
+      return result;
+    for (SixJointStructure& six : six_joint_structures(axes)) {
+      result.push_back(form(six.locks, six.exact() ? 0 : six.deviation));
+      result.back().six_ = std::move(six);
+    }
+    return result;
+  }
+
+  /// Whether the form gives the configurations back that poses came from, at the values that their
+  /// locked joints had: no reasoning about structures knows every way in which one can be of no
+  /// use.
+  bool recovers(const ClosedForm& form, const Samples& samples) const {
+    const double tolerance = form.exact() ? kRecovered_rad : kNearlyRecovered_rad;
+    int recovered = 0;
+    Branches branches;
+    for (std::size_t i = 0; i < samples.poses.size(); ++i) {
+      const Configuration& q = samples.configurations[i];
+      std::array<double, kMaxDof> locked;
+      for (std::size_t k = 0; k < form.locks_.size(); ++k)
+        locked[k] = q[form.locks_[k]];
+      branches.clear();
+      form.append(samples.poses[i], {locked.data(), form.locks_.size()}, branches);
+      bool found = false;
+      for (int b = 0; b < branches.size(); ++b)
+        found = found || largest_difference(chain, branches[b], q) < tolerance;
+      recovered += found ? 1 : 0;
+    }
+    return recovered >= (form.exact() ? kRecoveredShare : kNearlyRecoveredShare) * kTrials;
+  }
+
+  /// Configurations within limits per pose, at random values of the locked joints.
+  double mean_within_limits(const ClosedForm& form, const Samples& samples) const {
+    CounterGenerator generator(kSeed + 1);
+    int within = 0;
+    Branches branches;
+    Configuration q(chain.dof());
+    const JointSpace space(chain);
+    for (const Eigen::Isometry3d& T : samples.poses) {
+      const Configuration random = random_configuration(chain, generator);
+      std::array<double, kMaxDof> locked;
+      for (std::size_t k = 0; k < form.locks_.size(); ++k)
+        locked[k] = random[form.locks_[k]];
+      branches.clear();
+      form.append(T, {locked.data(), form.locks_.size()}, branches);
+      for (int b = 0; b < branches.size(); ++b) {
+        std::copy_n(branches[b], q.size(), q.data());
+        within += space.normalize(q.data()) ? 1 : 0;
+      }
+    }
+    return static_cast<double>(within) / kTrials;
+  }
+
+  ClosedFormFinding run() const {
+    ClosedFormFinding finding;
+    std::vector<ClosedForm> forms = candidates();
+    if (forms.empty())
+      return finding;
+    if (std::ranges::any_of(forms, &ClosedForm::exact))
+      std::erase_if(forms, [](const ClosedForm& form) { return !form.exact(); });
+    const Samples samples = sample(chain);
+    ClosedForm* best = nullptr;
+    for (ClosedForm& form : forms) {
+      form.mean_within_limits_ = mean_within_limits(form, samples);
+      if ((best == nullptr || form.mean_within_limits_ > kBetter * best->mean_within_limits_) &&
+          recovers(form, samples))
+        best = &form;
+    }
+    if (best == nullptr)
+      return finding;
+    const bool pays = best->locks_.empty() || best->mean_within_limits_ >= ClosedForm::kWorthwhile;
+    (pays ? finding.form : finding.left_out) = std::move(*best);
+    return finding;
+  }
+};
+
+ClosedFormFinding find_closed_form(const kinematics::Chain& chain) {
+  return ClosedFormSearch{chain}.run();
 }
 
 }  // namespace kinship::inverse

@@ -6,8 +6,8 @@
 
 #include "proto/types/turn.hpp"
 #include "robots/inverse/task_rank.hpp"
-#include "robots/kinematics/axis_turns.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/joint_motion.hpp"
 
 namespace kinship::inverse {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/turn.hpp"
-#include "robots/inverse/simd_sets.hpp"
-#include "robots/kinematics/axis_turns.hpp"
+#include "robots/inverse/lanes.hpp"
+#include "robots/kinematics/joint_motion.hpp"
 
 namespace kinship::inverse {
 namespace {

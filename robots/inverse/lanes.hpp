@@ -2,7 +2,6 @@
 
 // Included by the units that are compiled for one instruction set: nothing here may bring inline
 // functions or templates of other libraries along.
-
 namespace kinship::inverse {
 
 inline constexpr int kLanes = 8;
@@ -137,5 +136,10 @@ struct SimdKernels {
                     const LaneHarmonics& harmonics, const double (&target)[12],
                     LaneBranches& branches);
 };
+
+// One unit each; to be called only where the machine knows the instructions.
+SimdKernels sse2_simd_kernels();  ///< the compiler's baseline, which on x86-64 is SSE2
+SimdKernels avx2_simd_kernels();
+SimdKernels avx512_simd_kernels();
 
 }  // namespace kinship::inverse

@@ -1,7 +1,7 @@
 #define KINSHIP_SIMD_WIDTH 8
+#include "robots/inverse/lanes.hpp"
 #include "robots/inverse/simd_elimination_kernel.hpp"
 #include "robots/inverse/simd_pull_kernel.hpp"
-#include "robots/inverse/simd_sets.hpp"
 
 namespace kinship::inverse {
 

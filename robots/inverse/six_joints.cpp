@@ -154,7 +154,7 @@ bool solve_parallel(const SixJointTask& task, const Displacement& rest, std::arr
 /// The part of a pose's solution that comes before three parallel axes.
 struct BeforeParallel {
   double q1, q5;
-  Displacement left;    ///< of the pose, without joint 1
+  Displacement left;    ///< of the pose, without joint 1: joints 2 to 6
   Displacement beyond;  ///< joint 5, turned back
 };
 
@@ -163,7 +163,7 @@ void solve_last(const SixJointTask& task, const BeforeParallel& before,
                 SixJointBranches& branches) {
   const Eigen::Vector3d& h = task.axes[1].direction;
   const Axis& axis = task.axes[5];
-  const Eigen::Vector3d h_seen = before.left.R.transpose() * h;  // from axis 6, after its turn
+  const Eigen::Vector3d h_seen = before.left.R.transpose() * h;  // from the tip, behind joint 6
   const Eigen::Vector3d h_before = before.beyond.R * h;
   // Axis 6 parallel to the others: as far as directions go, any turn would do.
   const bool free = h_before.cross(axis.direction).squaredNorm() < kDouble;
@@ -177,8 +177,11 @@ void solve_last(const SixJointTask& task, const BeforeParallel& before,
   }
 }
 
-/// Turns of the parallel axes keep the components of axis 6's point and direction along them: that
-/// gives q1, then q5. Their direction as seen from axis 6 gives q6, the rest is a planar arm.
+/// Axes 2, 3, 4 are parallel, 5 and 6 meet. Turns about the parallel axes change no component along
+/// them. Joints 5 and 6 leave the point where their axes meet: its component gives q1. Joint 6
+/// leaves the direction of its axis: the component of that direction, turned by joint 5, gives q5.
+/// The direction of the parallel axes as seen from the tip gives q6, and what is left is a planar
+/// arm.
 void solve_three_parallel(const SixJointTask& task, SixJointBranches& branches) {
   const std::array<Axis, 6>& axes = task.axes;
   const Eigen::Vector3d& h = axes[1].direction;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "robots/kinematics/chain.hpp"
-#include "robots/kinematics/jacobian.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::inverse {
 

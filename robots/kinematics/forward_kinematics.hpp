@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <span>
 #include <vector>
@@ -31,5 +32,12 @@ void joint_poses(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q,
 /// Pose of every link in the base link, in the order of chain.links().
 std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,
                                           const Eigen::Ref<const Eigen::VectorXd>& q);
+
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// Geometric Jacobian of the tip link in the base link: 6 x dof, rows 0-2 linear velocity of the
+/// tip's origin (m per joint unit), rows 3-5 angular velocity (rad per joint unit).
+/// Source: Siciliano et al., Robotics (2009), eq. 3.30.
+Jacobian J_base_tip(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q);
 
 }  // namespace kinship::kinematics

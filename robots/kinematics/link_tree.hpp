@@ -36,9 +36,6 @@ struct TreeLink {
 /// \return the error of parse_urdf() for any other text.
 Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf);
 
-/// The robot's name in a URDF. \return the error of parse_urdf() for any other text.
-Result<std::string> read_robot_name(const std::string& urdf);
-
 /// Base and tip links that make an arm of a tree.
 struct ChainEnds {
   std::vector<std::string> bases;  ///< no joint of its own between them; the likeliest first
@@ -55,5 +52,15 @@ struct ChainEnds {
 /// (`world`, `map`, `odom`, `base_footprint`); the likeliest tip the last link that is fixed to the
 /// last joint, with `tool0`, `tcp` and the like before others.
 std::vector<ChainEnds> suggest_ends(const std::vector<TreeLink>& tree);
+
+/// Whether the joint above a link moves a finger or jaw rather than an arm: another joint follows
+/// it, it slides less than an arm's axis does, a joint of the same kind hangs beside it, or it
+/// turns to one side from closed and is named as a jaw or ends an arm of six joints.
+/// \param link    index of the moving link
+/// \param before  moving joints between the base and it
+bool is_gripping_joint(const std::vector<TreeLink>& tree, std::size_t link, std::size_t before);
+
+/// A sentence on each joint of a mobile base; empty for a robot that stands still.
+std::vector<std::string> describe_mobile_base(const std::vector<TreeLink>& tree);
 
 }  // namespace kinship::kinematics

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "proto/types/limits.hpp"
@@ -15,7 +16,6 @@
 #include "proto/types/nearest_name.hpp"
 #include "proto/types/number_text.hpp"
 #include "robots/kinematics/joint_motion.hpp"
-#include "robots/kinematics/urdf_model.hpp"
 
 namespace kinship::kinematics {
 namespace {
@@ -356,21 +356,23 @@ void check_description(const RobotDescription& description) {
                   std::to_string(kMaxHeldJoints));
 }
 
-ChainParts read_parts(const RobotDescription& description) {
+/// \param urdf  parsed here unless it was before.
+Chain chain_of(const RobotDescription& description, UrdfModel& urdf) {
   check_description(description);
-  const UrdfModel model = parse_urdf(description.urdf).value_or_throw();
+  if (!urdf.tree)
+    urdf = parse_urdf(description.urdf).value_or_throw();
   ChainParts parts;
   parts.base_link = description.base_link;
   parts.tip_link = description.tip_link;
   parts.T_tip_transfer = description.T_tip_transfer;
   parts.task_axes = description.task_axes;
-  const auto joints = joints_between(*model, description.base_link, description.tip_link);
+  const auto joints = joints_between(*urdf.tree, description.base_link, description.tip_link);
   const std::set<std::string> on_chain = names_of(joints);
-  const HeldJoints held(*model, description.held_joints, on_chain);
-  TreeWalk(held, joints, parts).walk(*model);
+  const HeldJoints held(*urdf.tree, description.held_joints, on_chain);
+  TreeWalk(held, joints, parts).walk(*urdf.tree);
   if (const auto fault = validate(parts))
     throw refused(*fault);
-  return parts;
+  return Chain(std::move(parts));
 }
 
 }  // namespace
@@ -386,13 +388,19 @@ std::string find_joint_fault(const urdf::ModelInterface& model, const urdf::Join
   }
 }
 
-Result<std::map<std::string, double>> held_values(const RobotDescription& description) {
+std::map<std::string, double> held_values(const RobotModel& robot) {
+  const urdf::ModelInterface& tree = *robot.urdf.tree;
+  const std::set<std::string> on_chain =
+      names_of(joints_between(tree, robot.description.base_link, robot.description.tip_link));
+  return HeldJoints(tree, robot.description.held_joints, on_chain).values();
+}
+
+std::string name_in_urdf(const RobotModel& robot) { return robot.urdf.tree->getName(); }
+
+Result<RobotModel> read_model(RobotDescription description, UrdfModel parsed) {
   try {
-    check_description(description);
-    const UrdfModel model = parse_urdf(description.urdf).value_or_throw();
-    const std::set<std::string> on_chain =
-        names_of(joints_between(*model, description.base_link, description.tip_link));
-    return HeldJoints(*model, description.held_joints, on_chain).values();
+    Chain chain = chain_of(description, parsed);
+    return RobotModel{std::move(description), std::move(parsed), std::move(chain)};
   } catch (const Failure& failure) {
     return failure.error();
   }
@@ -400,7 +408,8 @@ Result<std::map<std::string, double>> held_values(const RobotDescription& descri
 
 Result<Chain> read_chain(const RobotDescription& description) {
   try {
-    return Chain(read_parts(description));
+    UrdfModel urdf;
+    return chain_of(description, urdf);
   } catch (const Failure& failure) {
     return failure.error();
   }

@@ -89,7 +89,7 @@ std::optional<Error> check_tree(const urdf::ModelInterface& model) {
 
 }  // namespace
 
-Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints) {
+Result<UrdfModel> parse_urdf(const std::string& text) {
   if (const auto error = check_markup(text))
     return *error;
   std::string errors;
@@ -109,9 +109,7 @@ Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints) {
     return *error;
   if (const auto error = check_tree(*model))
     return *error;
-  if (complaints != nullptr)
-    *complaints = std::move(errors);
-  return UrdfModel(model);
+  return UrdfModel{std::move(model), std::move(errors)};
 }
 
 }  // namespace kinship::kinematics

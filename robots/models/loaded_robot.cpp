@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "robots/geometry/geometry_doubts.hpp"
-#include "robots/kinematics/urdf.hpp"
 #include "robots/models/mesh_files.hpp"
 
 namespace kinship::models {
@@ -31,8 +30,7 @@ std::optional<Error> excuse(const std::vector<std::string>& links, const kinemat
 }  // namespace
 
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
-                                          const RobotDescription& description,
-                                          const kinematics::Chain& chain) {
+                                          const kinematics::RobotModel& robot) {
   auto packages = parse_packages(arguments.packages);
   if (!packages)
     return packages.error();
@@ -40,31 +38,29 @@ Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   const MeshFiles files(is_folder ? arguments.source : arguments.source.parent_path(),
                         *std::move(packages));
-  auto read = geometry::read_shapes(description, chain,
-                                    [&](const std::string& uri) { return files.read(uri); });
+  auto read = geometry::read_shapes(robot, [&](const std::string& uri) { return files.read(uri); });
   if (!read)
     return read.error();
   geometry::RobotShapes shapes = *std::move(read);
-  if (const auto error = excuse(arguments.without_collision, chain, shapes))
+  if (const auto error = excuse(arguments.without_collision, robot.chain, shapes))
     return *error;
   return shapes;
 }
 
 Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
-  std::vector<std::string> warnings;
-  auto description = describe_robot(arguments, &warnings);
-  if (!description)
-    return description.error();
-  auto chain = kinematics::read_chain(*description);
-  if (!chain)
-    return chain.error();
-  auto shapes = load_shapes(arguments, *description, *chain);
+  auto described = describe_robot(arguments);
+  if (!described)
+    return described.error();
+  std::vector<std::string> warnings = std::move(described->warnings);
+  auto robot = read_model(*std::move(described));
+  if (!robot)
+    return robot.error();
+  auto shapes = load_shapes(arguments, *robot);
   if (!shapes)
     return shapes.error();
-  if (const auto error = geometry::find_missing_solids(*chain, *shapes))
+  if (const auto error = geometry::find_missing_solids(robot->chain, *shapes))
     return *error;
-  return LoadedRobot{*std::move(description), *std::move(chain), *std::move(shapes),
-                     std::move(warnings)};
+  return LoadedRobot{*std::move(robot), *std::move(shapes), std::move(warnings)};
 }
 
 }  // namespace kinship::models

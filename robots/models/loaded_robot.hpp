@@ -4,32 +4,28 @@
 #include <vector>
 
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 namespace kinship::models {
 
 /// A robot as described to a server, with the data that planning needs.
-struct LoadedRobot {
-  RobotDescription description;
-  kinematics::Chain chain;
+struct LoadedRobot : kinematics::RobotModel {
   geometry::RobotShapes shapes;
   std::vector<std::string> warnings = {};  ///< of describe_robot
 };
 
 /// A robot as a command line names it, with its collision meshes, to plan for.
-/// \return also the errors of describe_robot, kinematics::read_chain, geometry::read_shapes,
+/// \return also the errors of describe_robot, kinematics::read_model, geometry::read_shapes,
 ///         MeshFiles and geometry::find_missing_solids.
 Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 
-/// The shapes of the robot of these arguments. Links named as needing no solid are not among its
+/// The shapes of a robot. Links named as needing no solid are not among its
 /// `visual_only` ones.
-/// \param description, chain  made of the arguments.
+/// \param robot  made of the arguments.
 /// \return also InvalidInput if such a link is missing or has solids.
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
-                                          const RobotDescription& description,
-                                          const kinematics::Chain& chain);
+                                          const kinematics::RobotModel& robot);
 
 }  // namespace kinship::models

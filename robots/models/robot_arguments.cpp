@@ -1,7 +1,9 @@
 #include "robots/models/robot_arguments.hpp"
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <charconv>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -9,16 +11,126 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
+#include "robots/geometry/link_shapes.hpp"
 #include "robots/geometry/srdf.hpp"
-#include "robots/geometry/visual_solids.hpp"
-#include "robots/kinematics/urdf.hpp"
 #include "robots/models/mesh_files.hpp"
-#include "robots/models/model_folder.hpp"
 #include "robots/models/text_file.hpp"
-#include "robots/models/xacro.hpp"
 
 namespace kinship::models {
 namespace {
+
+constexpr std::size_t kMaxChainFileBytes = 262'144;
+
+/// The fields of one chain.toml. Every method throws Failure that names file and field.
+class ChainFile {
+ public:
+  ChainFile(const std::filesystem::path& file, std::string_view text) : name_(file.string()) {
+    try {
+      table_ = toml::parse(text);
+    } catch (const toml::parse_error& error) {
+      throw Failure(ErrorCode::InvalidInput, name_ + ": line " +
+                                                 std::to_string(error.source().begin.line) + ": " +
+                                                 std::string(error.description()));
+    }
+    for (const auto& [key, value] : table_)
+      if (std::find(kFields.begin(), kFields.end(), key.str()) == kFields.end())
+        refuse(key.str(), "is not a field of this file");
+  }
+
+  std::string text(std::string_view field) const {
+    const auto value = table_[field].value<std::string>();
+    if (!value)
+      refuse(field, "must be there, as text");
+    return *value;
+  }
+
+  Eigen::Isometry3d transfer() const {
+    const toml::array* numbers = array("transfer");
+    if (numbers == nullptr)
+      refuse("transfer", "must be there: [x, y, z, qx, qy, qz, qw]");
+    PoseArray pose{};
+    if (numbers->size() != pose.size())
+      refuse("transfer", "has " + std::to_string(numbers->size()) + " numbers, must have 7");
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      pose[i] = number("transfer", (*numbers)[i]);
+    const auto T = from_pose_array(pose);
+    if (!T)
+      refuse("transfer", T.error().message);
+    return *T;
+  }
+
+  TaskAxes axes() const {
+    const toml::array* names = array("axes");
+    if (names == nullptr)
+      return {};
+    std::vector<std::string> words;
+    for (const toml::node& node : *names)
+      words.push_back(node.value<std::string>().value_or(""));
+    const auto axes = parse_task_axes({words.begin(), words.end()});
+    if (!axes)
+      refuse("axes", axes.error().message);
+    return *axes;
+  }
+
+  std::map<std::string, double> hold() const {
+    std::map<std::string, double> held;
+    const toml::node* node = table_.get("hold");
+    if (node == nullptr)
+      return held;
+    if (!node->is_table())
+      refuse("hold", "must be a table of joints and values");
+    for (const auto& [joint, value] : *node->as_table())
+      held.emplace(joint.str(), number("hold." + std::string(joint.str()), value));
+    if (held.size() > kMaxHeldJoints)
+      refuse("hold",
+             std::to_string(held.size()) + " joints exceed " + std::to_string(kMaxHeldJoints));
+    return held;
+  }
+
+  std::vector<std::pair<std::string, std::string>> never_colliding() const {
+    std::vector<std::pair<std::string, std::string>> pairs;
+    const toml::array* rows = array("never_colliding");
+    if (rows == nullptr)
+      return pairs;
+    if (rows->size() > kMaxCollisionPairs)
+      refuse("never_colliding",
+             std::to_string(rows->size()) + " pairs exceed " + std::to_string(kMaxCollisionPairs));
+    for (const toml::node& row : *rows) {
+      const toml::array* pair = row.as_array();
+      if (pair == nullptr || pair->size() != 2 || !(*pair)[0].is_string() ||
+          !(*pair)[1].is_string())
+        refuse("never_colliding",
+               "pair " + std::to_string(pairs.size() + 1) + " is not [link, link]");
+      pairs.emplace_back((*pair)[0].ref<std::string>(), (*pair)[1].ref<std::string>());
+    }
+    return pairs;
+  }
+
+ private:
+  static constexpr std::array<std::string_view, 7> kFields = {
+      "label", "base", "tip", "transfer", "axes", "hold", "never_colliding"};
+
+  [[noreturn]] void refuse(std::string_view field, const std::string& problem) const {
+    throw Failure(ErrorCode::InvalidInput, name_ + ": " + std::string(field) + ": " + problem);
+  }
+
+  double number(std::string_view field, const toml::node& node) const {
+    if (!node.is_number())
+      refuse(field, "holds something that is not a number");
+    return node.value<double>().value_or(0);
+  }
+
+  /// Null if the field is missing.
+  const toml::array* array(std::string_view field) const {
+    const toml::node* node = table_.get(field);
+    if (node != nullptr && !node->is_array())
+      refuse(field, "must be a list");
+    return node == nullptr ? nullptr : node->as_array();
+  }
+
+  std::string name_;
+  toml::table table_;
+};
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> parts;
@@ -90,14 +202,14 @@ std::string stranger_warning(const std::filesystem::path& srdf,
 }
 
 /// \throws Failure with the fault.
-void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
-               std::vector<std::string>& warnings) {
+void add_pairs(const std::filesystem::path& srdf, DescribedRobot& robot) {
   const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
   if (const auto error = check_expanded(srdf, text, ".srdf"))
     throw Failure(*error);
-  const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  kinematics::RobotModel model = kinematics::read_model(robot.description).value_or_throw();
+  robot.urdf = std::move(model.urdf);
   std::vector<geometry::SrdfStranger> strangers;
-  const auto pairs = geometry::read_srdf(text, chain, &strangers);
+  const auto pairs = geometry::read_srdf(text, model.chain, &strangers);
   if (!pairs)
     throw Failure(pairs.error().code, srdf.string() + ": " + pairs.error().message);
   if (pairs->empty() && strangers.empty())
@@ -106,8 +218,8 @@ void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
                       ": has no disable_collisions element, so it says nothing of this robot; "
                       "'kinship robots suggest-srdf' makes one that does");
   for (const geometry::SrdfStranger& stranger : strangers)
-    warnings.push_back(stranger_warning(srdf, stranger));
-  auto& all = description.never_colliding;
+    robot.warnings.push_back(stranger_warning(srdf, stranger));
+  auto& all = robot.description.never_colliding;
   all.insert(all.end(), pairs->begin(), pairs->end());
   if (all.size() > kMaxCollisionPairs)
     throw Failure(ErrorCode::TooLarge,
@@ -116,11 +228,12 @@ void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
 }
 
 /// \throws Failure with the fault.
-RobotDescription put_together(const RobotArguments& arguments, std::vector<std::string>& warnings) {
+DescribedRobot put_together(const RobotArguments& arguments) {
   std::error_code unreadable;  // is for read_urdf_file to tell
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
-  RobotDescription description = is_folder ? read_model_folder(arguments.source).value_or_throw()
-                                           : read_urdf_file(arguments.source);
+  DescribedRobot robot{is_folder ? read_model_folder(arguments.source).value_or_throw()
+                                 : read_urdf_file(arguments.source)};
+  RobotDescription& description = robot.description;
   if (!is_folder && (arguments.base_link.empty() || arguments.tip_link.empty()))
     throw Failure(
         ErrorCode::InvalidInput,
@@ -145,11 +258,32 @@ RobotDescription put_together(const RobotArguments& arguments, std::vector<std::
   for (const std::string& held : arguments.held)
     add_held_joint(held, description);
   if (!arguments.srdf.empty())
-    add_pairs(arguments.srdf, description, warnings);
-  return description;
+    add_pairs(arguments.srdf, robot);
+  return robot;
 }
 
 }  // namespace
+
+Result<RobotDescription> read_model_folder(const std::filesystem::path& folder) {
+  try {
+    const std::filesystem::path file = folder / kChainFile;
+    const ChainFile chain(file, read_text(file, kMaxChainFileBytes));
+    RobotDescription description;
+    description.label = chain.text("label");
+    if (const auto error = check_label(description.label))
+      return Error{error->code, file.string() + ": " + error->message};
+    description.base_link = chain.text("base");
+    description.tip_link = chain.text("tip");
+    description.T_tip_transfer = chain.transfer();
+    description.task_axes = chain.axes();
+    description.held_joints = chain.hold();
+    description.never_colliding = chain.never_colliding();
+    description.urdf = read_text(folder / kUrdfFile, kMaxUrdfBytes);
+    return description;
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
 
 Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
   const auto parts = split(text, " ,\t");
@@ -172,17 +306,16 @@ bool says_transfer(const RobotArguments& arguments) {
   return !arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable);
 }
 
-Result<RobotDescription> describe_robot(const RobotArguments& arguments,
-                                        std::vector<std::string>* warnings) {
+Result<DescribedRobot> describe_robot(const RobotArguments& arguments) {
   try {
-    std::vector<std::string> said;
-    RobotDescription description = put_together(arguments, said);
-    if (warnings != nullptr)
-      *warnings = std::move(said);
-    return description;
+    return put_together(arguments);
   } catch (const Failure& failure) {
     return failure.error();
   }
+}
+
+Result<kinematics::RobotModel> read_model(DescribedRobot robot) {
+  return kinematics::read_model(std::move(robot.description), std::move(robot.urdf));
 }
 
 }  // namespace kinship::models

@@ -7,8 +7,18 @@
 
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::models {
+
+inline constexpr std::string_view kChainFile = "chain.toml";
+inline constexpr std::string_view kUrdfFile = "robot.urdf";
+
+/// The robot of a folder with chain.toml and robot.urdf (README.md). The URDF is taken as text;
+/// kinematics::read_chain judges it.
+/// \return the description; NotFound if the folder or one of its files is missing; InvalidInput
+///         or TooLarge that names file, field and value otherwise.
+Result<RobotDescription> read_model_folder(const std::filesystem::path& folder);
 
 /// A robot as a command line names it: a model folder, or a URDF file with the missing data.
 /// Arguments beside a model folder replace the values of its chain.toml.
@@ -27,13 +37,22 @@ struct RobotArguments {
   std::vector<std::string> without_collision = {};  ///< links that may have visuals and no solid
 };
 
+/// The description that the files of a robot make.
+struct DescribedRobot {
+  RobotDescription description;
+  kinematics::UrdfModel urdf = {};  ///< if it was parsed: an SRDF needs the links
+  /// On parts of the files that the robot cannot have: links that an SRDF names and the URDF does
+  /// not have.
+  std::vector<std::string> warnings = {};
+};
+
 /// Reads the files and makes the description. The URDF is taken as text, unless an SRDF needs its
 /// links.
-/// \param warnings  if not null: texts on parts of the files that the robot cannot have: links that
-///                  an SRDF names and the URDF does not have.
 /// \return InvalidInput, NotFound or TooLarge with the argument or file named.
-Result<RobotDescription> describe_robot(const RobotArguments& arguments,
-                                        std::vector<std::string>* warnings = nullptr);
+Result<DescribedRobot> describe_robot(const RobotArguments& arguments);
+
+/// With the chain. \return also the errors of kinematics::read_model.
+Result<kinematics::RobotModel> read_model(DescribedRobot robot);
 
 /// Whether the transfer frame is given: by `transfer`, or by a model folder, whose chain.toml must
 /// have it. Otherwise it is the tip link's frame.

@@ -8,9 +8,8 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
-#include "robots/models/model_folder.hpp"
+#include "robots/models/robot_arguments.hpp"
 #include "robots/models/text_file.hpp"
-#include "robots/models/xacro.hpp"
 
 namespace kinship::models {
 namespace {

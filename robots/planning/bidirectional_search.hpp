@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "robots/planning/birrt.hpp"
+#include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/planning_budget.hpp"
 #include "robots/planning/region_constraint.hpp"
-#include "robots/planning/samples_ahead.hpp"
-#include "robots/planning/search_recorder.hpp"
 #include "robots/planning/tree.hpp"
 
 /// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <memory>
 
@@ -8,9 +9,34 @@
 #include "robots/kinematics/chain.hpp"
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/experience_guide.hpp"
-#include "robots/planning/guidance_gate.hpp"
 
 namespace kinship::planning {
+
+/// A configuration beyond this squared Mahalanobis distance from every component of a mixture is
+/// unrelated to the experience behind it.
+inline constexpr double kGateDistance = 60;
+/// Added to each variance before distances are measured, squared joint units: a narrow component is
+/// no wall. With it kGateDistance was found not to fire on good distributions.
+inline constexpr double kGateVariance = 0.05 * 0.05;
+
+/// The mixture with kGateVariance added to each variance.
+Mixture widened(const Mixture& mixture);
+
+/// Distance of a query from a distribution: squared Mahalanobis distances to the nearest component,
+/// dimensionless, its variances widened by kGateVariance.
+struct QueryDistance {
+  double start = 0;
+  double goal = 0;  ///< of the nearest goal; infinite if there is none
+};
+
+/// Joints wider than a turn count by the shorter way around.
+/// \param start  dof.
+/// \param goals  dof x n.
+/// \throws std::invalid_argument if chain, mixture, start and goals differ in size.
+/// \throws Failure(Internal) if a covariance is not positive definite.
+QueryDistance query_distance(const kinematics::Chain& chain, const Mixture& mixture,
+                             const Eigen::Ref<const Eigen::VectorXd>& start,
+                             const Eigen::Ref<const Eigen::MatrixXd>& goals);
 
 /// How a query uses its guidance.
 struct GuideOptions {

@@ -2,7 +2,6 @@
 
 // Included by the units that are compiled for one instruction set: nothing here may bring inline
 // functions or templates of other libraries along that these units would use.
-
 namespace kinship::planning {
 
 inline constexpr long kScanBlock = 16;  ///< configurations scanned side by side
@@ -40,5 +39,13 @@ void scan_nearest_avx512(const ScannedNodes&, long, long, const float*, ScanResu
 void box_distances_sse2(const ScannedNodes&, const ScannedNodes&, long, const float*, float*);
 void box_distances_avx2(const ScannedNodes&, const ScannedNodes&, long, const float*, float*);
 void box_distances_avx512(const ScannedNodes&, const ScannedNodes&, long, const float*, float*);
+
+struct Scans {
+  NearestScan nodes;
+  BoxDistances boxes;
+};
+
+/// The scans for this machine's instruction set.
+const Scans& fastest_scans();
 
 }  // namespace kinship::planning

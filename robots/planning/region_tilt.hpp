@@ -5,10 +5,30 @@
 
 #include "proto/types/limits.hpp"
 #include "robots/planning/joint_turns.hpp"
-#include "robots/planning/region_angles.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 /// For this library's sources only.
 namespace kinship::planning {
+
+inline constexpr int kMaxIterations = 12;                                     ///< of a projection
+inline constexpr double kAimed = 0.5 * RegionConstraint::kWaypointTolerance;  ///< it ends there
+inline constexpr double kSquaredDamping =
+    1e-4;  ///< of singular values about 1 (m or rad per joint unit)
+inline constexpr double kMinCosine =
+    1e-3;  ///< of the pitch: its derivative is unbounded at 90 degrees
+
+/// A rotation outside its bounds.
+struct AngleExcess {
+  Eigen::Vector3d beyond;  ///< roll, pitch, yaw, rad; 0 within the bounds
+  bool is_flipped;         ///< whether the rotation counts as (roll + pi, pi - pitch, yaw + pi)
+};
+
+/// The excess of a rotation in the one of its two representations that is less outside, angles
+/// modulo a full turn.
+/// \param angles  roll, pitch, yaw, rad; arbitrary for unbounded ones.
+/// \param bounds  2 x 3: lower, upper; both infinite, or less than a turn apart.
+AngleExcess angle_excess(const Eigen::Vector3d& angles,
+                         const Eigen::Ref<const Eigen::Matrix<double, 2, 3>>& bounds);
 
 /// Roll and pitch of the frame at the end of a chain, in a region that bounds only these. They
 /// depend only on the third row of the frame's rotation; a row is swept along the chain at a

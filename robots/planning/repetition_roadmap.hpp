@@ -5,7 +5,6 @@
 #include <random>
 
 #include "robots/planning/birrt.hpp"
-#include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/configuration_sampler.hpp"
 
 namespace kinship::planning {

@@ -1,20 +1,116 @@
 #include "robots/planning/roadmap_graph.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
+#include <vector>
 
-#include "robots/planning/component_links.hpp"
+#include "proto/mixture/cholesky.hpp"
+#include "robots/planning/configuration_sampler.hpp"
+#include "robots/planning/guided_sampler.hpp"
 #include "robots/planning/path_vertices.hpp"
 
 namespace kinship::planning {
 namespace {
 
 constexpr int kMaxDraws = 10;  // per vertex, until one lies within the bounds
+constexpr double kClose = 1;   // Bhattacharyya distance
+
+double half_log_determinant(const Eigen::MatrixXd& factor) {
+  return factor.diagonal().array().log().sum();
+}
 
 }  // namespace
+
+/// The components of a sampler's mixture, their means moved into its bounds where a turn fits.
+class ComponentShapes {
+ public:
+  /// \param sampler  with a mixture.
+  explicit ComponentShapes(const ConfigurationSampler& sampler);
+
+  Eigen::Index size() const noexcept { return means_.cols(); }
+  Eigen::VectorXd mean(Eigen::Index k) const { return means_.col(k); }
+  const Eigen::MatrixXd& factor(Eigen::Index k) const { return factors_[index(k)]; }
+
+  /// Squared Mahalanobis distance per joint, the component's variances widened by kGateVariance.
+  double doubt(Eigen::Index k, const Eigen::VectorXd& q) const;
+  double min_doubt(const Eigen::VectorXd& q) const;
+
+  /// Pairs (i < j) of close components, see plan_roadmap.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> links(int neighbours) const;
+
+ private:
+  /// Of component k among covariances and their factors.
+  std::size_t index(Eigen::Index k) const noexcept {
+    return factors_.size() == 1 ? 0 : static_cast<std::size_t>(k);
+  }
+  double bhattacharyya_distance(Eigen::Index i, Eigen::Index j) const;
+
+  Eigen::MatrixXd means_;
+  std::vector<Eigen::MatrixXd> covariances_;
+  std::vector<Eigen::MatrixXd> factors_, widened_factors_;  // lower Cholesky factors
+};
+
+ComponentShapes::ComponentShapes(const ConfigurationSampler& sampler)
+    : means_(sampler.mixture()->means()),
+      covariances_(sampler.mixture()->covariances()),
+      factors_(mixture::cholesky_factors(*sampler.mixture())),
+      widened_factors_(mixture::cholesky_factors(widened(*sampler.mixture()))) {
+  for (Eigen::Index k = 0; k < means_.cols(); ++k)
+    if (const auto moved = sampler.moved_into_bounds(means_.col(k)))
+      means_.col(k) = *moved;
+}
+
+double ComponentShapes::doubt(Eigen::Index k, const Eigen::VectorXd& q) const {
+  Eigen::VectorXd offset = q - means_.col(k);
+  widened_factors_[index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
+  return offset.squaredNorm() / static_cast<double>(offset.size());
+}
+
+double ComponentShapes::min_doubt(const Eigen::VectorXd& q) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < size(); ++k)
+    least = std::min(least, doubt(k, q));
+  return least;
+}
+
+// Kailath, The Divergence and Bhattacharyya Distance Measures in Signal Selection (1967).
+double ComponentShapes::bhattacharyya_distance(Eigen::Index i, Eigen::Index j) const {
+  const std::size_t first = index(i), second = index(j);
+  const Eigen::MatrixXd factor = ((covariances_[first] + covariances_[second]) / 2).llt().matrixL();
+  Eigen::VectorXd offset = means_.col(i) - means_.col(j);
+  factor.triangularView<Eigen::Lower>().solveInPlace(offset);
+  return offset.squaredNorm() / 8 + half_log_determinant(factor) -
+         (half_log_determinant(factors_[first]) + half_log_determinant(factors_[second])) / 2;
+}
+
+std::vector<std::pair<Eigen::Index, Eigen::Index>> ComponentShapes::links(int neighbours) const {
+  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(size(), size());
+  for (Eigen::Index i = 0; i < size(); ++i)
+    for (Eigen::Index j = i + 1; j < size(); ++j)
+      distances(i, j) = distances(j, i) = bhattacharyya_distance(i, j);
+  std::set<std::pair<Eigen::Index, Eigen::Index>> close;
+  std::vector<Eigen::Index> others(static_cast<std::size_t>(size()));
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    std::iota(others.begin(), others.end(), Eigen::Index{0});
+    others.erase(others.begin() + i);
+    std::stable_sort(others.begin(), others.end(), [&](Eigen::Index a, Eigen::Index b) {
+      return distances(a, i) < distances(b, i);
+    });
+    int rank = 0;
+    for (const Eigen::Index j : others)
+      if (rank++ < neighbours || distances(j, i) <= kClose)
+        close.emplace(std::min(i, j), std::max(i, j));
+    others.push_back(0);
+  }
+  return {close.begin(), close.end()};
+}
 
 RoadmapGraph::RoadmapGraph(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals, Way way)
     : way_(std::move(way)), goal_count_(static_cast<std::size_t>(goals.cols())) {

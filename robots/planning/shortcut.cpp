@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "robots/planning/constrained_stepper.hpp"
 #include "robots/planning/path_vertices.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 namespace kinship::planning {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "robots/planning/bidirectional_search.hpp"
-#include "robots/planning/constrained_stepper.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 /// The two steerings of BidirectionalSearch; for this library's sources only.
 namespace kinship::planning {

@@ -9,7 +9,6 @@
 #include "proto/types/split_mix.hpp"
 #include "proto/types/stopped.hpp"
 #include "robots/planning/birrt.hpp"
-#include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/guided_sampler.hpp"
 
 namespace kinship::rehearsal {

@@ -9,24 +9,18 @@
 #include "robots/geometry/known_shapes.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/same_arm.hpp"
-#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::runtime {
 namespace {
 
 constexpr std::size_t kMaxGeometryBytes = 1024;  // of words, with room for more in a message
+constexpr RetryAfter kMended = std::chrono::minutes(1);  // a damaged row, by people
 
 RegisterReply refused(const Error& error) {
   RegisterReply reply;
   reply.status = RegisterStatus::Refused;
   reply.message = error.message;
   return reply;
-}
-
-Result<kinematics::Chain> read_labelled_chain(const RobotDescription& description) {
-  if (const auto error = check_label(description.label))
-    return *error;
-  return kinematics::read_chain(description);
 }
 
 /// The part of a reply that the description alone gives.
@@ -47,9 +41,9 @@ void describe_known(const Robot& known, const std::string& label, RegisterReply&
 }
 
 /// A robot whose geometry cannot be read is a robot all the same: nothing is filtered then.
-Robot robot_of(const RobotDescription& description, kinematics::Chain chain) {
-  Robot robot{chain.digest(), description.label, std::move(chain)};
-  if (Result<geometry::KnownShapes> known = geometry::read_known_shapes(description, robot.chain)) {
+Robot robot_of(const kinematics::RobotModel& model) {
+  Robot robot{model.chain.digest(), model.description.label, model.chain};
+  if (Result<geometry::KnownShapes> known = geometry::read_known_shapes(model)) {
     robot.geometry = geometry::describe(*known);
     robot.grade = known->grade;
     robot.shapes = std::move(known).value().shapes;
@@ -70,56 +64,55 @@ RobotRegistry::RobotRegistry(store::Store& store, Options options)
   }
 }
 
-RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
-                                            std::int64_t now_ms, const LabelRule& may_take) {
-  Result<kinematics::Chain> chain = read_labelled_chain(description);
-  if (!chain)
-    return refused(chain.error());
-
-  RegisterReply reply = reply_about(*chain);
-  if (const auto refusal = refusal_of_known(reply.robot, may_take))
-    return refused(*refusal);
+RegisterReply RobotRegistry::register_robot(const Candidate& candidate, std::int64_t now_ms,
+                                            const LabelRule& may_take) {
+  if (!candidate.robot())
+    return refused(candidate.robot().error());
+  const kinematics::RobotModel& robot = *candidate.robot();
+  RegisterReply reply = reply_about(robot.chain);
+  if (auto refusal = refusal_of_known(robot, may_take))
+    return *std::move(refusal);
   const bool is_in_memory = store_.is_shared() && find_in_memory(reply.robot) != nullptr;
-  const Result<RegisterStatus> status = is_in_memory
-                                            ? RegisterStatus::Known
-                                            : store_.register_robot({.digest = reply.robot,
-                                                                     .description = description,
-                                                                     .dof = reply.dof,
-                                                                     .registered_ms = now_ms});
+  const Result<RegisterStatus> status =
+      is_in_memory ? RegisterStatus::Known
+                   : store_.register_robot({.digest = reply.robot,
+                                            .description = robot.description,
+                                            .dof = reply.dof,
+                                            .registered_ms = now_ms});
   if (!status)
     return refused(status.error());
   // Another client may have registered it meanwhile.
   if (*status == RegisterStatus::Known)
-    if (const auto refusal = refusal_of_known(reply.robot, may_take))
-      return refused(*refusal);
+    if (auto refusal = refusal_of_known(robot, may_take))
+      return *std::move(refusal);
   reply.status = *status;
-  reply.same_arms =
-      is_in_memory ? same_arms_in_memory(reply.robot, *chain) : same_arms(reply.robot, *chain);
+  reply.same_arms = is_in_memory ? same_arms_in_memory(reply.robot, robot.chain)
+                                 : same_arms(reply.robot, robot.chain);
 
   if (reply.status == RegisterStatus::Registered) {
     const std::lock_guard lock(mutex_);
     robots_.erase(reply.robot);  // of a row that was damaged, and is written anew
   } else {
     try {
-      take_geometry(robot_of(description, std::move(chain).value()), description, now_ms, reply);
+      take_geometry(robot, now_ms, reply);
     } catch (const Failure&) {
       if (!is_in_memory)
         throw;  // else it is known all the same, and its geometry is offered again
     }
   }
-  if (const Result<RobotPointer> known = find(reply.robot))
-    describe_known(*known.value(), description.label, reply);
+  if (const Result<RobotPointer> known = find(reply.robot, &robot))
+    describe_known(*known.value(), robot.description.label, reply);
   return reply;
 }
 
-std::optional<RegisterReply> RobotRegistry::register_known(const RobotDescription& description,
+std::optional<RegisterReply> RobotRegistry::register_known(const Candidate& candidate,
                                                            const LabelRule& may_take) const {
+  if (!candidate.robot())
+    return refused(candidate.robot().error());
   if (!store_.is_shared())
     return std::nullopt;  // registering mends a row that is damaged
-  Result<kinematics::Chain> chain = read_labelled_chain(description);
-  if (!chain)
-    return refused(chain.error());
-  RegisterReply reply = reply_about(*chain);
+  const kinematics::RobotModel& robot = *candidate.robot();
+  RegisterReply reply = reply_about(robot.chain);
   const RobotPointer known = find_in_memory(reply.robot);
   if (!known)
     return std::nullopt;
@@ -127,39 +120,44 @@ std::optional<RegisterReply> RobotRegistry::register_known(const RobotDescriptio
     if (const auto refusal = may_take(known->label))
       return refused(*refusal);
   reply.status = RegisterStatus::Known;
-  reply.same_arms = same_arms_in_memory(reply.robot, *chain);
-  if (robot_of(description, std::move(chain).value()).grade > known->grade)
+  reply.same_arms = same_arms_in_memory(reply.robot, robot.chain);
+  if (robot_of(robot).grade > known->grade)
     return std::nullopt;  // which is to be written
-  describe_known(*known, description.label, reply);
+  describe_known(*known, robot.description.label, reply);
   return reply;
 }
 
 bool RobotRegistry::offer_geometry(const Digest& robot, const RobotDescription& description,
                                    std::int64_t now_ms) {
-  Result<kinematics::Chain> chain = kinematics::read_chain(description);
-  if (!chain || chain->digest() != robot)
+  const Result<kinematics::RobotModel> offered = kinematics::read_model(description);
+  if (!offered || offered->chain.digest() != robot)
     return false;
   RegisterReply reply;
   reply.robot = robot;
-  reply.dof = static_cast<std::uint32_t>(chain->dof());
-  take_geometry(robot_of(description, std::move(chain).value()), description, now_ms, reply);
+  take_geometry(*offered, now_ms, reply);
   return reply.took_geometry;
 }
 
-std::optional<Error> RobotRegistry::refusal_of_known(const Digest& robot,
-                                                     const LabelRule& may_take) {
+std::optional<RegisterReply> RobotRegistry::refusal_of_known(const kinematics::RobotModel& robot,
+                                                             const LabelRule& may_take) {
   if (!may_take)
     return std::nullopt;
-  const Result<RobotPointer> known = find(robot);
-  if (known)
-    return may_take(known.value()->label);
-  if (known.error().code == ErrorCode::NotFound)
+  const Digest digest = robot.chain.digest();
+  const Result<RobotPointer> known = find(digest, &robot);
+  if (!known && known.error().code == ErrorCode::NotFound)
     return std::nullopt;
   // Registering its robot writes a damaged row anew, so its label still counts.
-  const std::optional<std::string> label = listed_label(robot);
-  if (!label)
-    throw Failure(known.error());
-  return may_take(*label);
+  const std::optional<std::string> label = known ? known.value()->label : listed_label(digest);
+  if (!label) {
+    RegisterReply later = refused({known.error().code,
+                                   "the label under which this robot is known "
+                                   "cannot be read: " +
+                                       known.error().message});
+    later.retry_after = kMended;
+    return later;
+  }
+  const std::optional<Error> refusal = may_take(*label);
+  return refusal ? std::optional(refused(*refusal)) : std::nullopt;
 }
 
 std::optional<std::string> RobotRegistry::listed_label(const Digest& robot) const {
@@ -174,20 +172,22 @@ std::optional<std::string> RobotRegistry::listed_label(const Digest& robot) cons
 }
 
 /// Of a robot that is known. The second client with the same finds the first's.
-void RobotRegistry::take_geometry(Robot better, const RobotDescription& description,
-                                  std::int64_t now_ms, RegisterReply& reply) {
+void RobotRegistry::take_geometry(const kinematics::RobotModel& robot, std::int64_t now_ms,
+                                  RegisterReply& reply) {
   const std::uint64_t changes_before = changes();
-  const Result<RobotPointer> known = find(reply.robot);
+  const Result<RobotPointer> known = find(reply.robot, &robot);
+  Robot better = robot_of(robot);
   if (!known || known.value()->grade >= better.grade)
     return;
   better.label = known.value()->label;
   better.geometry_revision = known.value()->geometry_revision + 1;
-  reply.took_geometry = store_.replace_geometry({.digest = reply.robot,
-                                                 .description = description,
-                                                 .dof = reply.dof,
-                                                 .registered_ms = now_ms,
-                                                 .geometry_revision = better.geometry_revision,
-                                                 .geometry_ms = now_ms});
+  reply.took_geometry =
+      store_.replace_geometry({.digest = reply.robot,
+                               .description = robot.description,
+                               .dof = static_cast<std::uint32_t>(robot.chain.dof()),
+                               .registered_ms = now_ms,
+                               .geometry_revision = better.geometry_revision,
+                               .geometry_ms = now_ms});
   if (!reply.took_geometry)
     return;
   // A robot renamed or removed meanwhile is not kept; nor may one read before the write be.
@@ -280,15 +280,22 @@ std::vector<std::string> RobotRegistry::same_arms_in_memory(const Digest& robot,
 }
 
 Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
+  return find(robot, nullptr);
+}
+
+Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot,
+                                                        const kinematics::RobotModel* candidate) {
   if (RobotPointer known = find_in_memory(robot))
     return known;
-  Result<RobotPointer> found = read(robot);
+  Result<RobotPointer> found = read(robot, candidate);
   if (!found && found.error().code == ErrorCode::Storage)
     options_.on_unreadable(found.error().message);
   return found;
 }
 
-Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
+/// \param candidate  if not null, a description whose URDF is likely the same text.
+Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot,
+                                                        const kinematics::RobotModel* candidate) {
   const std::uint64_t changes_before = changes();
   std::optional<store::RobotRecord> record;
   try {
@@ -301,14 +308,16 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
   if (!record)
     return Error{ErrorCode::NotFound,
                  "robot " + robot.short_hex() + " is not known here; register it first"};
-  Result<kinematics::Chain> chain = kinematics::read_chain(record->description);
   const std::string name = "robot '" + record->description.label + "' (" + robot.short_hex() + ")";
-  if (!chain)
-    return Error{ErrorCode::Storage, name + " cannot be read any more: " + chain.error().message};
-  if (chain->digest() != robot)
-    return Error{ErrorCode::Storage,
-                 name + " now reads as another robot, " + chain->digest().short_hex()};
-  Robot known = robot_of(record->description, std::move(chain).value());
+  const bool is_same_text = candidate && candidate->description.urdf == record->description.urdf;
+  const Result<kinematics::RobotModel> model = kinematics::read_model(
+      std::move(record->description), is_same_text ? candidate->urdf : kinematics::UrdfModel());
+  if (!model)
+    return Error{ErrorCode::Storage, name + " cannot be read any more: " + model.error().message};
+  const Digest digest = model->chain.digest();
+  if (digest != robot)
+    return Error{ErrorCode::Storage, name + " now reads as another robot, " + digest.short_hex()};
+  Robot known = robot_of(*model);
   known.geometry_revision = record->geometry_revision;
   return keep(std::move(known), changes_before);
 }

@@ -17,9 +17,8 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::runtime {
@@ -35,6 +34,19 @@ struct Robot {
   GeometryGrade grade = GeometryGrade::None;
   std::string geometry = {};            ///< description of the shapes
   std::uint64_t geometry_revision = 0;  ///< number of times better geometry was taken over
+};
+
+/// A robot that asks to be registered: its description, read once, or why it is none.
+class Candidate {
+ public:
+  Candidate(RobotDescription description)  // NOLINT(google-explicit-constructor): reads it
+      : robot_(kinematics::read_model(std::move(description))) {}
+
+  /// The robot, or the error of kinematics::read_model().
+  const Result<kinematics::RobotModel>& robot() const noexcept { return robot_; }
+
+ private:
+  Result<kinematics::RobotModel> robot_;
 };
 
 /// The robots of a store, with a cache of the most recently used, parsed. May be shared between
@@ -58,9 +70,10 @@ class RobotRegistry {
   explicit RobotRegistry(store::Store& store) : RobotRegistry(store, Options{}) {}
   RobotRegistry(store::Store& store, Options options);
 
-  /// Parses, identifies and stores a robot, and lists other robots of the store that are the same
+  /// Identifies and stores a robot, and lists other robots of the store that are the same
   /// arm: at most kMaxSameArms labels, in their order, fewer if the store cannot be read. Refused,
-  /// with the reason, if the description breaks a rule or its label belongs to another robot.
+  /// with the reason, if the description breaks a rule or its label belongs to another robot; for
+  /// now, if `may_take` has to judge a label that a damaged row does not give.
   ///
   /// The description replaces a known robot's, except the label, if its geometry is better: exact
   /// shapes before solids around meshes before those of some links only before none; of equals the
@@ -75,13 +88,13 @@ class RobotRegistry {
   /// \param may_take  called with the label under which the robot is known, before any of its data
   ///                  is changed or returned; empty: every caller may register a known robot.
   /// \throws Failure(Storage), also if that label cannot be read now.
-  RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms,
+  RegisterReply register_robot(const Candidate& candidate, std::int64_t now_ms,
                                const LabelRule& may_take = {});
 
   /// The same from memory, without the store: if other servers share the store, for a robot in
   /// memory if the new geometry is not better than the known one, and for registrations that are
   /// refused whatever the store has. \return nothing if register_robot() has to be called.
-  std::optional<RegisterReply> register_known(const RobotDescription& description,
+  std::optional<RegisterReply> register_known(const Candidate& candidate,
                                               const LabelRule& may_take = {}) const;
 
   /// Takes over geometry of a known robot from another store if it is better, as register_robot()
@@ -129,13 +142,15 @@ class RobotRegistry {
     std::uint64_t last_used = 0;
   };
 
-  Result<RobotPointer> read(const Digest& robot);
+  Result<RobotPointer> find(const Digest& robot, const kinematics::RobotModel* candidate);
+  Result<RobotPointer> read(const Digest& robot, const kinematics::RobotModel* candidate);
   RobotPointer keep(Robot robot, std::uint64_t changes);
   std::uint64_t changes() const;
   void forget(const Digest& robot, bool is_deleted);
-  void take_geometry(Robot better, const RobotDescription& description, std::int64_t now_ms,
+  void take_geometry(const kinematics::RobotModel& robot, std::int64_t now_ms,
                      RegisterReply& reply);
-  std::optional<Error> refusal_of_known(const Digest& robot, const LabelRule& may_take);
+  std::optional<RegisterReply> refusal_of_known(const kinematics::RobotModel& robot,
+                                                const LabelRule& may_take);
   std::optional<std::string> listed_label(const Digest& robot) const;
   std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
   std::vector<std::string> same_arms_in_memory(const Digest& robot,

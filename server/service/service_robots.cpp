@@ -29,16 +29,15 @@ void Service::register_robot(RobotDescription description,
                              runtime::RobotRegistry::LabelRule may_take) {
   const auto registration = std::make_shared<const Registration>(
       Registration{std::move(description), std::move(done), client, std::move(may_take)});
-  const auto ask_store = [this, registration] {
+  begin(memory_task_pool_, registration, [this, registration] {
     const Registration& asked = *registration;
-    announce_registered(
-        asked, robots_.register_robot(asked.description, options_.clock.unix_ms(), asked.may_take));
-  };
-  begin(memory_task_pool_, registration, [this, registration, ask_store] {
-    const Registration& asked = *registration;
-    if (const auto known = robots_.register_known(asked.description, asked.may_take))
+    const auto robot = std::make_shared<const runtime::Candidate>(asked.description);
+    if (const auto known = robots_.register_known(*robot, asked.may_take))
       return announce_registered(asked, *known);
-    begin(short_task_pool_, registration, ask_store);
+    begin(short_task_pool_, registration, [this, registration, robot] {
+      announce_registered(*registration, robots_.register_robot(*robot, options_.clock.unix_ms(),
+                                                                registration->may_take));
+    });
   });
 }
 

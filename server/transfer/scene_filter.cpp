@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "robots/collision/always_touching.hpp"
+#include "robots/collision/pair_sampling.hpp"
 #include "server/transfer/collision_filter.hpp"
 
 namespace kinship::transfer {

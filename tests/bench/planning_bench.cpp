@@ -21,7 +21,7 @@
 
 #include "client/ompl/ompl_planner.hpp"
 #include "client/ompl/state_space.hpp"
-#include "robots/planning/cbirrt2.hpp"
+#include "robots/planning/birrt.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/shelf_cell.hpp"

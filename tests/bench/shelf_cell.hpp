@@ -70,8 +70,7 @@ inline Eigen::MatrixXd free_configurations(const kinematics::Chain& chain,
 }
 
 inline geometry::RobotShapes model_shapes(const std::string& name) {
-  return geometry::read_shapes(test::model_description(name), test::model_chain(name))
-      .value_or_throw();
+  return geometry::read_shapes(test::robot_model(name)).value_or_throw();
 }
 
 }  // namespace kinship::bench

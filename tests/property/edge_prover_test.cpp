@@ -70,16 +70,17 @@ Robot robot_of(const std::string& name, const char* urdf, const std::string& tip
   description.base_link = "base";
   description.tip_link = tip;
   const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  return {name, chain, geometry::read_shapes(description, chain).value_or_throw()};
+  return {
+      name, chain,
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw()};
 }
 
 /// Those of the lanes' test, all others of robots/models, two that slide, one with a mesh.
 std::vector<Robot> all_robots(Random& random) {
   std::vector<Robot> all = test::robots(random);
   const kinematics::Chain chain = test::model_chain("planar_5r_b");
-  all.push_back(
-      {"planar_5r_b", chain,
-       geometry::read_shapes(test::model_description("planar_5r_b"), chain).value_or_throw()});
+  all.push_back({"planar_5r_b", chain,
+                 geometry::read_shapes(test::robot_model("planar_5r_b")).value_or_throw()});
   all.push_back(robot_of("gantry", kGantry, "tool"));
   all.push_back(robot_of("reacher", kReacher, "hinge"));
   Robot meshes = all.front();

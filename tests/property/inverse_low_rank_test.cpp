@@ -11,7 +11,6 @@
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/jacobian.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "robots/collision/body.hpp"
-#include "robots/collision/body_pairs.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/geometry/point_cloud.hpp"
 #include "tests/support/box_mesh.hpp"
@@ -108,8 +107,7 @@ inline std::vector<Robot> robots(Random& random) {
   for (const char* name :
        {"panda", "iiwa7", "iiwa14", "ur10e", "sawyer", "sara_like", "planar_5r_a", "planar_7r_c"}) {
     const kinematics::Chain chain = model_chain(name);
-    all.push_back(
-        {name, chain, geometry::read_shapes(model_description(name), chain).value_or_throw()});
+    all.push_back({name, chain, geometry::read_shapes(robot_model(name)).value_or_throw()});
   }
   for (const double sliding_share : {0.0, 0.0, 0.4, 0.4})
     all.push_back(random_robot(6, sliding_share, random));

@@ -2,8 +2,7 @@
 
 #include <filesystem>
 
-#include "robots/kinematics/urdf.hpp"
-#include "robots/models/model_folder.hpp"
+#include "robots/models/robot_arguments.hpp"
 #include "tests/support/places.hpp"
 
 namespace kinship::test {
@@ -11,6 +10,10 @@ namespace kinship::test {
 RobotDescription model_description(const std::string& name) {
   const auto folder = std::filesystem::path(test::source_dir()) / "robots" / "models" / name;
   return models::read_model_folder(folder).value_or_throw();
+}
+
+kinematics::RobotModel robot_model(const std::string& name) {
+  return kinematics::read_model(model_description(name)).value_or_throw();
 }
 
 kinematics::Chain model_chain(const std::string& name) {

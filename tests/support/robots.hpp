@@ -4,14 +4,16 @@
 #include <random>
 #include <string>
 
-#include "proto/types/robot_description.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::test {
 
 /// A robot of robots/models, for example "panda".
 /// \throws Failure if it cannot be read.
 RobotDescription model_description(const std::string& name);
+
+/// It, parsed.
+kinematics::RobotModel robot_model(const std::string& name);
 
 /// Its chain.
 kinematics::Chain model_chain(const std::string& name);

@@ -17,7 +17,6 @@
 #include "robots/inverse/inverse.hpp"
 #include "robots/models/loaded_robot.hpp"
 #include "robots/planning/birrt.hpp"
-#include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/experience_guide.hpp"
 #include "robots/planning/goal_configurations.hpp"

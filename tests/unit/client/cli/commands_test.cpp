@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "proto/types/exit_code.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/support/urdf_parses.hpp"
 
 namespace kinship::cli::commands_test {
 namespace {
@@ -42,6 +44,34 @@ Answer run_without_server(std::vector<std::string> command, const char* timeout_
   command.insert(command.begin(),
                  {"--domain", std::to_string(domain.number()), "--timeout", timeout_s});
   return run_command(command);
+}
+
+TEST(Register, ParsesTheUrdfOnce) {
+  const test::TemporaryDirectory folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    const std::filesystem::path file = folder / name.c_str();
+    std::ofstream(file, std::ios::binary) << text;
+    return file.string();
+  };
+  write("bar.stl", test::BoxMesh({0.3, 0.1, 0.1}).binary_stl());
+  const std::string urdf = write(
+      "arm.urdf",
+      "<robot name='arm'><link name='base'/><link name='bar'><collision><geometry><mesh "
+      "filename='bar.stl'/></geometry></collision></link><joint name='j' type='revolute'><parent "
+      "link='base'/><child link='bar'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' "
+      "velocity='1'/></joint></robot>");
+  const std::string srdf = write(
+      "arm.srdf",
+      "<robot name='arm'><disable_collisions link1='base' link2='bar' reason='Adjacent'/></robot>");
+  std::vector<std::string> command = {"robots", "register", urdf, "--base", "base", "--tip", "bar"};
+  for (const bool has_srdf : {false, true}) {
+    if (has_srdf)
+      command.insert(command.end(), {"--srdf", srdf});
+    const std::size_t before = test::urdf_parses();
+    const Answer answer = run_without_server(command);
+    EXPECT_EQ(answer.err.find("collision geometry"), std::string::npos) << answer.err;
+    EXPECT_EQ(test::urdf_parses() - before, 1U);
+  }
 }
 
 TEST(Commands, APageAndADocumentAreNotBothForStandardOutput) {

@@ -152,8 +152,9 @@ TEST(SuggestSrdf, WhatWasSeenTouchingIsChecked) {
       suggest_srdf, SuggestSrdfOptions{.robot = {.source = kModels + "ur10e"}, .samples = 2000});
   ASSERT_EQ(answer.code, kDone) << answer.err;
   const auto chain =
-      kinematics::read_chain(models::describe_robot({.source = kModels + "ur10e"}).value_or_throw())
-          .value_or_throw();
+      models::read_model(models::describe_robot({.source = kModels + "ur10e"}).value_or_throw())
+          .value_or_throw()
+          .chain;
   const auto excepted = geometry::read_srdf(answer.out, chain).value_or_throw();
   const std::size_t now_and_then = answer.err.find("touched now and then");
   ASSERT_NE(now_and_then, std::string::npos) << answer.err;

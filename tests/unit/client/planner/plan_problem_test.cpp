@@ -215,7 +215,9 @@ TEST(PlanProblem, AGoalWhoseOrientationAloneIsOutOfReachNamesTheAxesThatSolveIt)
   RobotDescription description = test::planar_description();
   description.task_axes = {};
   kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  const PlannedRobot robot{chain, geometry::read_shapes(description, chain).value_or_throw()};
+  const PlannedRobot robot{
+      chain,
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw()};
   Problem problem = wall_problem();
   Eigen::Isometry3d T_goal = kinematics::T_base_transfer(chain, problem.goal_configurations.col(0));
   T_goal.rotate(Eigen::AngleAxisd(1e-4, Eigen::Vector3d::UnitX()));

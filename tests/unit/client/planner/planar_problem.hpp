@@ -48,7 +48,8 @@ inline PlannedRobot planar_robot(const std::string& lower = "-2.8",
                                  const std::string& upper = "2.8") {
   const RobotDescription description = planar_description(lower, upper);
   kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
+  geometry::RobotShapes shapes =
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw();
   return {chain, shapes};
 }
 

@@ -1,4 +1,4 @@
-#include "robots/collision/always_touching.hpp"
+#include "robots/collision/pair_sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,9 @@ Surroundings random_surroundings(const kinematics::Chain& chain, std::mt19937_64
 TEST(AlwaysTouching, IsWhatTouchesInEnoughOfAllSamples) {
   const RobotDescription description = test::model_description("ur10e");
   const kinematics::Chain chain = test::model_chain("ur10e");
-  const RobotSolids robot(chain, geometry::read_shapes(description, chain).value_or_throw());
+  const RobotSolids robot(
+      chain,
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw());
   std::mt19937_64 generator(3);
   std::size_t found = 0;
   for (int scene = 0; scene < 6; ++scene) {
@@ -87,7 +89,9 @@ TEST(AlwaysTouching, WhatIsNotCheckedForItIsNamed) {
 TEST(AlwaysTouching, LinksAreLeftAloneWhereTheyAreNotAskedAbout) {
   const RobotDescription description = test::model_description("ur10e");
   const kinematics::Chain chain = test::model_chain("ur10e");
-  const RobotSolids robot(chain, geometry::read_shapes(description, chain).value_or_throw());
+  const RobotSolids robot(
+      chain,
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw());
   EXPECT_FALSE(always_touching(robot, {}, {.count = 200, .least = 1}).empty());
   Surroundings surroundings;
   surroundings.checks_links = false;

@@ -1,8 +1,8 @@
-#include "robots/collision/body_pairs.hpp"
+#include "robots/collision/body.hpp"
 
 #include <gtest/gtest.h>
 
-#include "robots/collision/lane_layout.hpp"
+#include "robots/collision/lane_world.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision::body_pairs_test {

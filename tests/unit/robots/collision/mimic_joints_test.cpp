@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "robots/collision/always_touching.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/edge_prover.hpp"
 #include "robots/collision/pair_sampling.hpp"
@@ -27,7 +26,9 @@ struct Arm {
 Arm arm() {
   const RobotDescription description = test::parallelogram_description();
   const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  return {chain, geometry::read_shapes(description, chain).value_or_throw()};
+  return {
+      chain,
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw()};
 }
 
 const Eigen::Vector4d kUp(0, 0, 0, 0), kLow(0, 1.1, 0, 0);
@@ -76,8 +77,10 @@ TEST(MimicJoints, ThatAreTooManyForTheLanesAreFoundByFcl) {
   description.urdf.insert(description.urdf.find("</robot>"), more);
   const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
   ASSERT_GT(chain.moving_joints(), kLaneJoints);
-  CollisionWorld world(chain, geometry::read_shapes(description, chain).value_or_throw(),
-                       ball_at("weight", {-0.2, 0, 0}, kLow));
+  CollisionWorld world(
+      chain,
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw(),
+      ball_at("weight", {-0.2, 0, 0}, kLow));
   EXPECT_TRUE(world.collides(kLow));
   EXPECT_FALSE(world.collides(kUp));
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kSeed = 2;
 
 CollisionWorld bare_world(const std::string& name, const Surroundings& surroundings = {}) {
-  const auto shapes = geometry::read_shapes(test::model_description(name), test::model_chain(name));
+  const auto shapes = geometry::read_shapes(test::robot_model(name));
   return CollisionWorld(test::model_chain(name), shapes.value(), surroundings);
 }
 
@@ -42,8 +42,7 @@ TEST_P(Model, IsFreeWhereItStandsReady) {
 class ModelOfCapsules : public Model {};
 
 TEST_P(ModelOfCapsules, HasCapsules) {
-  const auto shapes =
-      geometry::read_shapes(test::model_description(GetParam()), test::model_chain(GetParam()));
+  const auto shapes = geometry::read_shapes(test::robot_model(GetParam()));
   ASSERT_TRUE(shapes);
   EXPECT_TRUE(std::any_of(shapes->shapes.begin(), shapes->shapes.end(), [](const auto& shape) {
     return std::holds_alternative<CapsuleShape>(shape.shape);

@@ -56,7 +56,8 @@ TEST(PairSampling, ARareCollisionIsSeen) {
 TEST(PairSampling, CountsWhatAWorldFinds) {
   const RobotDescription description = test::model_description("panda");
   const kinematics::Chain chain = test::model_chain("panda");
-  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
+  geometry::RobotShapes shapes =
+      geometry::read_shapes(kinematics::read_model(description).value_or_throw()).value_or_throw();
   constexpr std::uint64_t kSamples = 600, kSeed = 5;
   const std::vector<SampledPair> pairs =
       sample_pairs(chain, shapes, {.samples = kSamples, .seed = kSeed});

@@ -1,4 +1,4 @@
-#include "robots/collision/sphere_cover.hpp"
+#include "robots/collision/solid.hpp"
 
 #include <gtest/gtest.h>
 

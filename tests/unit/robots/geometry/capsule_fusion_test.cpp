@@ -1,4 +1,4 @@
-#include "robots/geometry/capsule_fusion.hpp"
+#include "robots/geometry/link_shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,6 @@
 #include <random>
 #include <string>
 
-#include "robots/geometry/shape_rules.hpp"
-
 namespace kinship::geometry::fitted_shape_test {
 namespace {
 

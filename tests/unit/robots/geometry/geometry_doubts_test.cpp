@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "robots/geometry/visual_solids.hpp"
+#include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
 
@@ -41,9 +41,8 @@ struct Read {
 };
 
 Read read(const RobotDescription& description, const MeshSource& meshes = refuse_mesh) {
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  RobotShapes shapes = read_shapes(description, chain, meshes).value_or_throw();
-  return {std::move(chain), std::move(shapes)};
+  const kinematics::RobotModel robot = kinematics::read_model(description).value_or_throw();
+  return {robot.chain, read_shapes(robot, meshes).value_or_throw()};
 }
 
 std::string doubts_of(const Read& robot) {
@@ -121,14 +120,15 @@ TEST(GeometryDoubts, AChainWhoseTipLiesOnItsOnlyAxisHasNoneForThat) {
 }
 
 TEST(GeometryDoubts, AMeshScaledByZeroOrWithoutAreaIsRefusedByLinkName) {
-  const RobotDescription flat = describe(kSolid, mesh("1 1 0"), kSolid);
-  const kinematics::Chain chain = kinematics::read_chain(flat).value_or_throw();
-  const auto scaled = read_shapes(flat, chain, long_box);
+  const auto with_mesh = [](const std::string& scale) {
+    return kinematics::read_model(describe(kSolid, mesh(scale), kSolid)).value_or_throw();
+  };
+  const auto scaled = read_shapes(with_mesh("1 1 0"), long_box);
   ASSERT_FALSE(scaled);
   EXPECT_NE(scaled.error().message.find("link 'upper': mesh 'a.stl': its scale has a 0"),
             std::string::npos)
       << scaled.error().message;
-  const auto line = read_shapes(describe(kSolid, mesh(""), kSolid), chain, [](const std::string&) {
+  const auto line = read_shapes(with_mesh(""), [](const std::string&) {
     return Result<std::optional<Eigen::Matrix3Xd>>(
         std::optional<Eigen::Matrix3Xd>(test::BoxMesh({1, 0, 0}).triangles()));
   });

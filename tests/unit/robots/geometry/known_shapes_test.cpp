@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "robots/geometry/shape_rules.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
 
@@ -37,7 +37,7 @@ RobotDescription description(const std::string& base, const std::string& arm) {
 kinematics::Chain chain() { return kinematics::read_chain(description("", "")).value_or_throw(); }
 
 Result<KnownShapes> known(const RobotDescription& robot) {
-  return read_known_shapes(robot, chain());
+  return read_known_shapes(kinematics::read_model(robot).value_or_throw());
 }
 
 RobotDescription with_solid(RobotDescription robot, const std::string& link) {
@@ -95,9 +95,10 @@ TEST(KnownShapes, SolidsOfWhatHasNoMeshAreRefused) {
 }
 
 TEST(KnownShapes, CoversWhatIsAMesh) {
-  const RobotDescription robot = description(kBox, kMesh);
+  const kinematics::RobotModel robot =
+      kinematics::read_model(description(kBox, kMesh)).value_or_throw();
   const RobotShapes shapes =
-      read_shapes(robot, chain(), [](const std::string&) {
+      read_shapes(robot, [](const std::string&) {
         return Result<std::optional<Eigen::Matrix3Xd>>(test::BoxMesh({0.1, 0.2, 0.3}).triangles());
       }).value_or_throw();
   const MeshSolids solids = cover_links(shapes, chain()).value_or_throw();

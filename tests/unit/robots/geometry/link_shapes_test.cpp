@@ -32,7 +32,7 @@ std::string collision(const std::string& geometry, const std::string& origin = "
 }
 
 Result<RobotShapes> read(const RobotDescription& description) {
-  return read_shapes(description, kinematics::read_chain(description).value_or_throw());
+  return read_shapes(kinematics::read_model(description).value_or_throw());
 }
 
 TEST(ReadShapes, BlanksTabsAndLineBreaksMayStandAroundANumber) {
@@ -81,7 +81,7 @@ Result<std::optional<Eigen::Matrix3Xd>> cube_for(const std::string& uri) {
 
 Result<RobotShapes> read_with(const std::string& collisions, const MeshSource& meshes) {
   const RobotDescription description = describe(collisions);
-  return read_shapes(description, kinematics::read_chain(description).value_or_throw(), meshes);
+  return read_shapes(kinematics::read_model(description).value_or_throw(), meshes);
 }
 
 TEST(ReadShapes, RefusesAMeshByLinkNameUnlessToldWhereItIs) {
@@ -180,13 +180,11 @@ TEST(ReadShapes, RefusesANeverCollidingPairWithoutALink) {
 }
 
 TEST(ReadShapes, SaysNothingOnTheTerminal) {
-  const RobotDescription sound = describe("");
-  const kinematics::Chain chain = kinematics::read_chain(sound).value_or_throw();
-  RobotDescription broken = sound;
+  RobotDescription broken = describe("");
   broken.urdf = "<robot name='x'><link name='a'/><joint/></robot>";
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  EXPECT_FALSE(read_shapes(broken, chain));
+  EXPECT_FALSE(kinematics::read_model(broken));
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }

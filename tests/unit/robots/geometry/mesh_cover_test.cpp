@@ -6,8 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "robots/geometry/shape_rules.hpp"
-#include "robots/geometry/tight_fit.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "tests/support/box_mesh.hpp"
 
 namespace kinship::geometry::mesh_cover_test {

@@ -1,6 +1,6 @@
 // Maps that OctoMap itself has written, read here.
 
-#include "robots/geometry/octomap_file.hpp"
+#include "robots/geometry/point_file.hpp"
 
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>

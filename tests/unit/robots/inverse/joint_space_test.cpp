@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "robots/inverse/choice.hpp"
 #include "robots/inverse/counter_generator.hpp"
 #include "robots/inverse/descent.hpp"
+#include "robots/inverse/search.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/joint_distance.hpp"
 #include "tests/support/planar_arm.hpp"

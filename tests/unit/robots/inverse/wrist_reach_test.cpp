@@ -1,4 +1,4 @@
-#include "robots/inverse/wrist_reach.hpp"
+#include "robots/inverse/solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/robots.hpp"

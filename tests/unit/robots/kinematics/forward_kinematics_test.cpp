@@ -6,8 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "robots/kinematics/axis_turns.hpp"
-#include "robots/kinematics/jacobian.hpp"
+#include "robots/kinematics/joint_motion.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/unit/robots/kinematics/random_chains.hpp"
 

@@ -96,17 +96,18 @@ TEST(MimicJoints, DoNotCountForTheIdentity) {
 TEST(MimicJoints, StandWhereTheyAreHeldAndWhatFollowsThemToo) {
   RobotDescription description = test::parallelogram_description();
   description.held_joints = {{"weight_joint", 0.05}};
-  const Chain chain = read_chain(description).value_or_throw();
+  const RobotModel robot = read_model(description).value_or_throw();
+  const Chain& chain = robot.chain;
   EXPECT_EQ(chain.mimics().size(), 3U);
   const Eigen::Vector4d straight(0, 0, 0, 0), bent(0, 0, 1, 0);
   EXPECT_TRUE(pose_of(chain, "piston", bent).isApprox(pose_of(chain, "piston", straight)));
   EXPECT_NEAR(
       (pose_of(chain, "weight", bent).inverse() * pose_of(chain, "piston", bent)).translation().x(),
       -0.2 * 0.05 + 0.05, kTolerance);
-  const auto held = held_values(description).value_or_throw();
+  const auto held = held_values(robot);
   EXPECT_EQ(held.size(), 2U);
   EXPECT_NEAR(held.at("piston_joint"), 0.04, kTolerance);
-  EXPECT_TRUE(held_values(test::parallelogram_description()).value_or_throw().empty());
+  EXPECT_TRUE(held_values(read_model(test::parallelogram_description()).value_or_throw()).empty());
 }
 
 TEST(MimicJoints, ThatFollowEachOtherInALoopAreRefusedByName) {

@@ -27,8 +27,8 @@ std::string with_lower_limit(const std::string& value) {
 TEST(UrdfModel, ReadsATree) {
   const auto model = parse_urdf(two_joints("fixed", "").urdf);
   ASSERT_TRUE(model) << model.error().message;
-  EXPECT_EQ((*model)->links_.size(), 3U);
-  EXPECT_EQ((*model)->getRoot()->name, "base");
+  EXPECT_EQ(model->tree->links_.size(), 3U);
+  EXPECT_EQ(model->tree->getRoot()->name, "base");
 }
 
 TEST(UrdfModel, RefusesNumbersThatAreNotFiniteDecimals) {
@@ -58,13 +58,13 @@ TEST(UrdfModel, TabsAndLineBreaksBetweenNumbersAreBlanks) {
   for (const std::string between : {" ", "\t", "\n", "\r\n", " \t ", "\n      "}) {
     const auto model = parse_urdf(with_numbers_parted_by(between));
     ASSERT_TRUE(model) << model.error().message;
-    const auto& joint = *(*model)->getJoint("j1");
+    const auto& joint = *model->tree->getJoint("j1");
     EXPECT_EQ(joint.axis.y, 1);
     EXPECT_EQ(joint.parent_to_joint_origin_transform.position.z, 6);
-    const auto& base = *(*model)->getLink("base")->collision;
+    const auto& base = *model->tree->getLink("base")->collision;
     EXPECT_EQ(base.origin.position.y, 2);
     EXPECT_EQ(dynamic_cast<const urdf::Box&>(*base.geometry).dim.z, 3);
-    const auto& tip = *(*model)->getLink("tip")->collision;
+    const auto& tip = *model->tree->getLink("tip")->collision;
     EXPECT_EQ(dynamic_cast<const urdf::Mesh&>(*tip.geometry).scale.x, 2);
   }
 }
@@ -82,7 +82,7 @@ TEST(UrdfModel, ReadsNumbersAlikeInEveryLocale) {
   const auto model = parse_urdf(with_lower_limit("0.5"));
   std::locale::global(before);
   ASSERT_TRUE(model) << model.error().message;
-  EXPECT_EQ((*model)->getJoint("j1")->limits->lower, 0.5);
+  EXPECT_EQ(model->tree->getJoint("j1")->limits->lower, 0.5);
 }
 
 TEST(UrdfModel, SaysInTheParsersWordsWhatIsWrong) {

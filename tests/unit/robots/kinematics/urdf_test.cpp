@@ -97,6 +97,20 @@ TEST(ReadChain, AMimicJointOffTheChainStandsWhereItsJointPutsIt) {
       << message(description);
 }
 
+TEST(ReadModel, TakesAParsedUrdfForAnotherDescriptionOfTheSameText) {
+  const RobotDescription description = two_joints("fixed", "");
+  const RobotModel robot = read_model(description).value_or_throw();
+  EXPECT_EQ(name_in_urdf(robot), "small");
+  RobotDescription other = description;
+  other.T_tip_transfer.translation().x() = 0.1;
+  const RobotModel again = read_model(other, robot.urdf).value_or_throw();
+  EXPECT_EQ(again.urdf.tree, robot.urdf.tree);
+  EXPECT_EQ(again.chain.digest(), read_chain(other).value_or_throw().digest());
+  EXPECT_NE(again.chain.digest(), robot.chain.digest());
+  other.tip_link = "nose";
+  EXPECT_FALSE(read_model(other, robot.urdf));
+}
+
 TEST(ReadChain, HoldsJointsWhereToldAndNowhereElse) {
   RobotDescription description = large_robot();
   description.held_joints = {{"lift", 0.75}, {"grip", 0.125}};

@@ -146,8 +146,7 @@ TEST_F(DrawnRobot, HasWhatIsDrawnForItsSolidsWhereThatIsAskedForAlsoForAServer) 
   const LoadedRobot robot = load_robot(arguments_).value_or_throw();
   ASSERT_EQ(robot.shapes.shapes.size(), 1U);
   EXPECT_EQ(robot.shapes.from_visual, std::vector<int>{1});
-  EXPECT_EQ(geometry::read_shapes(robot.description, robot.chain).value_or_throw().shapes.size(),
-            1U);
+  EXPECT_EQ(geometry::read_shapes(robot).value_or_throw().shapes.size(), 1U);
 }
 
 TEST_F(DrawnRobot, GoesWithoutSolidsWhereALinkIsSaidToNeedNone) {

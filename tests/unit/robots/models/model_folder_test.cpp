@@ -1,4 +1,4 @@
-#include "robots/models/model_folder.hpp"
+#include "robots/models/robot_arguments.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

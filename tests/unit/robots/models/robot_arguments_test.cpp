@@ -35,11 +35,11 @@ TEST(DescribeRobot, RefusesWhatIsNoAxis) {
 TEST(DescribeRobot, ArgumentsReplaceWhatTheFolderSays) {
   const auto folder = describe_robot({.source = kModels + "panda"});
   ASSERT_TRUE(folder) << folder.error().message;
-  EXPECT_EQ(folder->label, "panda");
+  EXPECT_EQ(folder->description.label, "panda");
   const auto renamed = describe_robot({.source = kModels + "panda", .label = "cell3"});
   ASSERT_TRUE(renamed);
-  EXPECT_EQ(renamed->label, "cell3");
-  EXPECT_EQ(renamed->tip_link, folder->tip_link);
+  EXPECT_EQ(renamed->description.label, "cell3");
+  EXPECT_EQ(renamed->description.tip_link, folder->description.tip_link);
 }
 
 /// What is wrong with a URDF file of this name and text.

@@ -1,4 +1,4 @@
-#include "robots/models/scene_meshes.hpp"
+#include "robots/models/mesh_files.hpp"
 
 #include <gtest/gtest.h>
 

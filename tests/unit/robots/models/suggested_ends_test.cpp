@@ -23,8 +23,9 @@ TEST(SuggestedEnds, OfEachArmThatComesAlongAreOnesThatMoveAllItsJoints) {
     EXPECT_TRUE(links.is_suggested);
     ASSERT_FALSE(links.ends.empty()) << model;
     EXPECT_GE(links.ends[0].joints, 6U) << model;
-    const std::string tip =
-        describe_robot({.source = urdf_of(model).parent_path()}).value_or_throw().tip_link;
+    const std::string tip = describe_robot({.source = urdf_of(model).parent_path()})
+                                .value_or_throw()
+                                .description.tip_link;
     EXPECT_NE(std::ranges::find(links.ends[0].tips, tip), links.ends[0].tips.end())
         << model << ": " << tip << " is not among the tips";
   }

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "robots/planning/birrt.hpp"
-#include "robots/planning/cbirrt2.hpp"
 #include "tests/unit/robots/planning/carrying_problem.hpp"
 
 namespace {

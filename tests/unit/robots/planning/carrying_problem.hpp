@@ -53,7 +53,7 @@ inline Eigen::MatrixXd configurations_at(Carrying& carrying,
 inline std::optional<Carrying> make_carrying(const std::string& robot, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   const kinematics::Chain chain = test::model_chain(robot);
-  const auto shapes = geometry::read_shapes(test::model_description(robot), chain).value_or_throw();
+  const auto shapes = geometry::read_shapes(test::robot_model(robot)).value_or_throw();
   const test::CarryingCell cell = test::make_carrying_cell(chain, generator);
   Carrying carrying = {chain, cell, {chain, shapes, cell.surroundings}, {}, {}, {}};
   carrying.bounds = planning_bounds(chain, (chain.lower() + chain.upper()) / 2);

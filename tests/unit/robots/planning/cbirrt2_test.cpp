@@ -1,4 +1,4 @@
-#include "robots/planning/cbirrt2.hpp"
+#include "robots/planning/birrt.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,7 @@
 
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/configuration_sampler.hpp"
-#include "robots/planning/moved_path.hpp"
 #include "robots/planning/planning_bounds.hpp"
-#include "robots/planning/query_tracks.hpp"
 #include "tests/support/robots.hpp"
 
 namespace kinship::planning::experience_guide_test {

@@ -1,4 +1,4 @@
-#include "robots/planning/moved_path.hpp"
+#include "robots/planning/experience_guide.hpp"
 
 #include <gtest/gtest.h>
 

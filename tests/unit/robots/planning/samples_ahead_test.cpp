@@ -1,4 +1,4 @@
-#include "robots/planning/samples_ahead.hpp"
+#include "robots/planning/configuration_sampler.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "robots/planning/search_recorder.hpp"
+#include "robots/planning/tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "robots/planning/start_configuration.hpp"
+#include "robots/planning/goal_configurations.hpp"
 
 #include <gtest/gtest.h>
 

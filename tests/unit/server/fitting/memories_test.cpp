@@ -79,8 +79,7 @@ TEST(TargetMemory, BetterGeometryIsTakenOver) {
   TargetMemory memory;
   runtime::Robot robot = robot_of("ur10e");
   EXPECT_TRUE(memory.find(robot)->solids.parts().bodies.empty());
-  robot.shapes =
-      geometry::read_shapes(test::model_description("ur10e"), robot.chain).value_or_throw();
+  robot.shapes = geometry::read_shapes(test::robot_model("ur10e")).value_or_throw();
   ++robot.geometry_revision;
   const TargetMemory::Target better = memory.find(robot);
   EXPECT_FALSE(better->solids.parts().bodies.empty());

@@ -4,6 +4,7 @@
 
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/support/urdf_parses.hpp"
 #include "tests/unit/server/fleet.hpp"
 #include "tests/unit/server/troubled_store.hpp"
 
@@ -27,6 +28,44 @@ TEST_F(Registry, ANewRobotIsIdentifiedStoredAndKept) {
   const auto record = store_->find_robot(reply.robot);
   ASSERT_TRUE(record);
   EXPECT_EQ(record->registered_ms, 1234);
+}
+
+/// Texts that a registration parses.
+std::size_t parses(RobotRegistry& registry, const RobotDescription& description,
+                   RegisterStatus status) {
+  const std::size_t before = test::urdf_parses();
+  const Candidate candidate(description);
+  const std::optional<RegisterReply> known = registry.register_known(candidate);
+  EXPECT_EQ((known ? *known : registry.register_robot(candidate, 1)).status, status);
+  return test::urdf_parses() - before;
+}
+
+TEST_F(Registry, ParsesADescriptionOnce) {
+  RobotDescription robot = fleet::with_shape(fleet::teacher(), "<mesh filename='a.stl'/>");
+  EXPECT_EQ(parses(registry_, robot, RegisterStatus::Registered), 1U);
+  EXPECT_EQ(parses(registry_, robot, RegisterStatus::Known), 1U);
+  robot.mesh_solids.solids = {{"link1", SphereShape{0.1}}};
+  EXPECT_EQ(parses(registry_, robot, RegisterStatus::Known), 1U) << "better geometry";
+  store::TroubledStore shared(*store_);
+  shared.has_others = true;
+  RobotRegistry next(shared);
+  EXPECT_EQ(parses(next, robot, RegisterStatus::Known), 1U) << "of the store";
+  EXPECT_EQ(parses(next, robot, RegisterStatus::Known), 1U) << "of memory";
+}
+
+TEST_F(Registry, ARobotWhoseLabelIsDamagedIsRefusedForNowIfItsLabelMatters) {
+  const Digest robot = RobotRegistry(*store_).register_robot(fleet::teacher(), 1).robot;
+  store::Database(directory_ / "fleet.db", store::Access::ReadWrite)
+      .execute("UPDATE robot SET base_link = ''");  // as a repair that found the name alone
+  ASSERT_TRUE(store_->list_robots("", 10).rows.empty());
+  const RegisterReply reply = registry_.register_robot(
+      fleet::teacher(), 2, [](const std::string&) { return std::optional<Error>(); });
+  EXPECT_EQ(reply.status, RegisterStatus::Refused);
+  EXPECT_GT(reply.retry_after.count(), 0);
+  EXPECT_EQ(reply.message, "the label under which this robot is known cannot be read: robot " +
+                               robot.short_hex() + ": its row is damaged");
+  EXPECT_EQ(registry_.register_robot(fleet::teacher(), 3).status, RegisterStatus::Registered)
+      << "written anew by a caller whose labels are not limited";
 }
 
 TEST_F(Registry, TheSameRobotIsKnownByItsFirstLabel) {

@@ -32,7 +32,8 @@ struct Beam {
     description.tip_link = "fore";
     description.T_tip_transfer.translation().x() = 0.5;
     chain = kinematics::read_chain(description).value_or_throw();
-    shapes = geometry::read_shapes(description, *chain).value_or_throw();
+    shapes = geometry::read_shapes(kinematics::read_model(description).value_or_throw())
+                 .value_or_throw();
   }
   SceneFilter filter(const RecordedScene& scene,
                      const Eigen::Isometry3d& T_task_base = Eigen::Isometry3d::Identity()) const {
@@ -118,9 +119,10 @@ TEST(SceneFilter, LinksBesideTheChainMoveWithIt) {
     const Eigen::Isometry3d T_task_weight = test::followers_of_parallelogram(there).at("weight");
     const SceneObject ball{"ball", SphereShape{0.01},
                            T_task_weight * Eigen::Translation3d(-0.2, 0, 0)};
-    const SceneFilter filter =
-        scene_filter({chain, geometry::read_shapes(description, chain).value_or_throw()},
-                     {{ball}, {}, {}}, Eigen::Isometry3d::Identity());
+    const SceneFilter filter = scene_filter(
+        {chain, geometry::read_shapes(kinematics::read_model(description).value_or_throw())
+                    .value_or_throw()},
+        {{ball}, {}, {}}, Eigen::Isometry3d::Identity());
     EXPECT_FALSE(filter.keep(there));
     EXPECT_TRUE(filter.keep(elsewhere));
   }

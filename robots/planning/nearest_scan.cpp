@@ -1,4 +1,4 @@
-#include "robots/planning/fastest_scan.hpp"
+#include "robots/planning/nearest_scan.hpp"
 
 namespace kinship::planning {
 namespace {

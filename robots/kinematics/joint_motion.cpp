@@ -1,4 +1,4 @@
-#include "robots/kinematics/axis_turns.hpp"
+#include "robots/kinematics/joint_motion.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
