@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "robots/planning/constrained_stepper.hpp"
 #include "robots/planning/region_constraint.hpp"
 
 namespace kinship::ompl_planners {
