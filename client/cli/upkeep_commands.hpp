@@ -5,7 +5,7 @@
 
 #include "client/link/client.hpp"
 
-/// Commands that exclude experience from fits, or drop mixtures.
+/// Commands that rename and remove robots, exclude experience from fits, and drop mixtures.
 namespace kinship::cli {
 
 /// `paths retire`: excludes a path from every fit; it stays for the record.
@@ -22,5 +22,15 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
 /// \param id  the beginning of a distribution's id.
 int evict_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
                        std::ostream& err);
+
+/// `robots rename`: another label for a robot; its old label becomes free.
+/// \param robot  its label or the beginning of its digest.
+int rename_robot(link::Client& server, const std::string& robot, const std::string& label,
+                 bool json, std::ostream& out, std::ostream& err);
+
+/// `robots remove`: deletes a robot without attempts; otherwise retires its paths.
+/// \param confirmed  false: for a robot with attempts, prints the effect and returns kWrongUsage.
+int remove_robot(link::Client& server, const std::string& robot, bool confirmed, bool json,
+                 std::ostream& out, std::ostream& err);
 
 }  // namespace kinship::cli

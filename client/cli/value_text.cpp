@@ -1,7 +1,9 @@
-#include "client/cli/rehearsal_text.hpp"
+#include "client/cli/value_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,15 @@ namespace kinship::cli {
 namespace {
 
 using tables::Table;
+
+/// A few digits, without zeros at the end.
+std::string bound_text(double value) {
+  constexpr int kDigits = 4;
+  std::ostringstream text;
+  text.precision(kDigits);
+  text << value;
+  return text.str();
+}
 
 std::string sentence(const Rehearsal& rehearsal) {
   if (rehearsal.queries == 0)
@@ -38,6 +49,48 @@ std::string gain_text(const std::vector<GuideCost>& costs, const GuideCost& cost
 }
 
 }  // namespace
+
+std::string axes_text(const TaskAxes& axes) {
+  if (axes.all())
+    return "all";
+  std::string text;
+  for (std::size_t i = 0; i < kTaskAxisNames.size(); ++i)
+    if (axes.matters[i])
+      text += (text.empty() ? "" : " ") + std::string(kTaskAxisNames[i]);
+  return text;
+}
+
+void print_transfer(const RobotDescription& description, std::ostream& out) {
+  constexpr int kDigits = 4;
+  out << "transfer    " << pose_text(description.T_tip_transfer) << " in " << description.tip_link
+      << '\n'
+      << "axes        " << axes_text(description.task_axes) << '\n';
+  if (description.held_joints.empty())
+    return;
+  std::string held;
+  for (const auto& [joint, value] : description.held_joints)
+    held += (held.empty() ? "" : ", ") + joint + " = " + number_text(value, kDigits);
+  out << "held        " << held << '\n';
+}
+
+std::string region_text(const TaskSpaceRegion& region) {
+  constexpr Eigen::Index kFirstAngle = 3;
+  std::string bounds;
+  for (Eigen::Index i = 0; i < region.bounds.cols(); ++i) {
+    const double lower = region.bounds(0, i), upper = region.bounds(1, i);
+    if (!std::isfinite(lower) && !std::isfinite(upper))
+      continue;
+    bounds += (bounds.empty() ? ": " : ", ") + std::string(displacement_name(i)) + " " +
+              bound_text(lower) + ".." + bound_text(upper) + (i < kFirstAngle ? " m" : " rad");
+  }
+  return "stays within a task space region" + (bounds.empty() ? " without bounds" : bounds);
+}
+
+void print_scene(const RecordedScene& scene, std::ostream& out) {
+  out << "scene       " << scene.objects.size() << " objects, " << scene.held.size() << " held\n";
+  if (scene.constraint)
+    out << "constraint  " << region_text(*scene.constraint) << '\n';
+}
 
 void print_rehearsal(const std::optional<Rehearsal>& rehearsal, std::ostream& out) {
   if (!rehearsal) {
