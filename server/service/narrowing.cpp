@@ -18,6 +18,12 @@ void throw_if(const std::optional<Error>& refusal) {
     throw Failure(*refusal);
 }
 
+template <typename Row>
+concept OfTaskAndRobot = requires(Row row) {
+  row.task;
+  row.label;
+};
+
 /// Troubles of others may name their tasks and robots.
 void strip(ServerStatus& status) {
   for (TroubleCount& trouble : status.troubles)
@@ -115,7 +121,7 @@ bool Narrowing::keeps(AdminRow& row) const {
     strip(*status);
   return std::visit(
       [&](const auto& value) {
-        if constexpr (requires { value.task, value.label; })
+        if constexpr (OfTaskAndRobot<decltype(value)>)
           return may_see(value.task, value.label);
         else if constexpr (requires { value.label; })
           return may_see("", value.label);
