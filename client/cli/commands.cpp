@@ -7,7 +7,7 @@
 
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
-#include "client/cli/groups.hpp"
+#include "client/cli/session.hpp"
 #include "proto/manual/manual.hpp"
 #include "proto/manual/suggestion.hpp"
 #include "proto/tables/table_layout.hpp"

@@ -5,9 +5,8 @@
 #include <ostream>
 #include <utility>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
-#include "client/cli/page_file.hpp"
+#include "client/cli/plot_commands.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
 #include "client/link/robot_names.hpp"
@@ -62,17 +61,18 @@ Placement reported_placement(link::Client& server, const std::string& task,
                              const std::string& robot, std::ostream& err) {
   Placement placement;
   std::int64_t newest_ms = -1;
-  ListOptions options;
-  options.task = task;
-  options.robot = robot;
-  for_each_row(server, AdminVerb::ListPaths, options, kCompare, err, [&](const std::string& row) {
-    const auto path = json::row_from_json<PathSummary>(row);
-    if (path && path->received_ms > newest_ms) {
-      newest_ms = path->received_ms;
-      placement = {true, path->T_task_base};
-    }
-    return true;
-  });
+  const auto error =
+      link::for_each_row(server, {.verb = AdminVerb::ListPaths, .robot = robot, .task = task},
+                         [&](const std::string& row) {
+                           const auto path = json::row_from_json<PathSummary>(row);
+                           if (path && path->received_ms > newest_ms) {
+                             newest_ms = path->received_ms;
+                             placement = {true, path->T_task_base};
+                           }
+                           return true;
+                         });
+  if (error)
+    refuse(kCompare, *error, err);
   return placement;
 }
 
@@ -88,13 +88,15 @@ std::vector<Target> find_targets(link::Client& server, const CompareOptions& opt
                            : reported_placement(server, options.task, label, err)});
   };
   std::vector<std::pair<Digest, std::string>> robots;
-  if (options.targets.empty())
-    code =
-        for_each_row(server, AdminVerb::ListRobots, {}, kCompare, err, [&](const std::string& row) {
+  if (options.targets.empty()) {
+    const auto error =
+        link::for_each_row(server, {.verb = AdminVerb::ListRobots}, [&](const std::string& row) {
           if (const auto robot = json::row_from_json<RobotSummary>(row))
             robots.emplace_back(robot->robot, robot->label);
           return true;
         });
+    code = error ? refuse(kCompare, *error, err) : kDone;
+  }
   for (const std::string& name : options.targets) {
     const auto robot = link::find_robot(server, name);
     if (!robot) {

@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
-#include "client/cli/rehearsal_text.hpp"
+#include "client/cli/terminal.hpp"
+#include "client/cli/value_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"

@@ -2,8 +2,8 @@
 
 #include <ostream>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
 #include "robots/models/robot_arguments.hpp"
 

@@ -1,11 +1,11 @@
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
 #include "client/cli/distribution_commands.hpp"
-#include "client/cli/export_commands.hpp"
-#include "client/cli/groups.hpp"
-#include "client/cli/listings.hpp"
+#include "client/cli/exchange_commands.hpp"
 #include "client/cli/plot_commands.hpp"
-#include "client/cli/retire_commands.hpp"
+#include "client/cli/session.hpp"
+#include "client/cli/show_commands.hpp"
+#include "client/cli/upkeep_commands.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -101,8 +101,7 @@ void add_plot(CLI::App& group, Session& session) {
 }  // namespace
 
 void add_distributions(CLI::App& app, Session& session) {
-  CLI::App* group = add_group(app, "distributions", "Distributions made so far");
-  add_list(*group, session, list_distributions, true);
+  CLI::App* group = add_group(app, session, "distributions", "Distributions made so far");
   add_one(*group, session,
           {"show", "id", "Four digits of it or more", "A distribution by beginning of its id",
            "kinship distributions show 3f9a0c"},
@@ -118,7 +117,7 @@ void add_distributions(CLI::App& app, Session& session) {
 }
 
 void add_configurations(CLI::App& app, Session& session) {
-  CLI::App* group = add_group(app, "configurations", "What distributions are fitted to");
+  CLI::App* group = add_group(app, session, "configurations", "What distributions are fitted to");
   const auto options = std::make_shared<ConfigurationsOptions>();
   CLI::App* command = add_command(
       *group, "export", "Exactly the rows that a distribution's fit saw, as CSV",

@@ -1,12 +1,10 @@
 #include <iostream>
 
-#include "client/cli/experience_command.hpp"
-#include "client/cli/export_commands.hpp"
-#include "client/cli/groups.hpp"
-#include "client/cli/import_command.hpp"
-#include "client/cli/listings.hpp"
+#include "client/cli/exchange_commands.hpp"
 #include "client/cli/plot_commands.hpp"
-#include "client/cli/retire_commands.hpp"
+#include "client/cli/session.hpp"
+#include "client/cli/show_commands.hpp"
+#include "client/cli/upkeep_commands.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -80,8 +78,7 @@ void add_task_plot(CLI::App& group, Session& session) {
 void add_paths(CLI::App& app, Session& session) {
   constexpr const char* kId = "UUID of the report, as paths list shows it";
   constexpr const char* kExampleUuid = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
-  CLI::App* paths = add_group(app, "paths", "Reported paths");
-  add_list(*paths, session, list_paths, true);
+  CLI::App* paths = add_group(app, session, "paths", "Reported paths");
   add_one(*paths, session,
           {"show", "id", kId, "A path by its report's UUID",
            std::string("kinship paths show ") + kExampleUuid},
@@ -95,8 +92,8 @@ void add_paths(CLI::App& app, Session& session) {
 }
 
 void add_tasks(CLI::App& app, Session& session) {
-  CLI::App* tasks = add_group(app, "tasks", "Tasks and the robots that have experience of them");
-  add_list(*tasks, session, list_tasks);
+  CLI::App* tasks =
+      add_group(app, session, "tasks", "Tasks and the robots that have experience of them");
   add_one(*tasks, session,
           {"show", "task", "Its name", "A task by name", "kinship tasks show box_to_shelf"},
           show_task);

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "client/cli/admin_rows.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/client.hpp"
 #include "proto/types/summaries.hpp"
 

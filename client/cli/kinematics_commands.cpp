@@ -8,9 +8,9 @@
 #include <sstream>
 #include <vector>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
+#include "client/cli/terminal.hpp"
 #include "proto/files/lines.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/json/robot_answers_json.hpp"

@@ -1,14 +1,18 @@
 #include "client/cli/listings.hpp"
 
-#include <cstdint>
+#include <array>
+#include <concepts>
 #include <functional>
 #include <map>
 #include <optional>
 #include <ostream>
+#include <string_view>
 #include <vector>
 
 #include "client/cli/cell_text.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/time_text.hpp"
 
@@ -16,7 +20,101 @@ namespace kinship::cli {
 namespace {
 
 using tables::Fit;
-using tables::Table;
+
+std::string text_of(const std::string& text) { return text; }
+std::string text_of(const Digest& id) { return id.short_hex(); }
+std::string text_of(const Uuid& id) { return id.text(); }
+std::string text_of(std::integral auto count) { return std::to_string(count); }
+template <typename Enum>
+requires std::is_enum_v<Enum> std::string text_of(Enum word) { return std::string(to_text(word)); }
+
+/// A column of a listing: its heading, and the text of a row in it.
+template <typename Row>
+struct RowColumn {
+  /// \param of  a member of the row, or a function of it.
+  template <typename Cell>
+  RowColumn(tables::Column title, Cell of)
+      : heading(std::move(title)),
+        cell([of](const Row& row) { return text_of(std::invoke(of, row)); }) {}
+
+  tables::Column heading;
+  std::function<std::string(const Row& row)> cell;
+};
+
+template <typename Row>
+using RowColumns = std::vector<RowColumn<Row>>;
+
+template <typename Row>
+auto age(std::int64_t Row::*time_ms) {
+  return [time_ms, now = now_ms()](const Row& row) { return age_text(row.*time_ms, now); };
+}
+
+template <typename Row>
+auto time(std::int64_t Row::*time_ms) {
+  return [time_ms](const Row& row) { return row.*time_ms == 0 ? "-" : time_text(row.*time_ms); };
+}
+
+template <typename Row>
+auto or_none(std::string Row::*text) {
+  return [text](const Row& row) { return (row.*text).empty() ? "-" : row.*text; };
+}
+
+RowColumns<BackupSummary> columns_of_backups(link::Client& /*server*/) {
+  using Row = BackupSummary;
+  return {{"NAME", &Row::name},
+          {"SIZE", [](const Row& backup) { return size_text(backup.bytes); }},
+          {"AGE", age(&Row::modified_ms)},
+          {{"WRITTEN", Fit::Wide}, time(&Row::modified_ms)}};
+}
+
+RowColumns<RobotSummary> columns_of_robots(link::Client& /*server*/) {
+  using Row = RobotSummary;
+  return {{"ROBOT", &Row::robot},
+          {{"LABEL", Fit::Cut}, &Row::label},
+          {"DOF", &Row::dof},
+          {{"CHAIN", Fit::Cut},
+           [](const Row& robot) { return robot.base_link + " -> " + robot.tip_link; }},
+          {"PATHS", &Row::paths},
+          {"ATTEMPTS", &Row::attempts},
+          {"AGE", age(&Row::registered_ms)},
+          {{"REGISTERED", Fit::Wide}, time(&Row::registered_ms)}};
+}
+
+RowColumns<TaskSummary> columns_of_tasks(link::Client& /*server*/) {
+  using Row = TaskSummary;
+  return {{"TASK", &Row::task},
+          {"ROBOTS", [](const Row& task) { return task.robots.size(); }},
+          {"PATHS", [](const Row& task) { return kept_text(task.paths, task.dropped); }},
+          {"ATTEMPTS", &Row::attempts}};
+}
+
+std::string state_text(const PathSummary& path) {
+  if (path.retired_ms == 0)
+    return "-";
+  return path.dropped ? "dropped" : "retired";
+}
+
+RowColumns<PathSummary> columns_of_paths(link::Client& /*server*/) {
+  using Row = PathSummary;
+  const auto record = [](auto PlanningRecord::*member) {
+    return [member](const Row& path) { return path.record.*member; };
+  };
+  return {{"PATH", &Row::report_uuid},
+          {{"ROBOT", Fit::Cut}, &Row::label},
+          {{"TASK", Fit::Cut}, &Row::task},
+          {"CHECKS", record(&PlanningRecord::collision_checks)},
+          {"AGE", age(&Row::received_ms)},
+          {"STATE", state_text},
+          {{"WAYPOINTS", Fit::Wide}, &Row::waypoints},
+          {{"LENGTH", Fit::Wide}, [](const Row& path) { return number_text(path.length, 2); }},
+          {{"TIME_S", Fit::Wide},
+           [](const Row& path) { return number_text(path.record.planning_time_s, 3); }},
+          {{"PLANNER", Fit::Wide}, record(&PlanningRecord::planner)},
+          {{"MODE", Fit::Wide}, record(&PlanningRecord::sampling_mode)},
+          {{"MACHINE", Fit::Wide}, &Row::machine},
+          {{"RECEIVED", Fit::Wide}, time(&Row::received_ms)},
+          {{"RETIRED", Fit::Wide}, time(&Row::retired_ms)}};
+}
 
 /// Labels of robots by their digests, asked for when the first is wanted.
 class RobotLabels {
@@ -34,14 +132,13 @@ class RobotLabels {
  private:
   void read() {
     labels_.emplace();
-    AdminRequest request;
-    request.verb = AdminVerb::ListRobots;
     // Without an answer digests do.
-    static_cast<void>(link::for_each_row(*server_, request, [this](const std::string& row) {
-      if (const auto robot = json::row_from_json<RobotSummary>(row))
-        labels_->emplace(robot->robot, robot->label);
-      return true;
-    }));
+    static_cast<void>(link::for_each_row(
+        *server_, {.verb = AdminVerb::ListRobots}, [this](const std::string& row) {
+          if (const auto robot = json::row_from_json<RobotSummary>(row))
+            labels_->emplace(robot->robot, robot->label);
+          return true;
+        }));
   }
 
   link::Client* server_;
@@ -63,43 +160,40 @@ std::string made_of_text(const DistributionSummary& distribution, RobotLabels& l
   return text;
 }
 
-std::vector<std::string> path_cells(const PathSummary& path, std::int64_t now_ms) {
-  const std::string state = path.dropped ? "dropped" : "retired";
-  return {path.report_uuid.text(),
-          path.label,
-          path.task,
-          std::to_string(path.record.collision_checks),
-          age_text(path.received_ms, now_ms),
-          path.retired_ms == 0 ? "-" : state,
-          std::to_string(path.waypoints),
-          number_text(path.length, 2),
-          number_text(path.record.planning_time_s, 3),
-          path.record.planner,
-          std::string(to_text(path.record.sampling_mode)),
-          path.machine,
-          time_text(path.received_ms),
-          path.retired_ms == 0 ? "-" : time_text(path.retired_ms)};
+RowColumns<DistributionSummary> columns_of_distributions(link::Client& server) {
+  using Row = DistributionSummary;
+  return {
+      {"DISTRIBUTION", &Row::id},
+      {{"ROBOT", Fit::Cut}, &Row::label},
+      {{"TASK", Fit::Cut}, &Row::task},
+      {"STATE", [](const Row& row) { return row.retired ? "retired" : text_of(row.state); }},
+      {"AGE", age(&Row::fitted_ms)},
+      {"PLACEMENT",
+       [](const Row& row) { return row.T_task_base ? short_pose_text(*row.T_task_base) : "-"; }},
+      {"MADE OF", [labels = std::make_shared<RobotLabels>(server)](
+                      const Row& row) { return made_of_text(row, *labels); }},
+      {{"REVISION", Fit::Wide}, &Row::revision},
+      {{"K", Fit::Wide}, &Row::components},
+      {{"CONFIGURATIONS", Fit::Wide}, &Row::configurations},
+      {{"PATHS", Fit::Wide}, &Row::paths},
+      {{"FITTED", Fit::Wide}, time(&Row::fitted_ms)}};
 }
 
-std::vector<std::string> distribution_cells(const DistributionSummary& distribution,
-                                            std::int64_t now_ms, RobotLabels& labels) {
-  return {distribution.id.short_hex(),
-          distribution.label,
-          distribution.task,
-          distribution.retired ? "retired" : std::string(to_text(distribution.state)),
-          age_text(distribution.fitted_ms, now_ms),
-          distribution.T_task_base ? short_pose_text(*distribution.T_task_base) : "-",
-          made_of_text(distribution, labels),
-          std::to_string(distribution.revision),
-          std::to_string(distribution.components),
-          std::to_string(distribution.configurations),
-          std::to_string(distribution.paths),
-          time_text(distribution.fitted_ms)};
+RowColumns<Job> columns_of_jobs(link::Client& /*server*/) {
+  return {{"JOB", &Job::id},
+          {"VERB", &Job::verb},
+          {"STATE", &Job::state},
+          {"PROGRESS", [](const Job& job) { return percent_text(job.progress); }},
+          {"AGE", age(&Job::started_ms)},
+          {"ARGUMENT", &Job::argument},
+          {"MESSAGE", &Job::message},
+          {{"ROWS", Fit::Wide}, &Job::rows},
+          {{"STARTED", Fit::Wide}, time(&Job::started_ms)}};
 }
 
-std::string labels_text(const std::vector<std::string>& labels) {
+std::string labels_text(const ClientUse& client) {
   std::string text;
-  for (const std::string& label : labels)
+  for (const std::string& label : client.robots)
     text += (text.empty() ? "" : ", ") + label;
   return text.empty() ? "-" : text;
 }
@@ -110,174 +204,174 @@ std::string refused_text(const ClientUse& client) {
   return client.refused_for.empty() ? count : count + ", last for " + client.refused_for;
 }
 
-std::vector<std::string> client_cells(const ClientUse& client, std::int64_t now) {
-  return {client.client,
-          labels_text(client.robots),
-          number_text(client.attempts_per_s, 1),
-          size_text(static_cast<std::uint64_t>(client.bytes_per_s)),
-          std::to_string(client.on_way + client.waiting),
-          std::to_string(client.leases),
-          std::to_string(client.fits),
-          refused_text(client),
-          age_text(client.last_seen_ms, now),
-          std::to_string(client.attempts),
-          std::to_string(client.registered_robots),
-          std::to_string(client.created_tasks),
-          size_text(client.stored_bytes)};
+RowColumns<ClientUse> columns_of_clients() {
+  using Row = ClientUse;
+  return {{"CLIENT", &Row::client},
+          {{"ROBOTS", Fit::Cut}, labels_text},
+          {"ATTEMPTS/S", [](const Row& row) { return number_text(row.attempts_per_s, 1); }},
+          {"BYTES/S",
+           [](const Row& row) { return size_text(static_cast<std::uint64_t>(row.bytes_per_s)); }},
+          {"WAITING", [](const Row& row) { return row.on_way + row.waiting; }},
+          {"LEASES", &Row::leases},
+          {"FITS", &Row::fits},
+          {"REFUSED", refused_text},
+          {"SEEN", age(&Row::last_seen_ms)},
+          {{"ATTEMPTS", Fit::Wide}, &Row::attempts},
+          {{"NEW ROBOTS", Fit::Wide}, &Row::registered_robots},
+          {{"NEW TASKS", Fit::Wide}, &Row::created_tasks},
+          {{"STORED", Fit::Wide}, [](const Row& row) { return size_text(row.stored_bytes); }}};
+}
+
+std::string place_text(const AuditEntry& entry) {
+  return entry.is_local ? "this machine" : "another host";
+}
+
+RowColumns<AuditEntry> columns_of_audit() {
+  using Row = AuditEntry;
+  return {{"AGE", age(&Row::time_ms)},
+          {{"WHO", Fit::Cut},
+           [](const Row& entry) { return entry.name.empty() ? place_text(entry) : entry.name; }},
+          {"ACT", &Row::verb},
+          {{"TARGET", Fit::Cut}, or_none(&Row::target)},
+          {"OUTCOME", &Row::outcome},
+          {{"WHAT CAME OF IT", Fit::Cut},
+           [](const Row& entry) {
+             return or_none(entry.message.empty() ? &Row::after : &Row::message)(entry);
+           }},
+          {{"BEFORE", Fit::Wide}, or_none(&Row::before)},
+          {{"ROLE", Fit::Wide}, or_none(&Row::role)},
+          {{"CLIENT", Fit::Wide}, or_none(&Row::client)},
+          {{"FROM", Fit::Wide}, place_text},
+          {{"WHEN", Fit::Wide}, time(&Row::time_ms)}};
+}
+
+template <typename Row>
+std::vector<std::string> cells_of(const Row& row, const RowColumns<Row>& columns) {
+  std::vector<std::string> cells;
+  for (const RowColumn<Row>& column : columns)
+    cells.push_back(column.cell(row));
+  return cells;
+}
+
+struct Query {
+  std::string command;  ///< named in messages
+  AdminRequest request;
+  std::size_t limit = 0;  ///< rows in all; 0: every one
+  bool json = false;
+};
+
+/// The selection of a listing that shows each row.
+struct EveryRow {
+  template <typename Row>
+  bool takes(const Row& /*row*/) const noexcept {
+    return true;
+  }
+  bool is_full() const noexcept { return false; }
+};
+
+/// Asks for rows and prints them; JSON as it came. \return an exit code.
+/// \param selection  as AuditSelection.
+template <typename Row, typename Selection = EveryRow>
+int list_rows(link::Client& server, const Query& query, const RowColumns<Row>& columns,
+              std::ostream& out, std::ostream& err, Selection selection = {}) {
+  std::vector<tables::Column> headings;
+  for (const RowColumn<Row>& column : columns)
+    headings.push_back(column.heading);
+  tables::Table table(std::move(headings));
+  std::string document = "{\"rows\":[";
+  std::optional<Error> error;
+  const auto add = [&](const std::string& text) {
+    constexpr bool kTakesEvery = std::is_same_v<Selection, EveryRow>;
+    Result<Row> row = Row();
+    if (!(query.json && kTakesEvery))
+      row = json::row_from_json<Row>(text);
+    if (!row) {
+      error = link::unreadable_row(row.error());
+      return false;
+    }
+    if (!selection.takes(*row))
+      return !selection.is_full();
+    if (query.json)
+      document += (document.back() == '[' ? "\n" : ",\n") + text;
+    else
+      table.add_row(cells_of(*row, columns));
+    return !selection.is_full();
+  };
+  if (const auto failed = link::for_each_row(server, query.request, add, query.limit))
+    error = failed;
+  if (error)
+    return refuse(query.command, *error, err);
+  if (query.json)
+    out << document << "\n]}\n";
+  else
+    table.print(out);
+  return kDone;
+}
+
+template <auto columns>
+int list(link::Client& server, const Query& query, std::ostream& out, std::ostream& err) {
+  return list_rows(server, query, columns(server), out, err);
+}
+
+/// A command that lists rows without further ado.
+struct Listing {
+  std::string_view noun, verb, what;
+  AdminVerb rows;
+  int (*list)(link::Client& server, const Query& query, std::ostream& out, std::ostream& err);
+};
+
+constexpr std::array kListings = {
+    Listing{"backup", "list", "List backups", AdminVerb::ListBackups, list<columns_of_backups>},
+    Listing{"distributions", "list", "List distributions", AdminVerb::ListDistributions,
+            list<columns_of_distributions>},
+    Listing{"jobs", "list", "List jobs", AdminVerb::ListJobs, list<columns_of_jobs>},
+    Listing{"paths", "list", "List paths", AdminVerb::ListPaths, list<columns_of_paths>},
+    Listing{"robots", "list", "List robots", AdminVerb::ListRobots, list<columns_of_robots>},
+    Listing{"tasks", "list", "List tasks", AdminVerb::ListTasks, list<columns_of_tasks>}};
+
+void add_listing(CLI::App& noun, const Listing& listing, Session& session) {
+  const auto query = std::make_shared<Query>();
+  query->command = std::string(listing.noun) + " " + std::string(listing.verb);
+  query->request.verb = listing.rows;
+  CLI::App* command = add_command(noun, std::string(listing.verb), std::string(listing.what),
+                                  "kinship " + query->command + " --json");
+  constexpr std::size_t kMostRows = 1'000'000'000;
+  command->add_option("--limit", query->limit, "Rows at most (default: all)")
+      ->check(CLI::Range(std::size_t{0}, kMostRows));
+  if (rule_of(listing.rows).is(VerbRule::Filters)) {
+    command->add_option("--task", query->request.task, "Of this task")->type_name("TASK");
+    command->add_option("--robot", query->request.robot, "Of this robot: label or digest prefix")
+        ->type_name("ROBOT");
+  }
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, &listing, query](link::Client& server) {
+    query->json = session.json;
+    return listing.list(server, *query, session.out, session.err);
+  });
 }
 
 }  // namespace
 
-int list_robots(link::Client& server, const ListOptions& options, std::ostream& out,
-                std::ostream& err) {
-  return list_rows(server,
-                   Listing<RobotSummary>{AdminVerb::ListRobots, "robots list",
-                                         Table({"ROBOT",
-                                                {"LABEL", Fit::Cut},
-                                                "DOF",
-                                                {"CHAIN", Fit::Cut},
-                                                "PATHS",
-                                                "ATTEMPTS",
-                                                "AGE",
-                                                {"REGISTERED", Fit::Wide}}),
-                                         [now = now_ms()](const RobotSummary& robot) {
-                                           return std::vector<std::string>{
-                                               robot.robot.short_hex(),
-                                               robot.label,
-                                               std::to_string(robot.dof),
-                                               robot.base_link + " -> " + robot.tip_link,
-                                               std::to_string(robot.paths),
-                                               std::to_string(robot.attempts),
-                                               age_text(robot.registered_ms, now),
-                                               time_text(robot.registered_ms)};
-                                         }},
-                   options, out, err);
+void add_listings(CLI::App& noun, Session& session) {
+  for (const Listing& listing : kListings)
+    if (listing.noun == noun.get_name())
+      add_listing(noun, listing, session);
 }
 
-int list_tasks(link::Client& server, const ListOptions& options, std::ostream& out,
+int list_clients(link::Client& server, std::size_t limit, bool json, std::ostream& out,
+                 std::ostream& err) {
+  return list_rows(server, {"status --clients", {.verb = AdminVerb::ListClients}, limit, json},
+                   columns_of_clients(), out, err);
+}
+
+int list_audit(link::Client& server, const AuditOptions& options, std::ostream& out,
                std::ostream& err) {
   return list_rows(server,
-                   Listing<TaskSummary>{AdminVerb::ListTasks, "tasks list",
-                                        Table({"TASK", "ROBOTS", "PATHS", "ATTEMPTS"}),
-                                        [](const TaskSummary& task) {
-                                          return std::vector<std::string>{
-                                              task.task, std::to_string(task.robots.size()),
-                                              kept_text(task.paths, task.dropped),
-                                              std::to_string(task.attempts)};
-                                        }},
-                   options, out, err);
-}
-
-int list_paths(link::Client& server, const ListOptions& options, std::ostream& out,
-               std::ostream& err) {
-  return list_rows(server,
-                   Listing<PathSummary>{
-                       AdminVerb::ListPaths, "paths list",
-                       Table({"PATH",
-                              {"ROBOT", Fit::Cut},
-                              {"TASK", Fit::Cut},
-                              "CHECKS",
-                              "AGE",
-                              "STATE",
-                              {"WAYPOINTS", Fit::Wide},
-                              {"LENGTH", Fit::Wide},
-                              {"TIME_S", Fit::Wide},
-                              {"PLANNER", Fit::Wide},
-                              {"MODE", Fit::Wide},
-                              {"MACHINE", Fit::Wide},
-                              {"RECEIVED", Fit::Wide},
-                              {"RETIRED", Fit::Wide}}),
-                       [now = now_ms()](const PathSummary& path) { return path_cells(path, now); }},
-                   options, out, err);
-}
-
-int list_distributions(link::Client& server, const ListOptions& options, std::ostream& out,
-                       std::ostream& err) {
-  return list_rows(
-      server,
-      Listing<DistributionSummary>{AdminVerb::ListDistributions, "distributions list",
-                                   Table({"DISTRIBUTION",
-                                          {"ROBOT", Fit::Cut},
-                                          {"TASK", Fit::Cut},
-                                          "STATE",
-                                          "AGE",
-                                          "PLACEMENT",
-                                          "MADE OF",
-                                          {"REVISION", Fit::Wide},
-                                          {"K", Fit::Wide},
-                                          {"CONFIGURATIONS", Fit::Wide},
-                                          {"PATHS", Fit::Wide},
-                                          {"FITTED", Fit::Wide}}),
-                                   [now = now_ms(), labels = RobotLabels(server)](
-                                       const DistributionSummary& distribution) mutable {
-                                     return distribution_cells(distribution, now, labels);
-                                   }},
-      options, out, err);
-}
-
-int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
-              std::ostream& err) {
-  return list_rows(server,
-                   Listing<Job>{AdminVerb::ListJobs, "jobs list",
-                                Table({"JOB",
-                                       "VERB",
-                                       "STATE",
-                                       "PROGRESS",
-                                       "AGE",
-                                       "ARGUMENT",
-                                       "MESSAGE",
-                                       {"ROWS", Fit::Wide},
-                                       {"STARTED", Fit::Wide}}),
-                                [now = now_ms()](const Job& job) {
-                                  return std::vector<std::string>{
-                                      job.id,
-                                      job.verb,
-                                      std::string(to_text(job.state)),
-                                      percent_text(job.progress),
-                                      age_text(job.started_ms, now),
-                                      job.argument,
-                                      job.message,
-                                      std::to_string(job.rows),
-                                      job.started_ms == 0 ? "-" : time_text(job.started_ms)};
-                                }},
-                   options, out, err);
-}
-
-int list_clients(link::Client& server, const ListOptions& options, std::ostream& out,
-                 std::ostream& err) {
-  return list_rows(server,
-                   Listing<ClientUse>{AdminVerb::ListClients, "status --clients",
-                                      Table({"CLIENT",
-                                             {"ROBOTS", Fit::Cut},
-                                             "ATTEMPTS/S",
-                                             "BYTES/S",
-                                             "WAITING",
-                                             "LEASES",
-                                             "FITS",
-                                             "REFUSED",
-                                             "SEEN",
-                                             {"ATTEMPTS", Fit::Wide},
-                                             {"NEW ROBOTS", Fit::Wide},
-                                             {"NEW TASKS", Fit::Wide},
-                                             {"STORED", Fit::Wide}}),
-                                      [now = now_ms()](const ClientUse& client) {
-                                        return client_cells(client, now);
-                                      }},
-                   options, out, err);
-}
-
-int list_backups(link::Client& server, const ListOptions& options, std::ostream& out,
-                 std::ostream& err) {
-  return list_rows(server,
-                   Listing<BackupSummary>{AdminVerb::ListBackups, "backup list",
-                                          Table({"NAME", "SIZE", "AGE", {"WRITTEN", Fit::Wide}}),
-                                          [now = now_ms()](const BackupSummary& backup) {
-                                            return std::vector<std::string>{
-                                                backup.name, size_text(backup.bytes),
-                                                age_text(backup.modified_ms, now),
-                                                time_text(backup.modified_ms)};
-                                          }},
-                   options, out, err);
+                   {"audit",
+                    {.verb = AdminVerb::ListAudit, .argument = options.who},
+                    options.since_ms > 0 ? 0 : options.limit,
+                    options.json},
+                   columns_of_audit(), out, err, AuditSelection(options.since_ms, options.limit));
 }
 
 }  // namespace kinship::cli

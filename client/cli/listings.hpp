@@ -1,43 +1,61 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <iosfwd>
 #include <string>
 
-#include "client/cli/admin_rows.hpp"
+#include "client/cli/session.hpp"
 #include "client/link/client.hpp"
+#include "proto/types/audit.hpp"
 
-/// Commands that list or show the contents of a server's store. Each prints for people, or one JSON
-/// document with `json`, and returns an exit code.
+/// Commands that list the contents of a server's store. Each prints a table for people, or one
+/// document {"rows": [...]} with `json`, and returns an exit code.
 namespace kinship::cli {
 
-int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err);
+/// The listings of a noun, e.g. `list`, with --limit, --json and -o, and with --task and --robot
+/// where the verb takes filters.
+void add_listings(CLI::App& noun, Session& session);
 
-int list_robots(link::Client& server, const ListOptions& options, std::ostream& out,
-                std::ostream& err);
-int list_tasks(link::Client& server, const ListOptions& options, std::ostream& out,
-               std::ostream& err);
-int list_paths(link::Client& server, const ListOptions& options, std::ostream& out,
-               std::ostream& err);
-int list_distributions(link::Client& server, const ListOptions& options, std::ostream& out,
-                       std::ostream& err);
-int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
-              std::ostream& err);
-int list_backups(link::Client& server, const ListOptions& options, std::ostream& out,
-                 std::ostream& err);
 /// `status --clients`: the use that each client makes of the server, the busiest first.
-int list_clients(link::Client& server, const ListOptions& options, std::ostream& out,
+/// \param limit  0: all.
+int list_clients(link::Client& server, std::size_t limit, bool json, std::ostream& out,
                  std::ostream& err);
 
-/// \param name  a label, or the beginning of a digest.
-int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,
+struct AuditOptions {
+  std::string who;            ///< the name in a certificate; empty: all
+  std::int64_t since_ms = 0;  ///< Unix time, UTC; 0: all
+  std::size_t limit = 0;      ///< entries in all; 0: every one
+  bool json = false;
+};
+
+/// `audit`: the requests of each client, also refused ones, the newest first.
+int list_audit(link::Client& server, const AuditOptions& options, std::ostream& out,
                std::ostream& err);
-int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,
-              std::ostream& err);
-/// \param id  a report UUID.
-int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
-              std::ostream& err);
-/// \param id  the beginning of a distribution's id.
-int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
-                      std::ostream& err);
+
+/// Selects the audit entries to show: the newest since a time, at most a number of them. Entries
+/// arrive in the order of their making, the newest first; their times may break that order, as
+/// after a restored store or a clock set back, so that an old entry does not end the selection.
+class AuditSelection {
+ public:
+  /// \param since_ms  Unix time, UTC; 0: all.
+  /// \param limit     0: every one.
+  AuditSelection(std::int64_t since_ms, std::size_t limit) : since_ms_(since_ms), limit_(limit) {}
+
+  /// Whether the next entry is shown.
+  bool takes(const AuditEntry& entry) noexcept {
+    if (is_full() || entry.time_ms < since_ms_)
+      return false;
+    ++taken_;
+    return true;
+  }
+  /// Whether no further entry is shown.
+  bool is_full() const noexcept { return limit_ > 0 && taken_ >= limit_; }
+
+ private:
+  const std::int64_t since_ms_;
+  const std::size_t limit_;
+  std::size_t taken_ = 0;
+};
 
 }  // namespace kinship::cli

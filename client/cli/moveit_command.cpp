@@ -5,8 +5,8 @@
 #include <ostream>
 #include <set>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/offline_robot.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/moveit/conversion.hpp"
 #include "proto/files/output_file.hpp"
 #include "proto/json/problem_json.hpp"

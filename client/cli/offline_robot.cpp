@@ -5,8 +5,9 @@
 #include <sstream>
 #include <vector>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
+#include "client/cli/terminal.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "robots/models/loaded_robot.hpp"
 
 namespace kinship::cli {

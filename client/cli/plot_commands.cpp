@@ -5,10 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
-#include "client/cli/page_file.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/link/admin_rows.hpp"
 #include "client/plots/plot_pages.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
@@ -34,11 +33,12 @@ std::optional<Distribution> find_distribution(link::Client& server, const Distri
     err << trouble.str();
     return distribution;
   }
-  const auto rows =
-      show_rows(server, AdminVerb::ShowDistribution, query.id, kPlotDistribution, err, code);
-  if (code != kDone)
-    return std::nullopt;
-  return json::distribution_from_json(rows.front()).value_or_throw();
+  const auto row =
+      link::first_row_of(server, {.verb = AdminVerb::ShowDistribution, .argument = query.id});
+  if (row)
+    return json::distribution_from_json(*row).value_or_throw();
+  code = refuse(kPlotDistribution, row.error(), err);
+  return std::nullopt;
 }
 
 /// The rows of one task: the client that asks for them, and the stream for its messages.
@@ -53,15 +53,15 @@ struct TaskRows {
 template <typename Parse, typename Row>
 int read_rows(const TaskRows& of, AdminVerb verb, Parse parse, std::vector<Row>& rows) {
   constexpr std::size_t kStep = 1000;  // rows between two signs of progress
-  ListOptions filter;
-  filter.task = of.task;
   StatusLine progress(of.err, of.shows_progress);
-  return for_each_row(of.server, verb, filter, kPlotTask, of.err, [&](const std::string& row) {
-    rows.push_back(parse(row).value_or_throw());
-    if (rows.size() % kStep == 0)
-      progress.show(count_text(rows.size(), "row"));
-    return true;
-  });
+  const auto error =
+      link::for_each_row(of.server, {.verb = verb, .task = of.task}, [&](const std::string& row) {
+        rows.push_back(parse(row).value_or_throw());
+        if (rows.size() % kStep == 0)
+          progress.show(count_text(rows.size(), "row"));
+        return true;
+      });
+  return error ? refuse(kPlotTask, *error, of.err) : kDone;
 }
 
 }  // namespace
@@ -73,11 +73,13 @@ int plot_distribution(link::Client& server, const DistributionQuery& query,
   auto distribution = find_distribution(server, query, options.progress, err, code);
   if (code != kDone)
     return code;
-  const auto rows = show_rows(server, AdminVerb::ShowRobot, distribution->robot.hex(),
-                              kPlotDistribution, err, code);
-  if (code != kDone)
-    return code;
-  const auto description = json::robot_description_from_json(rows.back()).value_or_throw();
+  const auto rows =
+      link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = distribution->robot.hex()});
+  if (!rows || rows->empty())
+    return refuse(
+        kPlotDistribution,
+        rows ? Error{ErrorCode::Internal, "the server answered without a row"} : rows.error(), err);
+  const auto description = json::robot_description_from_json(rows->back()).value_or_throw();
   try {
     plots::write_page(plots::plot_of(*std::move(distribution), description), page.stream());
   } catch (const Failure& failure) {
@@ -105,6 +107,15 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
   plots::write_page(plots::history_of(task, std::move(attempts), distributions), page.stream());
   page.keep(err);
   return kDone;
+}
+
+PageFile::PageFile(const std::filesystem::path& file, std::ostream& otherwise)
+    : file_(file == "-" ? std::filesystem::path() : file), output_(file_, otherwise) {}
+
+void PageFile::keep(std::ostream& err) {
+  output_.keep();
+  if (!file_.empty())
+    err << "page in '" << file_.string() << "'\n";
 }
 
 }  // namespace kinship::cli

@@ -6,9 +6,8 @@
 
 #include "client/cli/distribution_query.hpp"
 #include "client/link/client.hpp"
+#include "proto/files/output_file.hpp"
 
-/// Pages of a server's data (client/plots). Each is written to a file that gets its name once it is
-/// complete, or to `out` if the file is "-".
 namespace kinship::cli {
 
 struct PlotOptions {
@@ -25,5 +24,21 @@ int plot_distribution(link::Client& server, const DistributionQuery& query,
 /// \return kNotFound for an unknown task, or one without reports.
 int plot_task(link::Client& server, const std::string& task, const PlotOptions& options,
               std::ostream& out, std::ostream& err);
+
+/// The output of a page: a file that gets its name once it is complete, or a stream for "-".
+class PageFile {
+ public:
+  /// \throws Failure(Storage) as OutputFile.
+  PageFile(const std::filesystem::path& file, std::ostream& otherwise);
+
+  std::ostream& stream() noexcept { return output_.stream(); }
+
+  /// Completes the page and writes its place to `err`. \throws Failure(Storage) as OutputFile.
+  void keep(std::ostream& err);
+
+ private:
+  std::filesystem::path file_;  // empty: the stream
+  files::OutputFile output_;
+};
 
 }  // namespace kinship::cli

@@ -1,11 +1,11 @@
 #include "client/arguments/command_options.hpp"
-#include "client/cli/groups.hpp"
 #include "client/cli/moveit_command.hpp"
+#include "client/cli/session.hpp"
 
 namespace kinship::cli {
 
 void add_problems(CLI::App& app, Session& session) {
-  CLI::App* problems = add_group(app, "problems", "Planning problems, for kinship-plan");
+  CLI::App* problems = add_group(app, session, "problems", "Planning problems, for kinship-plan");
   const auto options = std::make_shared<MoveItCommandOptions>();
   CLI::App* command = add_command(
       *problems, "from-moveit", "Problems out of MoveIt's scenes and requests (no server)",

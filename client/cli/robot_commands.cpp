@@ -8,10 +8,10 @@
 #include <random>
 #include <system_error>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
-#include "client/cli/robot_text.hpp"
+#include "client/cli/terminal.hpp"
+#include "client/cli/value_text.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/tables/table.hpp"
 #include "proto/types/number_text.hpp"

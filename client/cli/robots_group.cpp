@@ -1,13 +1,13 @@
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
 #include "client/cli/compare_command.hpp"
-#include "client/cli/groups.hpp"
 #include "client/cli/kinematics_commands.hpp"
 #include "client/cli/link_commands.hpp"
-#include "client/cli/listings.hpp"
 #include "client/cli/robot_commands.hpp"
-#include "client/cli/robot_upkeep_commands.hpp"
+#include "client/cli/session.hpp"
+#include "client/cli/show_commands.hpp"
 #include "client/cli/srdf_command.hpp"
+#include "client/cli/upkeep_commands.hpp"
 #include "robots/collision/edge_prover.hpp"
 
 namespace kinship::cli {
@@ -263,8 +263,8 @@ void add_remove(CLI::App& group, Session& session) {
 }  // namespace
 
 void add_robots(CLI::App& app, Session& session) {
-  CLI::App* robots = add_group(app, "robots", "Registered robots; inverse kinematics of any");
-  add_list(*robots, session, list_robots);
+  CLI::App* robots =
+      add_group(app, session, "robots", "Registered robots; inverse kinematics of any");
   add_one(*robots, session,
           {"show", "robot", "Label, or four digits of its digest or more",
            "A robot by label or beginning of its digest", "kinship robots show ur10e"},

@@ -2,10 +2,10 @@
 
 #include "client/arguments/number_range.hpp"
 #include "client/arguments/selection_arguments.hpp"
-#include "client/cli/audit_command.hpp"
 #include "client/cli/backup_commands.hpp"
-#include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
+#include "client/cli/session.hpp"
+#include "client/cli/show_commands.hpp"
 #include "client/cli/watch_command.hpp"
 
 namespace kinship::cli {
@@ -25,12 +25,8 @@ void add_status(CLI::App& app, Session& session) {
       ->needs("--clients");
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, clients, limit](link::Client& server) {
-    if (*clients) {
-      ListOptions options;
-      options.limit = *limit;
-      options.json = session.json;
-      return list_clients(server, options, session.out, session.err);
-    }
+    if (*clients)
+      return list_clients(server, *limit, session.json, session.out, session.err);
     return show_status(server, session.json, session.out, session.err);
   });
 }
@@ -87,7 +83,7 @@ void add_backup(CLI::App& app, Session& session) {
   command->get_option("--wait")->excludes(no_wait);
   add_json(*command, session);
   command->require_subcommand(0, 1);
-  add_list(*command, session, list_backups);
+  add_listings(*command, session);
   add_download(*command, session);
   command->callback([&session, command, name, options, waiting] {
     if (!command->get_subcommands().empty())
@@ -173,8 +169,7 @@ void add_server_commands(CLI::App& app, Session& session) {
 
 void add_jobs(CLI::App& app, Session& session) {
   constexpr const char* kJob = "Its id, or the beginning of it";
-  CLI::App* jobs = add_group(app, "jobs", "What takes the server long: backups, exports");
-  add_list(*jobs, session, list_jobs);
+  CLI::App* jobs = add_group(app, session, "jobs", "What takes the server long: backups, exports");
   const auto id = std::make_shared<std::string>();
   CLI::App* wait =
       add_command(*jobs, "wait", "Wait for the end of a job", "kinship jobs wait 3f9a0c11");

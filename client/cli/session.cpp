@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "client/arguments/number_range.hpp"
+#include "client/cli/listings.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/host_name.hpp"
 
@@ -31,10 +32,12 @@ std::chrono::milliseconds milliseconds(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
-CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what) {
+CLI::App* add_group(CLI::App& app, Session& session, const std::string& name,
+                    const std::string& what) {
   CLI::App* group = app.add_subcommand(name, what);
   group->footer(kExitCodes + ("Examples: kinship " + name) + " COMMAND --help");
   group->require_subcommand(1);
+  add_listings(*group, session);
   return group;
 }
 
@@ -64,25 +67,6 @@ CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output) {
   return command
       .add_option("--output", output, "HTML file, replaced once it is whole; - is standard output")
       ->type_name("FILE");
-}
-
-void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
-  const auto options = std::make_shared<ListOptions>();
-  CLI::App* command = add_command(group, "list", "List " + group.get_name(),
-                                  "kinship " + group.get_name() + " list --json");
-  constexpr std::size_t kMostRows = 1'000'000'000;
-  command->add_option("--limit", options->limit, "Rows at most (default: all)")
-      ->check(CLI::Range(std::size_t{0}, kMostRows));
-  if (can_filter) {
-    command->add_option("--task", options->task, "Of this task")->type_name("TASK");
-    command->add_option("--robot", options->robot, "Of this robot: label or digest prefix")
-        ->type_name("ROBOT");
-  }
-  add_json(*command, session);
-  on_run_with_server(*command, session, [&session, options, list](link::Client& server) {
-    options->json = session.json;
-    return list(server, *options, session.out, session.err);
-  });
 }
 
 namespace {

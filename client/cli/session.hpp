@@ -9,7 +9,6 @@
 #include <memory>
 #include <string>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/job_commands.hpp"
 #include "client/link/client.hpp"
 
@@ -37,8 +36,10 @@ struct Session {
 
 std::chrono::milliseconds milliseconds(double seconds);
 
-/// The commands about one noun; its help names the exit codes, like the program's.
-CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what);
+/// The commands about one noun, with its listings; its help names the exit codes, like the
+/// program's.
+CLI::App* add_group(CLI::App& app, Session& session, const std::string& name,
+                    const std::string& what);
 
 inline constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 not found, 4 no server answered.\n";
@@ -66,12 +67,7 @@ void on_run_with_server(CLI::App& command, Session& session, Run run) {
   on_run(command, session, [&session, run] { return session.with_server(run); });
 }
 
-using List = int (*)(link::Client&, const ListOptions&, std::ostream&, std::ostream&);
 using Show = int (*)(link::Client&, const std::string&, bool, std::ostream&, std::ostream&);
-
-/// `list`, with --limit, --json and -o.
-/// \param can_filter  whether it has --task and --robot.
-void add_list(CLI::App& group, Session& session, List list, bool can_filter = false);
 
 /// Texts of a command about one item.
 struct OneText {
@@ -88,5 +84,16 @@ CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show s
 /// --wait of a command that waits for a job, a day by default.
 /// \return gives the options of the wait, once the command line is parsed.
 std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session);
+
+// The command line of each noun.
+void add_server_commands(CLI::App& app, Session& session);  ///< status, backup, watch, audit
+void add_jobs(CLI::App& app, Session& session);
+void add_robots(CLI::App& app, Session& session);
+void add_problems(CLI::App& app, Session& session);
+void add_tasks(CLI::App& app, Session& session);
+void add_paths(CLI::App& app, Session& session);
+void add_distributions(CLI::App& app, Session& session);
+void add_configurations(CLI::App& app, Session& session);
+void add_completion(CLI::App& app, Session& session);  ///< completion and candidates
 
 }  // namespace kinship::cli

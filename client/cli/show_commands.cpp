@@ -1,16 +1,21 @@
+#include "client/cli/show_commands.hpp"
+
+#include <map>
 #include <optional>
 #include <ostream>
 #include <vector>
 
 #include "client/cli/cell_text.hpp"
 #include "client/cli/distribution_commands.hpp"
-#include "client/cli/listings.hpp"
-#include "client/cli/robot_text.hpp"
-#include "client/cli/scene_text.hpp"
+#include "client/cli/terminal.hpp"
+#include "client/cli/value_text.hpp"
+#include "client/link/admin_rows.hpp"
+#include "client/link/robot_names.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
+#include "proto/json/task_experience_json.hpp"
 #include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/time_text.hpp"
@@ -21,11 +26,11 @@ namespace {
 using tables::Fit;
 using tables::Table;
 
+/// A command that shows one object, and its request.
 struct Question {
-  AdminVerb verb = AdminVerb::Status;
-  std::string argument;
   std::string command;  ///< named in messages
-  bool json = false;    ///< the answer's document as it came
+  AdminRequest request;
+  bool json = false;  ///< the answer's document as it came
 };
 
 /// Asks for one thing and prints it: its document as it came, or through `print`.
@@ -34,20 +39,16 @@ struct Question {
 template <typename Parse, typename Print>
 int show(link::Client& server, const Question& question, std::ostream& out, std::ostream& err,
          Parse parse, Print print) {
-  int code = kDone;
-  const auto rows =
-      show_rows(server, question.verb, question.argument, question.command, err, code);
-  if (rows.empty())
-    return code;
+  const Result<std::string> row = link::first_row_of(server, question.request);
+  if (!row)
+    return refuse(question.command, row.error(), err);
   if (question.json) {
-    out << rows.front() << '\n';
+    out << *row << '\n';
     return kDone;
   }
-  const auto value = parse(rows.front());
-  if (!value) {
-    err << question.command << ": cannot read the server's row: " << value.error().message << '\n';
-    return kFailed;
-  }
+  const auto value = parse(*row);
+  if (!value)
+    return refuse(question.command, link::unreadable_row(value.error()), err);
   print(*value);
   return kDone;
 }
@@ -195,10 +196,31 @@ void print_status(const ServerStatus& status, std::ostream& out) {
     out << "bound          " << bound.used << " of " << bound.limit << ' ' << bound.what << '\n';
 }
 
+constexpr const char* kExperienceCommand = "tasks experience";
+
+std::string position_text(const Eigen::Isometry3d& T_task_transfer) {
+  constexpr int kDigits = 2;
+  std::string text;
+  for (const double number : T_task_transfer.translation())
+    text += (text.empty() ? "" : " ") + number_text(number, kDigits);
+  return text;
+}
+
+/// The labels of the robots that the paths are from; digests of robots without one.
+std::map<Digest, std::string> labels_of(link::Client& server, const TaskExperience& experience) {
+  std::map<Digest, std::string> labels;
+  for (const PosePath& path : experience.paths)
+    if (!labels.contains(path.source)) {
+      const auto robot = link::find_robot(server, path.source.hex());
+      labels.emplace(path.source, robot ? robot->label : path.source.short_hex());
+    }
+  return labels;
+}
+
 }  // namespace
 
 int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err) {
-  return show(server, {AdminVerb::Status, "", "status", json}, out, err,
+  return show(server, {"status", {.verb = AdminVerb::Status}, json}, out, err,
               json::row_from_json<ServerStatus>,
               [&](const ServerStatus& status) { print_status(status, out); });
 }
@@ -206,21 +228,21 @@ int show_status(link::Client& server, bool json, std::ostream& out, std::ostream
 int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,
                std::ostream& err) {
   constexpr const char* kCommand = "robots show";
-  int code = kDone;
-  const auto rows = show_rows(server, AdminVerb::ShowRobot, name, kCommand, err, code);
-  if (code != kDone)
-    return code;
+  const auto rows = link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = name});
+  if (!rows)
+    return refuse(kCommand, rows.error(), err);
   constexpr std::size_t kRows = 2;  // the store's record of it, and its description
-  if (rows.size() != kRows) {
-    err << kCommand << ": the server sent " << rows.size() << " rows, expected " << kRows << '\n';
+  if (rows->size() != kRows) {
+    err << kCommand << ": the server sent " << rows->size() << " rows, expected " << kRows << '\n';
     return kFailed;
   }
+  const std::string &summary = rows->front(), &described = rows->back();
   if (json) {
-    out << "{\"robot\":" << rows[0] << ",\n\"description\":" << rows[1] << "}\n";
+    out << "{\"robot\":" << summary << ",\n\"description\":" << described << "}\n";
     return kDone;
   }
-  const auto robot = json::row_from_json<RobotSummary>(rows[0]);
-  const auto description = json::robot_description_from_json(rows[1]);
+  const auto robot = json::row_from_json<RobotSummary>(summary);
+  const auto description = json::robot_description_from_json(described);
   if (!robot || !description) {
     err << kCommand << ": cannot read the server's rows: "
         << (robot ? description.error() : robot.error()).message << '\n';
@@ -232,23 +254,62 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
 
 int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,
               std::ostream& err) {
-  return show(server, {AdminVerb::ShowTask, task, "tasks show", json}, out, err,
-              json::row_from_json<TaskSummary>,
+  return show(server, {"tasks show", {.verb = AdminVerb::ShowTask, .argument = task}, json}, out,
+              err, json::row_from_json<TaskSummary>,
               [&](const TaskSummary& summary) { print_task(summary, out); });
 }
 
 int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
               std::ostream& err) {
-  return show(server, {AdminVerb::ShowPath, id, "paths show", json}, out, err,
+  return show(server, {"paths show", {.verb = AdminVerb::ShowPath, .argument = id}, json}, out, err,
               json::stored_attempt_from_json,
               [&](const json::NamedAttempt& named) { print_attempt(named.attempt, out); });
 }
 
 int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
                       std::ostream& err) {
-  return show(server, {AdminVerb::ShowDistribution, id, "distributions show", json}, out, err,
-              json::distribution_from_json,
+  return show(server,
+              {"distributions show", {.verb = AdminVerb::ShowDistribution, .argument = id}, json},
+              out, err, json::distribution_from_json,
               [&](const Distribution& distribution) { print_distribution(distribution, out); });
+}
+
+int show_experience(link::Client& server, const ExperienceOptions& options, std::ostream& out,
+                    std::ostream& err) {
+  FetchRequest request;
+  request.task = options.task;  // and no robot: it is for any
+  request.experience_bytes = options.max_bytes;
+  const Result<FetchReply> reply = server.fetch(request);
+  if (!reply)
+    return refuse(kExperienceCommand, reply.error(), err);
+  if (reply->status == FetchStatus::Refused)
+    return refuse(kExperienceCommand, {ErrorCode::InvalidInput, reply->message}, err);
+  if (reply->status == FetchStatus::Busy)
+    return refuse(kExperienceCommand, {ErrorCode::Unavailable, reply->message}, err);
+  if (!reply->experience)
+    return refuse(
+        kExperienceCommand,
+        {ErrorCode::NotFound, "no paths of task '" + options.task + "' (see: kinship tasks list)"},
+        err);
+  const TaskExperience& experience = *reply->experience;
+  if (options.json) {
+    out << json::to_json(experience) << '\n';
+    return kDone;
+  }
+  const std::map<Digest, std::string> labels = labels_of(server, experience);
+  Table table({{"SOURCE", Fit::Cut},
+               "PATH",
+               "START",
+               "GOAL",
+               {"START POSE", Fit::Wide},
+               {"GOAL POSE", Fit::Wide}});
+  for (const PosePath& path : experience.paths)
+    table.add_row({labels.at(path.source), path.path.text(), position_text(path.poses.front()),
+                   position_text(path.poses.back()), pose_text(path.poses.front()),
+                   pose_text(path.poses.back())});
+  table.print(out);
+  out << experience.paths.size() << " of " << count_text(experience.paths_known, "path") << '\n';
+  return kDone;
 }
 
 }  // namespace kinship::cli

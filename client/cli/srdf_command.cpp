@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "client/cli/admin_rows.hpp"
 #include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
 #include "client/cli/terminal.hpp"

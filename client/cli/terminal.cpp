@@ -14,6 +14,11 @@ constexpr std::string_view kBeginAgain = "\r\033[K";
 
 }  // namespace
 
+int refuse(std::string_view command, const Error& error, std::ostream& err) {
+  err << command << ": " << error.message << '\n';
+  return exit_code(error.code);
+}
+
 bool is_terminal(const std::ostream& stream) {
   return (&stream == &std::cout && isatty(STDOUT_FILENO) == 1) ||
          (&stream == &std::cerr && isatty(STDERR_FILENO) == 1);

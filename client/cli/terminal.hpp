@@ -4,7 +4,13 @@
 #include <string>
 #include <string_view>
 
+#include "proto/types/exit_code.hpp"
+#include "proto/types/result.hpp"
+
 namespace kinship::cli {
+
+/// Writes an error after `command`. \return its exit code.
+int refuse(std::string_view command, const Error& error, std::ostream& err);
 
 /// Whether a stream is standard output or standard error and a terminal.
 bool is_terminal(const std::ostream& stream);

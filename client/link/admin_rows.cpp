@@ -84,27 +84,18 @@ Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& req
   return rows;
 }
 
-template <typename Row>
-Result<Row> row_of(Client& server, const AdminRequest& request) {
-  const Result<std::vector<std::string>> rows = rows_of(server, request);
+Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
+  Result<std::vector<std::string>> rows = rows_of(server, request);
   if (!rows)
     return rows.error();
   if (rows->empty())
     return Error{ErrorCode::Internal, "the server answered without a row"};
-  Result<Row> row = json::row_from_json<Row>(rows->front());
-  if (!row)
-    return Error{ErrorCode::Internal, "cannot read the server's row: " + row.error().message};
-  return row;
+  return std::move(rows->front());
 }
 
-template Result<Eviction> row_of(Client& server, const AdminRequest& request);
-template Result<Explanation> row_of(Client& server, const AdminRequest& request);
-template Result<Job> row_of(Client& server, const AdminRequest& request);
-template Result<Retirement> row_of(Client& server, const AdminRequest& request);
-template Result<RobotRemoval> row_of(Client& server, const AdminRequest& request);
-template Result<RobotSummary> row_of(Client& server, const AdminRequest& request);
-template Result<ServerStatus> row_of(Client& server, const AdminRequest& request);
-template Result<TaskSummary> row_of(Client& server, const AdminRequest& request);
+Error unreadable_row(const Error& why) {
+  return {ErrorCode::Internal, "cannot read the server's row: " + why.message};
+}
 
 Result<Job> wait_for_job(Client& server, const std::string& id, Clock::time_point deadline,
                          const std::function<void(const Job&)>& on_progress) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "client/link/client.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
@@ -28,11 +29,22 @@ std::optional<Error> for_each_row(Client& server, AdminRequest request,
 /// All rows at once, for verbs whose reply has few.
 Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& request);
 
+/// The document of the first row, for verbs whose reply has one. \return Internal if there is none.
+Result<std::string> first_row_of(Client& server, const AdminRequest& request);
+
+/// The error for a row that cannot be read.
+Error unreadable_row(const Error& why);
+
 /// The first row, for verbs whose reply has one: for example the job that a verb began. \return
 /// Internal if there is none, or it cannot be read.
-/// \param Row  a row of proto/json/admin_rows_json.hpp that the source instantiates.
-template <typename Row>
-Result<Row> row_of(Client& server, const AdminRequest& request);
+template <json::AdminRow Row>
+Result<Row> row_of(Client& server, const AdminRequest& request) {
+  const Result<std::string> text = first_row_of(server, request);
+  if (!text)
+    return text.error();
+  Result<Row> row = json::row_from_json<Row>(*text);
+  return row ? row : unreadable_row(row.error());
+}
 
 /// Waits until a job has ended or the deadline has passed.
 /// \param on_progress  called about once a second with the job's state; may be empty.

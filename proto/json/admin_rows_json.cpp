@@ -1,6 +1,8 @@
 #include "proto/json/admin_rows_json.hpp"
 
+#include <array>
 #include <type_traits>
+#include <vector>
 
 #include "proto/json/fields.hpp"
 #include "proto/json/parts.hpp"
@@ -31,52 +33,41 @@ OrderedJson explanation_object(const Explanation& explanation) {
   return object;
 }
 
+template <typename Row>
+Result<AnyRow> read(std::string_view text) {
+  constexpr std::string_view kName = std::get<RowName<Row>>(kAdminRows).name;
+  Result<Row> row = Error{};
+  if constexpr (std::is_same_v<Row, Explanation>)
+    row = read_document(text, kName, read_explanation);
+  else
+    row = read_fields<Row>(text, kName);
+  if (!row)
+    return row.error();
+  return AnyRow(std::move(row).value());
+}
+
+template <typename... Rows>
+constexpr auto readers_of(const std::tuple<RowName<Rows>...>& /*rows*/) {
+  return std::array{&read<Rows>...};
+}
+
 }  // namespace
 
-template <AdminRow Row>
-std::string to_json(const Row& row) {
-  if constexpr (std::is_same_v<Row, Explanation>)
-    return write(explanation_object(row));
-  else
-    return write_fields(row);
+std::string write_row(const AnyRowPointer& row) {
+  return std::visit(
+      [](const auto* value) {
+        if constexpr (std::is_same_v<decltype(value), const Explanation*>)
+          return write(explanation_object(*value));
+        else
+          return write_fields(*value);
+      },
+      row);
 }
 
-template <AdminRow Row>
-Result<Row> row_from_json(std::string_view text) {
-  if constexpr (std::is_same_v<Row, Explanation>)
-    return read_document(text, kRowName<Row>, read_explanation);
-  else
-    return read_fields<Row>(text, kRowName<Row>);
+Result<AnyRow> read_row(std::size_t index, std::string_view text) {
+  constexpr auto kReaders = readers_of(kAdminRows);
+  return kReaders.at(index)(text);
 }
-
-template std::string to_json(const RobotSummary&);
-template Result<RobotSummary> row_from_json(std::string_view);
-template std::string to_json(const TaskSummary&);
-template Result<TaskSummary> row_from_json(std::string_view);
-template std::string to_json(const PathSummary&);
-template Result<PathSummary> row_from_json(std::string_view);
-template std::string to_json(const AttemptSummary&);
-template Result<AttemptSummary> row_from_json(std::string_view);
-template std::string to_json(const DistributionSummary&);
-template Result<DistributionSummary> row_from_json(std::string_view);
-template std::string to_json(const ServerStatus&);
-template Result<ServerStatus> row_from_json(std::string_view);
-template std::string to_json(const Explanation&);
-template Result<Explanation> row_from_json(std::string_view);
-template std::string to_json(const Eviction&);
-template Result<Eviction> row_from_json(std::string_view);
-template std::string to_json(const Retirement&);
-template Result<Retirement> row_from_json(std::string_view);
-template std::string to_json(const RobotRemoval&);
-template Result<RobotRemoval> row_from_json(std::string_view);
-template std::string to_json(const Job&);
-template Result<Job> row_from_json(std::string_view);
-template std::string to_json(const ClientUse&);
-template Result<ClientUse> row_from_json(std::string_view);
-template std::string to_json(const BackupSummary&);
-template Result<BackupSummary> row_from_json(std::string_view);
-template std::string to_json(const AuditEntry&);
-template Result<AuditEntry> row_from_json(std::string_view);
 
 std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256) {
   OrderedJson object;

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
-#include "proto/types/audit.hpp"
-#include "proto/types/backup_summary.hpp"
-#include "proto/types/client_use.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
@@ -15,48 +17,37 @@
 /// read them. Member names are those of the structs and never change.
 namespace kinship::json {
 
-/// Name of a row in a refusal; empty: the value is not a row.
-template <typename Row>
-inline constexpr std::string_view kRowName = {};
-template <>
-inline constexpr std::string_view kRowName<RobotSummary> = "robot";
-template <>
-inline constexpr std::string_view kRowName<TaskSummary> = "task";
-template <>
-inline constexpr std::string_view kRowName<PathSummary> = "path";
-template <>
-inline constexpr std::string_view kRowName<AttemptSummary> = "attempt";
-template <>
-inline constexpr std::string_view kRowName<DistributionSummary> = "distribution";
-template <>
-inline constexpr std::string_view kRowName<ServerStatus> = "status";
-template <>
-inline constexpr std::string_view kRowName<Explanation> = "explanation";
-template <>
-inline constexpr std::string_view kRowName<Eviction> = "eviction";
-template <>
-inline constexpr std::string_view kRowName<Retirement> = "retirement";
-template <>
-inline constexpr std::string_view kRowName<RobotRemoval> = "robot removal";
-template <>
-inline constexpr std::string_view kRowName<Job> = "job";
-template <>
-inline constexpr std::string_view kRowName<ClientUse> = "client";
-template <>
-inline constexpr std::string_view kRowName<BackupSummary> = "backup";
-template <>
-inline constexpr std::string_view kRowName<AuditEntry> = "audit entry";
+template <typename... Rows>
+std::variant<Rows...> any_of(const std::tuple<RowName<Rows>...>& rows);
+template <typename... Rows>
+std::variant<const Rows*...> pointer_to_any_of(const std::tuple<RowName<Rows>...>& rows);
 
-template <typename Row>
-concept AdminRow = !kRowName<Row>.empty();
+using AnyRow = decltype(any_of(kAdminRows));
+using AnyRowPointer = decltype(pointer_to_any_of(kAdminRows));
 
-/// A new row is instantiated in the source.
+/// One of kAdminRows.
+template <typename Row>
+concept AdminRow = std::is_constructible_v<AnyRowPointer, const Row*>;
+
+std::string write_row(const AnyRowPointer& row);
+
+/// \param index  of the row in kAdminRows.
+Result<AnyRow> read_row(std::size_t index, std::string_view text);
+
 template <AdminRow Row>
-std::string to_json(const Row& row);
+std::string to_json(const Row& row) {
+  return write_row(&row);
+}
 
 /// The distribution of an Explanation may lack its mixture (weights, means, covariances null).
 template <AdminRow Row>
-Result<Row> row_from_json(std::string_view text);
+Result<Row> row_from_json(std::string_view text) {
+  constexpr std::size_t kIndex = AnyRowPointer(static_cast<const Row*>(nullptr)).index();
+  Result<AnyRow> row = read_row(kIndex, text);
+  if (!row)
+    return row.error();
+  return std::get<Row>(std::move(row).value());
+}
 
 /// The document of `kinship backup download --json`: `{"file", "bytes", "sha256"}`.
 std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256);

@@ -42,17 +42,20 @@ enum class AdminVerb {
 };
 inline constexpr AdminVerb kLastVerb = AdminVerb::ReadBackup;
 
-/// Kind of object that `argument` of a request names.
-enum class VerbArgument { Nothing, Robot, Task, Report, Distribution, Job, BackupFile, Name };
+/// Kind of object that `argument` of a request names, where a narrowed certificate or the owner of
+/// a job limits it.
+enum class VerbArgument { Other, Robot, Task, Report, Distribution, Job };
 
 struct VerbRule {
   enum Trait : unsigned {
-    Changes = 1,      ///< logged in the audit log; without security only from this machine
-    OfAll = 2,        ///< about all tasks and robots: not for a certificate limited to some of them
-    Lists = 4,        ///< a page may have fewer rows than requested
-    Filters = 8,      ///< its request may name a robot and a task
-    FromMemory = 16,  ///< answered without the store
-    Long = 32         ///< takes many transactions; in the audit log as begun before the first
+    Changes = 1,     ///< logged in the audit log; without security only from this machine
+    OfAll = 2,       ///< about all tasks and robots: not for a certificate limited to some of them
+    Lists = 4,       ///< a page may have fewer rows than requested
+    NamesRobot = 8,  ///< its request may name a robot, beside `argument`
+    NamesTask = 16,  ///< its request may name a task, beside `argument`
+    Filters = NamesRobot | NamesTask,
+    FromMemory = 32,  ///< answered without the store
+    Long = 64         ///< takes many transactions; in the audit log as begun before the first
   };
 
   AdminVerb verb;
@@ -62,7 +65,7 @@ struct VerbRule {
   VerbArgument argument;
   unsigned traits = 0;
 
-  constexpr bool is(Trait trait) const { return (traits & trait) != 0; }
+  constexpr bool is(Trait trait) const { return (traits & trait) == trait; }
 };
 
 /// One for each verb, in the order of AdminVerb.
@@ -73,14 +76,14 @@ inline constexpr auto kVerbRules = [] {
   constexpr AccessRole kRobot = AccessRole::Robot, kReader = AccessRole::Reader,
                        kOperator = AccessRole::Operator, kAdmin = AccessRole::Admin;
   return std::array{
-      VerbRule{Status, "status", "see the status", kRobot, Is::Nothing},
-      VerbRule{ListRobots, "list_robots", "list robots", kReader, Is::Nothing, Lists},
+      VerbRule{Status, "status", "see the status", kRobot, Is::Other},
+      VerbRule{ListRobots, "list_robots", "list robots", kReader, Is::Other, Lists},
       VerbRule{ShowRobot, "show_robot", "see a robot's description", kReader, Is::Robot},
-      VerbRule{ListTasks, "list_tasks", "list tasks", kReader, Is::Nothing, Lists},
+      VerbRule{ListTasks, "list_tasks", "list tasks", kReader, Is::Other, Lists},
       VerbRule{ShowTask, "show_task", "see a task", kReader, Is::Task},
-      VerbRule{ListPaths, "list_paths", "list paths", kReader, Is::Nothing, Lists | Filters},
+      VerbRule{ListPaths, "list_paths", "list paths", kReader, Is::Other, Lists | Filters},
       VerbRule{ShowPath, "show_path", "see a path", kReader, Is::Report},
-      VerbRule{ListDistributions, "list_distributions", "list distributions", kReader, Is::Nothing,
+      VerbRule{ListDistributions, "list_distributions", "list distributions", kReader, Is::Other,
                Lists | Filters},
       VerbRule{ShowDistribution, "show_distribution", "see a distribution", kReader,
                Is::Distribution},
@@ -90,29 +93,28 @@ inline constexpr auto kVerbRules = [] {
                Is::Distribution, Changes},
       VerbRule{ExportConfigurations, "export_configurations", "export configurations", kReader,
                Is::Distribution},
-      VerbRule{ExportPaths, "export_paths", "export paths", kReader, Is::Nothing, Lists | Filters},
+      VerbRule{ExportPaths, "export_paths", "export paths", kReader, Is::Other, Lists | Filters},
       VerbRule{RetirePath, "retire_path", "retire paths", kOperator, Is::Report, Changes},
       VerbRule{ResetTask, "reset_task", "reset tasks", kOperator, Is::Task, Changes | Long},
-      VerbRule{Backup, "backup", "make backups", kOperator, Is::BackupFile, Changes | OfAll},
-      VerbRule{ListJobs, "list_jobs", "list jobs", kOperator, Is::Nothing,
+      VerbRule{Backup, "backup", "make backups", kOperator, Is::Other, Changes | OfAll},
+      VerbRule{ListJobs, "list_jobs", "list jobs", kOperator, Is::Other,
                OfAll | Lists | FromMemory},
       VerbRule{ShowJob, "show_job", "see a job", kReader, Is::Job},
       // Of the caller's own job; of others see access.hpp.
       VerbRule{CancelJob, "cancel_job", "cancel jobs", kReader, Is::Job, Changes},
       VerbRule{JobRows, "job_rows", "read what a job made", kReader, Is::Job, FromMemory},
-      VerbRule{ListAttempts, "list_attempts", "list attempts", kReader, Is::Nothing,
-               Lists | Filters},
-      VerbRule{RenameRobot, "rename_robot", "rename robots", kAdmin, Is::Robot, Changes},
+      VerbRule{ListAttempts, "list_attempts", "list attempts", kReader, Is::Other, Lists | Filters},
+      VerbRule{RenameRobot, "rename_robot", "rename robots", kAdmin, Is::Robot,
+               Changes | NamesRobot},
       VerbRule{RemoveRobot, "remove_robot", "remove robots", kAdmin, Is::Robot, Changes | Long},
-      VerbRule{ListAudit, "list_audit", "read the audit log", kOperator, Is::Name, OfAll | Lists},
-      VerbRule{ListClients, "list_clients", "list clients", kOperator, Is::Nothing,
+      VerbRule{ListAudit, "list_audit", "read the audit log", kOperator, Is::Other, OfAll | Lists},
+      VerbRule{ListClients, "list_clients", "list clients", kOperator, Is::Other,
                OfAll | Lists | FromMemory},
-      VerbRule{ListBackups, "list_backups", "list backups", kOperator, Is::Nothing, OfAll | Lists},
+      VerbRule{ListBackups, "list_backups", "list backups", kOperator, Is::Other, OfAll | Lists},
       // A copy of everything leaves the server: in the audit log once, and without security for its
       // own machine alone. Reading the pieces of one is in the log where it is refused.
-      VerbRule{HashBackup, "hash_backup", "digest backups", kOperator, Is::BackupFile,
-               Changes | OfAll},
-      VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::BackupFile,
+      VerbRule{HashBackup, "hash_backup", "digest backups", kOperator, Is::Other, Changes | OfAll},
+      VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::Other,
                Changes | OfAll}};
 }();
 

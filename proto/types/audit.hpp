@@ -42,7 +42,7 @@ inline constexpr std::tuple kFieldsOf<AuditEntry>{
     Field{"client", &AuditEntry::client, {.limit = kMaxMachineBytes}},
     Field{"is_local", &AuditEntry::is_local},
     Field{"verb", &AuditEntry::verb, {.limit = kMaxWordBytes}},
-    Field{"target", &AuditEntry::target, {.limit = kMaxFileNameBytes}},
+    Field{"target", &AuditEntry::target, {.limit = kMaxTargetBytes}},
     Field{"outcome", &AuditEntry::outcome},
     Field{"before", &AuditEntry::before, {.limit = kMaxMessageBytes}},
     Field{"after", &AuditEntry::after, {.limit = kMaxMessageBytes}},

@@ -4,11 +4,15 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
 #include "proto/types/advice.hpp"
 #include "proto/types/attempt.hpp"
+#include "proto/types/audit.hpp"
+#include "proto/types/backup_summary.hpp"
+#include "proto/types/client_use.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/field.hpp"
@@ -250,7 +254,7 @@ template <>
 inline constexpr std::tuple kFieldsOf<Job>{
     Field{"id", &Job::id, {.limit = kMaxWordBytes}},
     Field{"verb", &Job::verb, {.limit = kMaxWordBytes}},
-    Field{"argument", &Job::argument, {.limit = kMaxFileNameBytes}},
+    Field{"argument", &Job::argument, {.limit = kMaxTargetBytes}},
     Field{"state", &Job::state},
     Field{"progress", &Job::progress, {.min = 0, .max = 1}},
     Field{"message", &Job::message, {.limit = kMaxMessageBytes}},
@@ -404,5 +408,27 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"credentials_expire_ms", &ServerStatus::credentials_expire_ms, {.may_be_missing = true}},
     Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}},
     Field{"replicas", &ServerStatus::replicas, {.limit = kMaxStatusRows, .may_be_missing = true}}};
+
+/// A row of the admin conversation, and its name in a refusal.
+template <typename Row>
+struct RowName {
+  std::string_view name;
+};
+
+/// Every row that is written by a table of its fields, and Explanation.
+inline constexpr std::tuple kAdminRows{RowName<RobotSummary>{"robot"},
+                                       RowName<TaskSummary>{"task"},
+                                       RowName<PathSummary>{"path"},
+                                       RowName<AttemptSummary>{"attempt"},
+                                       RowName<DistributionSummary>{"distribution"},
+                                       RowName<ServerStatus>{"status"},
+                                       RowName<Explanation>{"explanation"},
+                                       RowName<Eviction>{"eviction"},
+                                       RowName<Retirement>{"retirement"},
+                                       RowName<RobotRemoval>{"robot removal"},
+                                       RowName<Job>{"job"},
+                                       RowName<ClientUse>{"client"},
+                                       RowName<BackupSummary>{"backup"},
+                                       RowName<AuditEntry>{"audit entry"}};
 
 }  // namespace kinship

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "proto/types/attempt.hpp"
-#include "proto/types/audit.hpp"
-#include "proto/types/backup_summary.hpp"
-#include "proto/types/client_use.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/failure.hpp"
@@ -28,11 +26,12 @@ struct TextLine {
   std::string text;
 };
 
+template <typename... Rows>
+std::variant<Rows..., RobotDescription, Attempt, Distribution, ExportedRobot, TextLine> row_with(
+    const std::tuple<RowName<Rows>...>& rows);
+
 /// A row of the answer to a verb (AdminVerb says which), not yet encoded.
-using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
-                              PathSummary, AttemptSummary, Attempt, DistributionSummary,
-                              Distribution, Explanation, Eviction, ExportedRobot, Retirement,
-                              RobotRemoval, Job, AuditEntry, ClientUse, BackupSummary, TextLine>;
+using AdminRow = decltype(row_with(kAdminRows));
 
 /// An AdminReply whose rows are not yet encoded.
 struct AdminPage {
@@ -66,15 +65,17 @@ AdminPage page_of(Result<Row> row) {
   return row ? page_of(std::move(row).value()) : page_of(row.error());
 }
 
-/// At most `limit` rows of `all` from `first` on; the cursor is the index of the next row.
+/// A page of all the rows that there are; its cursor is the number of rows before it.
+/// \throws Failure(InvalidInput) for another cursor.
 template <typename Row>
-AdminPage page_of(const std::vector<Row>& all, std::size_t first, std::size_t limit) {
+AdminPage page_of(const std::vector<Row>& all, const AdminRequest& request) {
   AdminPage answer;
+  std::size_t next = row_number(request.cursor).value_or_throw();
+  for (; next < all.size() && answer.rows.size() < page_size(request); ++next)
+    answer.rows.emplace_back(all[next]);
   answer.status = AdminStatus::Ok;
-  for (; first < all.size() && answer.rows.size() < limit; ++first)
-    answer.rows.emplace_back(all[first]);
-  if (first < all.size())
-    answer.next_cursor = std::to_string(first);
+  if (next < all.size())
+    answer.next_cursor = std::to_string(next);
   return answer;
 }
 

@@ -86,42 +86,49 @@ class Administration {
     const std::string& key;  ///< the request's key, see answer()
     const AuditEntry& audit;
   };
-  using Handler = AdminPage (Administration::*)(const Call& call);
+  using Handler = AdminPage (*)(Administration& self, const Call& call);
   struct VerbHandler {
     AdminVerb verb;
     Handler handle;
   };
   static const std::array<VerbHandler, kVerbRules.size()> kHandlers;
+  template <AdminPage (Administration::*handle)(const Call& call)>
+  static AdminPage run(Administration& self, const Call& call) {
+    return (self.*handle)(call);
+  }
+  /// A listing of the store.
+  template <auto read>
+  static AdminPage list(Administration& self, const Call& call) {
+    return page_of((self.parts_.store.*read)(call.request.cursor, page_size(call.request)));
+  }
+  /// A listing of the store that takes filters.
+  template <auto read>
+  static AdminPage list_filtered(Administration& self, const Call& call) {
+    const AdminRequest& request = call.request;
+    return page_of((self.parts_.store.*read)(self.robot_filter(request), request.task,
+                                             request.cursor, page_size(request)));
+  }
 
   AdminPage attempt(const Call& call, const Caller& caller);
   AdminPage dispatch(const Call& call);
 
   // Each throws Failure(NotFound) for a missing object, and Failure(InvalidInput) for an invalid or
   // ambiguous name.
-  AdminPage show_status(const Call& call);
   AdminPage list_robots(const Call& call);
   AdminPage show_robot(const Call& call);
   AdminPage rename_robot(const Call& call);
   AdminPage remove_robot(const Call& call);
-  AdminPage list_tasks(const Call& call);
   AdminPage show_task(const Call& call);
   AdminPage reset_task(const Call& call);
-  AdminPage list_attempts(const Call& call);
-  AdminPage list_paths(const Call& call);
   AdminPage show_path(const Call& call);
-  AdminPage export_paths(const Call& call);
   AdminPage retire_path(const Call& call);
   AdminPage list_distributions(const Call& call);
   AdminPage show_distribution(const Call& call);
   AdminPage explain_distribution(const Call& call);
   AdminPage export_configurations(const Call& call);
   AdminPage evict_distribution(const Call& call);
-  AdminPage list_jobs(const Call& call);
-  AdminPage show_job(const Call& call);
   AdminPage job_rows(const Call& call);
   AdminPage cancel_job(const Call& call);
-  AdminPage list_audit(const Call& call);
-  AdminPage list_clients(const Call& call);
   AdminPage back_up(const Call& call);
   AdminPage list_backups(const Call& call);
   AdminPage hash_backup(const Call& call);

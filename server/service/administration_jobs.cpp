@@ -73,15 +73,6 @@ AdminPage read_backup_from(const BackupFile& file, std::size_t begin) {
 
 }  // namespace
 
-AdminPage Administration::list_jobs(const Call& call) {
-  return page_of(parts_.jobs.list(call.request.cursor, page_size(call.request)));
-}
-
-/// As it stands: Service waits for its end.
-AdminPage Administration::show_job(const Call& call) {
-  return page_of(parts_.jobs.find(call.request.argument));
-}
-
 AdminPage Administration::job_rows(const Call& call) {
   const std::size_t first = row_number(call.request.cursor).value_or_throw();
   Jobs::RowPage rows =
@@ -107,10 +98,9 @@ AdminPage Administration::export_configurations(const Call& call) {
 }
 
 AdminPage Administration::list_backups(const Call& call) {
-  const std::size_t first = row_number(call.request.cursor).value_or_throw();
   const std::filesystem::path store_file = parts_.store.status().file;
   const std::filesystem::path folder = folder_of(parts_.backups, store_file).value_or_throw();
-  return page_of(find_backups(folder, store_file), first, page_size(call.request));
+  return page_of(find_backups(folder, store_file), call.request);
 }
 
 BackupFile Administration::open_backup(const std::string& name) const {

@@ -18,6 +18,12 @@ void throw_if(const std::optional<Error>& refusal) {
     throw Failure(*refusal);
 }
 
+template <typename Row>
+concept OfTaskAndRobot = requires(Row row) {
+  row.task;
+  row.label;
+};
+
 /// Troubles of others may name their tasks and robots.
 void strip(ServerStatus& status) {
   for (TroubleCount& trouble : status.troubles)
@@ -100,18 +106,8 @@ bool Narrowing::keeps(AdminRow& row) const {
     }
     return may_see(task->task, "") && (caller_.robots.empty() || !task->robots.empty());
   }
-  if (const auto* const robot = std::get_if<RobotSummary>(&row))
-    return may_see("", robot->label);
-  if (const auto* const robot = std::get_if<RobotDescription>(&row))
-    return may_see("", robot->label);
   if (const auto* const robot = std::get_if<ExportedRobot>(&row))
     return may_see("", robot->description.label);
-  if (const auto* const path = std::get_if<PathSummary>(&row))
-    return may_see(path->task, path->label);
-  if (const auto* const attempt = std::get_if<AttemptSummary>(&row))
-    return may_see(attempt->task, attempt->label);
-  if (const auto* const distribution = std::get_if<DistributionSummary>(&row))
-    return may_see(distribution->task, distribution->label);
   if (const auto* const attempt = std::get_if<Attempt>(&row))
     return may_see(attempt->task, caller_.robots.empty() ? "" : label_of(attempt->robot));
   if (auto* const distribution = std::get_if<Distribution>(&row))
@@ -123,7 +119,16 @@ bool Narrowing::keeps(AdminRow& row) const {
   }
   if (auto* const status = std::get_if<ServerStatus>(&row))
     strip(*status);
-  return true;
+  return std::visit(
+      [&](const auto& value) {
+        if constexpr (OfTaskAndRobot<decltype(value)>)
+          return may_see(value.task, value.label);
+        else if constexpr (requires { value.label; })
+          return may_see("", value.label);
+        else
+          return true;
+      },
+      row);
 }
 
 }  // namespace kinship::service

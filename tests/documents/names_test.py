@@ -1,7 +1,7 @@
 """Verbs and options that documents name are in the programs' --help.
 
 Looked at are code spans and commands that begin with a program's name, in every Markdown file, and in those for users also spans that
-are an option alone (`--server HOST`), which some program must have.
+are an option alone (`--server HOST`), which some program must have. KINSHIP_WRITE_DOCUMENTS=1 writes the table of verbs of docs/reference.md.
 """
 import functools
 import os
@@ -15,6 +15,7 @@ from markdown import Document, documents
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 FOLDER_OF_PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
 PROGRAMS = ("kinship", "kinshipd", "kinship-plan", "kinship-experiments")
+IS_WRITTEN = os.environ.get("KINSHIP_WRITE_DOCUMENTS") == "1"
 HISTORY = ("CHANGELOG.md",)  # speaks of what was, too
 FOR_USERS = ("README.md", "docs/*.md", "deploy/README.md")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
@@ -45,6 +46,16 @@ def has_verb(path: "tuple[str, ...]", verb: str) -> bool:
 def tree(*words: str) -> "list[tuple[str, ...]]":
     """The command and all below it."""
     return [words] + [found for verb in sorted(verbs_of(*words)) for found in tree(*words, verb)]
+
+
+def table_of_verbs() -> str:
+    """Each verb of kinship, with what its help says of it."""
+    rows = ["| `kinship` | What it does |", "|---|---|"]
+    for words in tree("kinship")[1:]:
+        what, usage = help_of(*words).split("Usage:", 1)
+        if not usage.splitlines()[0].endswith(" SUBCOMMAND"):
+            rows.append(f"| `{' '.join(words[1:])}` | {' '.join(what.split())} |")
+    return "\n".join(rows)
 
 
 def what_is_missing(command: str) -> "list[str]":
@@ -104,11 +115,14 @@ class Names(unittest.TestCase):
         if wrong:
             self.fail("\n" + "\n".join(wrong))
 
-    def test_of_verbs_are_all_in_the_reference(self):
-        wanted = {" ".join(words[1:]) for words in tree("kinship") if not verbs_of(*words)}
-        rows = (SOURCE / "docs" / "reference.md").read_text(encoding="utf-8").split("| `kinship` |")[1].split("\n\n")[0]
-        told = {name for row in rows.splitlines()[2:] for name in re.findall(r"`([^`]+)`", row.split("|")[1])}
-        self.assertEqual(sorted(told), sorted(wanted))
+    def test_of_verbs_are_the_table_of_the_reference(self):
+        reference = SOURCE / "docs" / "reference.md"
+        before, rest = reference.read_text(encoding="utf-8").split("| `kinship` |", 1)
+        table, after = ("| `kinship` |" + rest).split("\n\n", 1)
+        if IS_WRITTEN:
+            reference.write_text(f"{before}{table_of_verbs()}\n\n{after}", encoding="utf-8")
+        else:
+            self.assertEqual(table, table_of_verbs())
 
 
 if __name__ == "__main__":

@@ -1,6 +1,13 @@
 // What people do with `kinship`, as a process, against kinshipd as a process.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "proto/json/admin_rows_json.hpp"
@@ -9,6 +16,38 @@
 
 namespace kinship::admin_commands_test {
 namespace {
+
+/// The verbs that the help of a command lists.
+std::vector<std::string> verbs_of(std::vector<std::string> words) {
+  words.emplace_back("--help");
+  const std::string help = test::run_to_end("kinship", words).out;
+  std::vector<std::string> verbs;
+  std::istringstream lines(help.substr(std::min(help.find("\nSubcommands:\n"), help.size())));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("  ") && std::isalpha(static_cast<unsigned char>(line[2])) != 0)
+      verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return verbs;
+}
+
+TEST_F(AdminCommands, EveryListingIsATableAndADocument) {
+  teach(server_);
+  std::set<std::string> seen;
+  for (const std::string& noun : verbs_of({}))
+    for (const std::string& verb : verbs_of({noun})) {
+      if (test::run_to_end("kinship", {noun, verb, "--help"}).out.find("Rows at most") ==
+          std::string::npos)
+        continue;
+      seen.insert(noun);
+      const Answer table = server_.kinship({noun, verb, "-o", "wide"});
+      EXPECT_EQ(table.code, 0) << noun << ' ' << verb << ": " << table.err;
+      const Answer document = server_.kinship({noun, verb, "--json"});
+      EXPECT_EQ(document.code, 0) << noun << ' ' << verb << ": " << document.err;
+      const auto rows = nlohmann::json::parse(document.out).at("rows").size();
+      EXPECT_EQ(count_lines(table.out), rows + 1) << table.out;  // headings, or (none)
+    }
+  EXPECT_EQ(seen,
+            (std::set<std::string>{"backup", "distributions", "jobs", "paths", "robots", "tasks"}));
+}
 
 TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
   teach(server_);

@@ -13,7 +13,7 @@ AuditEntry cut_to_fit(AuditEntry entry) {
   for (std::string* const word : {&entry.name, &entry.role, &entry.verb})
     cut(*word, kMaxWordBytes);
   cut(entry.client, kMaxMachineBytes);
-  cut(entry.target, kMaxFileNameBytes);
+  cut(entry.target, kMaxTargetBytes);
   for (std::string* const message : {&entry.before, &entry.after, &entry.message})
     cut(*message, kMaxMessageBytes);
   return entry;

@@ -7,12 +7,11 @@
 #include <sstream>
 #include <vector>
 
-#include "client/cli/audit_selection.hpp"
+#include "client/cli/listings.hpp"
 #include "client/cli/compare_command.hpp"
 #include "client/cli/distribution_commands.hpp"
-#include "client/cli/rehearsal_text.hpp"
-#include "client/cli/scene_text.hpp"
-#include "client/cli/server_rates.hpp"
+#include "client/cli/value_text.hpp"
+#include "client/cli/watch_command.hpp"
 
 namespace kinship::cli::printed_text_test {
 namespace {

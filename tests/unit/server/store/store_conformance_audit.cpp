@@ -107,7 +107,7 @@ TEST_P(StoreConformance, LongTextsOfAnEntryAreCut) {
   store_->add_audit(entry);
   const AuditEntry kept = store_->list_audit("", "", 1).rows.at(0);
   EXPECT_EQ(kept.name.size(), kMaxWordBytes);
-  EXPECT_EQ(kept.target.size(), kMaxFileNameBytes);
+  EXPECT_EQ(kept.target.size(), kMaxTargetBytes);
   EXPECT_EQ(kept.message.size(), kMaxMessageBytes);
 }
 

@@ -1,0 +1,143 @@
+#include "client/cli/upkeep_commands.hpp"
+
+#include <algorithm>
+#include <ostream>
+
+#include "client/cli/cell_text.hpp"
+#include "client/cli/terminal.hpp"
+#include "client/link/admin_rows.hpp"
+#include "client/link/robot_names.hpp"
+#include "client/link/robot_upkeep.hpp"
+#include "proto/json/admin_rows_json.hpp"
+#include "proto/types/names.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr std::string_view kRetirePath = "paths retire", kResetTask = "tasks reset";
+constexpr const char* kNothingToRetire = "nothing to do: retired already\n";
+
+int retire(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
+           std::ostream& out, std::ostream& err) {
+  const std::string_view command = verb == AdminVerb::RetirePath ? kRetirePath : kResetTask;
+  const auto retirement = link::row_of<Retirement>(server, {.verb = verb, .argument = argument});
+  if (!retirement)
+    return refuse(command, retirement.error(), err);
+  if (json)
+    out << json::to_json(*retirement) << '\n';
+  else if (retirement->paths == 0)
+    out << kNothingToRetire;
+  else
+    out << count_text(retirement->paths, "path") << " of task '" << retirement->task
+        << "' retired, of " << count_text(retirement->robots.size(), "robot")
+        << "; distributions made of them are not served any more\n";
+  return kDone;
+}
+
+constexpr std::string_view kRename = "robots rename", kRemove = "robots remove";
+
+int say_what_would_happen(link::Client& server, const RobotSummary& robot, std::ostream& err) {
+  const auto distributions =
+      link::rows_of(server, {.verb = AdminVerb::ListDistributions, .robot = robot.robot.hex()});
+  if (!distributions)
+    return refuse(kRemove, distributions.error(), err);
+  err << kRemove << ": this would retire " << count_text(robot.paths, "path") << " of '"
+      << robot.label << "' (" << robot.robot.short_hex()
+      << "): out of every fit, not to be undone. " << count_text(robot.attempts, "attempt")
+      << " would stay on record, " << count_text(distributions->size(), "distribution")
+      << " for it would go, those of other robots that used its paths be fitted anew. To do it: "
+         "kinship robots remove "
+      << robot.label << " --yes; to free the label alone: kinship robots rename " << robot.label
+      << " NEW\n";
+  return kWrongUsage;
+}
+
+void print_removal(const RobotRemoval& removal, std::ostream& out) {
+  out << '\'' << removal.label << "' (" << removal.robot.short_hex() << ") ";
+  if (removal.is_deleted)
+    out << "deleted: it had no attempts";
+  else
+    out << "removed: " << count_text(removal.paths, "path") << " retired, "
+        << count_text(removal.attempts, "attempt") << " stay on record";
+  out << "; " << count_text(removal.distributions, "distribution")
+      << " for it gone; the label is free\n"
+      << "If its clients report again they register it again; while another robot has the label "
+         "their reports wait with them\n";
+}
+
+}  // namespace
+
+int retire_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                std::ostream& err) {
+  return retire(server, AdminVerb::RetirePath, id, json, out, err);
+}
+
+int reset_task(link::Client& server, const std::string& task, bool confirmed, bool json,
+               std::ostream& out, std::ostream& err) {
+  if (confirmed)
+    return retire(server, AdminVerb::ResetTask, task, json, out, err);
+  const auto summary =
+      link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = task});
+  if (!summary)
+    return refuse(kResetTask, summary.error(), err);
+  if (summary->paths == 0) {
+    out << (json ? json::to_json(Retirement{summary->task, 0, {}}) + "\n" : kNothingToRetire);
+    return kDone;
+  }
+  const auto robots = std::ranges::count_if(
+      summary->robots, [](const TaskRobotSummary& robot) { return robot.paths > 0; });
+  err << kResetTask << ": this would retire " << count_text(summary->paths, "path") << " of "
+      << count_text(static_cast<std::uint64_t>(robots), "robot")
+      << ": out of every fit, kept for the record, not to be undone. To do it: kinship tasks reset "
+      << task << " --yes\n";
+  return kWrongUsage;
+}
+
+int evict_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                       std::ostream& err) {
+  constexpr const char* kCommand = "distributions evict";
+  const auto evicted =
+      link::row_of<Eviction>(server, {.verb = AdminVerb::EvictDistribution, .argument = id});
+  if (!evicted)
+    return refuse(kCommand, evicted.error(), err);
+  if (json)
+    out << json::to_json(*evicted) << '\n';
+  else
+    out << "distribution " << evicted->id.short_hex()
+        << " evicted; the next fetch has it made anew\n";
+  return kDone;
+}
+
+int rename_robot(link::Client& server, const std::string& robot, const std::string& label,
+                 bool json, std::ostream& out, std::ostream& err) {
+  if (const auto error = check_label(label))
+    return refuse(kRename, *error, err);
+  const auto summary = link::rename_robot(server, robot, label);
+  if (!summary)
+    return refuse(kRename, summary.error(), err);
+  if (json)
+    out << json::to_json(*summary) << '\n';
+  else
+    out << "robot " << summary->robot.short_hex() << " is called '" << summary->label << "' now\n";
+  return kDone;
+}
+
+int remove_robot(link::Client& server, const std::string& robot, bool confirmed, bool json,
+                 std::ostream& out, std::ostream& err) {
+  const auto summary = link::find_robot(server, robot);
+  if (!summary)
+    return refuse(kRemove, summary.error(), err);
+  if (!confirmed && summary->attempts > 0)
+    return say_what_would_happen(server, *summary, err);
+  // By its digest: the label may be another robot's by now.
+  const auto removal = link::remove_robot(server, summary->robot.hex());
+  if (!removal)
+    return refuse(kRemove, removal.error(), err);
+  if (json)
+    out << json::to_json(*removal) << '\n';
+  else
+    print_removal(*removal, out);
+  return kDone;
+}
+
+}  // namespace kinship::cli
