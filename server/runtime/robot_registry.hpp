@@ -20,7 +20,7 @@
 #include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/chain.hpp"
-#include "server/store/store.hpp"
+#include "server/store/robot_store.hpp"
 
 namespace kinship::runtime {
 
@@ -55,8 +55,8 @@ class RobotRegistry {
   };
 
   /// \param store  outlives the registry.
-  explicit RobotRegistry(store::Store& store) : RobotRegistry(store, Options{}) {}
-  RobotRegistry(store::Store& store, Options options);
+  explicit RobotRegistry(store::RobotStore& store) : RobotRegistry(store, Options{}) {}
+  RobotRegistry(store::RobotStore& store, Options options);
 
   /// Parses, identifies and stores a robot, and lists other robots of the store that are the same
   /// arm: at most kMaxSameArms labels, in their order, fewer if the store cannot be read. Refused,
@@ -141,7 +141,7 @@ class RobotRegistry {
   std::vector<std::string> same_arms_in_memory(const Digest& robot,
                                                const kinematics::Chain& chain) const;
 
-  store::Store& store_;
+  store::RobotStore& store_;
   const Options options_;
   std::atomic<bool> is_stopping_ = false;
   mutable std::mutex mutex_;  // guards what follows

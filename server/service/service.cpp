@@ -79,7 +79,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       fitters_({.threads = options_.fit_threads,
                 .queue_limit = options_.fit_queue,
                 .niceness = options_.fit_niceness}),
-      catalog_({*store_, robots_, short_task_pool_, fitters_, options_.clock, &memory_},
+      catalog_({*store_, *store_, robots_, short_task_pool_, fitters_, options_.clock, &memory_},
                catalog_options(options_)),
       rehearsals_({*store_, robots_, options_.clock, experience_, &memory_}, rehearsal_options()),
       ingest_(*store_, robots_, short_task_pool_, ingest_options()),
