@@ -12,7 +12,7 @@
 namespace kinship::app {
 namespace {
 
-using RobotLabels = service::Service::RobotLabels;
+using RobotLabels = service::RegistrationService::RobotLabels;
 
 /// The label of a robot as far as a narrowed caller's certificate needs it.
 struct KnownLabel {
@@ -78,13 +78,14 @@ runtime::RobotRegistry::LabelRule rule_for(const Caller& caller) {
 
 }  // namespace
 
-void register_robot(service::Service& service, const Caller& caller, RobotDescription description,
+void register_robot(service::RegistrationService& registration, const Caller& caller,
+                    RobotDescription description,
                     const std::function<void(const RegisterReply&)>& done) {
   if (const auto refusal = access::refusal_of_registration(caller, description.label))
-    return service.refuse_registration(description.label, refusal->message, done);
+    return registration.refuse(description.label, refusal->message, done);
   if (!access::is_narrowed(caller))
-    return service.register_robot(std::move(description), done, caller.client);
-  service.register_robot(
+    return registration.register_robot(std::move(description), done, caller.client);
+  registration.register_robot(
       std::move(description),
       [caller, done](RegisterReply reply) {
         std::erase_if(reply.same_arms, [&](const std::string& label) {
@@ -95,23 +96,24 @@ void register_robot(service::Service& service, const Caller& caller, RobotDescri
       caller.client, rule_for(caller));
 }
 
-void report(service::Service& service, const Caller& caller, ReportRequest request,
+void report(service::ReportService& reports, service::RegistrationService& robots,
+            const Caller& caller, ReportRequest request,
             const std::function<void(const ReportReply&)>& done) {
   if (caller.name.empty())
-    return service.report(std::move(request), done, caller.client);
-  std::set<Digest> robots;
+    return reports.report(std::move(request), done, caller.client);
+  std::set<Digest> reporting;
   if (!caller.robots.empty())
     for (const Attempt& attempt : request.attempts)
-      robots.insert(attempt.robot);
-  service.name_robots(
-      robots,
-      [&service, caller, request = std::move(request), done](const RobotLabels& labels) mutable {
+      reporting.insert(attempt.robot);
+  robots.name_robots(
+      reporting,
+      [&reports, caller, request = std::move(request), done](const RobotLabels& labels) mutable {
         const bool is_postponed = keep_allowed(request, caller, labels);
-        service.report(
+        reports.report(
             std::move(request),
             [done, is_postponed](ReportReply reply) {
               if (is_postponed)
-                reply.retry_after = std::max(reply.retry_after, service::Service::kRetryAfter);
+                reply.retry_after = std::max(reply.retry_after, service::TaskPools::kRetryAfter);
               done(reply);
             },
             caller.client);
@@ -119,27 +121,28 @@ void report(service::Service& service, const Caller& caller, ReportRequest reque
       caller.client);
 }
 
-void fetch(service::Service& service, const Caller& caller, const FetchRequest& request,
-           const std::string& waiter, const std::function<void(const FetchReply&)>& done) {
+void fetch(service::FetchService& fetches, service::RegistrationService& robots,
+           const Caller& caller, const FetchRequest& request, const std::string& waiter,
+           const std::function<void(const FetchReply&)>& done) {
   if (const auto refusal = access::refusal_of_fetch(caller, request.task, ""))
-    return service.refuse_fetch(refusal->message, done);
+    return fetches.refuse(refusal->message, done);
   if (!access::withholds_sources(caller))
-    return service.fetch(request, waiter, done);
+    return fetches.fetch(request, waiter, done);
   const auto for_its_robots = [caller, robot = request.robot, done](FetchReply reply) {
     access::withhold_sources(caller, robot, reply);
     done(reply);
   };
-  service.name_robots(
+  robots.name_robots(
       {request.robot},
-      [&service, caller, request, waiter, done, for_its_robots](const RobotLabels& labels) {
+      [&fetches, caller, request, waiter, done, for_its_robots](const RobotLabels& labels) {
         const auto robot = labels.find(request.robot);
         if (robot != labels.end() && !robot->second)
-          return service.postpone_fetch(why_not_now(request.robot, robot->second.error()), done);
+          return fetches.postpone(why_not_now(request.robot, robot->second.error()), done);
         if (robot != labels.end())
           if (const auto refusal =
                   access::refusal_of_fetch(caller, request.task, robot->second.value()))
-            return service.refuse_fetch(refusal->message, done);
-        service.fetch(request, waiter, for_its_robots);  // which says which robot is not registered
+            return fetches.refuse(refusal->message, done);
+        fetches.fetch(request, waiter, for_its_robots);  // which says which robot is not registered
       },
       caller.client);
 }

@@ -52,7 +52,7 @@ auto gate_of(service::Service& service, const Reply& busy) {
 
 /// Answers with the part of the service's answer that begins at a place. Rows of one page can
 /// exceed the limit of a message: a listing is then asked for with fewer, a single row cut.
-void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
+void administer(service::AdminService& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
   service.administer(
       request, request_key_of(answer),
@@ -66,7 +66,7 @@ void administer(service::Service& service, const AdminRequest& request, const Ro
       answer.caller());
 }
 
-void administer(service::Service& service, const AdminRequest& request,
+void administer(service::AdminService& service, const AdminRequest& request,
                 const dds::Answer<AdminConversation>& answer) {
   const RowCursor begin = read_row_cursor(request.cursor).value_or_throw();
   administer(service, for_rest(request, begin), begin, answer);
@@ -82,7 +82,8 @@ class Endpoints::Implementation {
             participant, loop,
             [&service](RobotDescription description,
                        const dds::Answer<RegisterConversation>& answer) {
-              app::register_robot(service, answer.caller(), std::move(description), answer);
+              app::register_robot(service.registration(), answer.caller(), std::move(description),
+                                  answer);
             },
             [&service](const Caller& caller, const codec::RequestSize& size) {
               return reply_to(service.admit_robot(caller.client, size.bytes), RegisterReply{});
@@ -90,19 +91,21 @@ class Endpoints::Implementation {
         report_(
             participant, loop,
             [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
-              app::report(service, answer.caller(), std::move(request), answer);
+              app::report(service.reports(), service.registration(), answer.caller(),
+                          std::move(request), answer);
             },
             gate_of(service, ReportReply{})),
         fetch_(
             participant, loop,
             [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
-              app::fetch(service, answer.caller(), request, request_key_of(answer), answer);
+              app::fetch(service.fetches(), service.registration(), answer.caller(), request,
+                         request_key_of(answer), answer);
             },
             gate_of(service, with_status(FetchReply(), FetchStatus::Busy))),
         admin_(
             participant, loop,
             [&service](const AdminRequest& request, const dds::Answer<AdminConversation>& answer) {
-              administer(service, request, answer);
+              administer(service.administration(), request, answer);
             },
             gate_of(service, with_status(AdminReply(), AdminStatus::Failed))) {}
 

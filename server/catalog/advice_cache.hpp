@@ -13,7 +13,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "server/catalog/judged_attempts.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 

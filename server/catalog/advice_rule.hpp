@@ -2,7 +2,7 @@
 
 #include "proto/types/advice.hpp"
 #include "server/catalog/judged_attempts.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 

@@ -33,6 +33,7 @@ Catalog::Catalog(const Parts& parts, Options options)
       options_(std::move(options)),
       adviser_(options_.advice),
       maker_({.store = parts.store,
+              .distributions = parts.distributions,
               .robots = parts.robots,
               .clock = parts.clock,
               .memory = parts.memory},
@@ -72,7 +73,7 @@ void Catalog::change(Change change) {
 void Catalog::finish(const Afterwards& after) const {
   give(after.answers);
   for (const Digest& id : after.used)
-    parts_.store.note_use(id);
+    parts_.distributions.note_use(id);
   for (const Digest& id : after.unfollowed)
     options_.on_unfollowed(id);
   if (after.wake)
@@ -179,8 +180,8 @@ void Catalog::look_up(const Digest& id) {
   if (!input)
     return;
   try {
-    const LookUp found =
-        catalog::look_up(id, input->key, input->in_memory, parts_.store, parts_.robots);
+    const LookUp found = catalog::look_up(id, input->key, input->in_memory, parts_.store,
+                                          parts_.distributions, parts_.robots);
     const AdvisedReply known = adviser_.advise(found.known, input->key);
     change([&](Afterwards& after) { state_.resolve(id, found, known, input->version, after); });
   } catch (const std::exception& exception) {
@@ -194,7 +195,7 @@ void Catalog::run_fit(const Digest& id) {
   if (!key)
     return;
   try {
-    const FitTurn turn(parts_.store, id, stop_source_.get_token());
+    const FitTurn turn(parts_.distributions, id, stop_source_.get_token());
     ExperienceVersion version;
     if (turn.has_others()) {
       change([&](Afterwards&) { version = state_.version_of(key->task); });
@@ -239,7 +240,8 @@ fitting::FitOutcome Catalog::fit(const Digest& id, const fitting::DistributionKe
 /// The distribution that another server has stored, if a fit would bring nothing new.
 std::optional<Distribution> Catalog::made_elsewhere(const Digest& id,
                                                     const fitting::DistributionKey& key) {
-  const LookUp found = catalog::look_up(id, key, nullptr, parts_.store, parts_.robots);
+  const LookUp found =
+      catalog::look_up(id, key, nullptr, parts_.store, parts_.distributions, parts_.robots);
   if (found.end || !found.known || has_changed(*found.known->distribution, found.experience))
     return std::nullopt;
   return found.known->distribution;

@@ -19,7 +19,8 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
-#include "server/store/store.hpp"
+#include "server/store/distribution_store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 
@@ -45,7 +46,8 @@ class Catalog {
 
   /// References; they outlive the catalog's last job.
   struct Parts {
-    store::Store& store;
+    const store::ExperienceStore& store;
+    store::DistributionStore& distributions;
     runtime::RobotRegistry& robots;
     runtime::WorkerPool& short_task_pool;  ///< looks up in the store
     runtime::WorkerPool& fitters;          ///< transfers and fits

@@ -75,7 +75,7 @@ Distribution DistributionMaker::keep(fitting::FitOutcome outcome,
                                      const store::FitRight& right) const {
   Distribution distribution = std::move(outcome.distribution).value();
   try {
-    distribution.revision = parts_.store.put_distribution(distribution, right);
+    distribution.revision = parts_.distributions.put_distribution(distribution, right);
   } catch (const Failure& failure) {
     if (failure.code() == ErrorCode::NotFound || failure.code() == ErrorCode::Unavailable)
       throw;  // its robot was removed meanwhile, or another server fits it
@@ -99,16 +99,16 @@ void DistributionMaker::evict_old_dated(const Distribution& kept) const {
     std::string cursor;
     do {
       const store::Page<DistributionSummary> page =
-          parts_.store.list_distributions(kept.robot, kept.task, cursor, kMaxPageRows);
+          parts_.distributions.list_distributions(kept.robot, kept.task, cursor, kMaxPageRows);
       for (const DistributionSummary& row : page.rows)
         if (row.id != kept.id && row.fitted_ms < oldest_ms)
-          if (const auto other = parts_.store.find_distribution(row.id);
+          if (const auto other = parts_.distributions.find_distribution(row.id);
               other && other->selection.since_ms > 0)
             old.push_back(row.id);
       cursor = page.next_cursor;
     } while (!cursor.empty());
     for (const Digest& id : old) {
-      parts_.store.evict_distribution(id);
+      parts_.distributions.evict_distribution(id);
       memory_.erase(id);
     }
   } catch (const Failure&) {  // the next one finds them again

@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "server/fitting/fit_distribution.hpp"
+#include "server/store/distribution_store.hpp"
 
 namespace kinship::catalog {
 
@@ -15,7 +16,8 @@ class DistributionMaker {
       std::function<fitting::FitOutcome(const fitting::DistributionKey&, const std::stop_token&)>;
 
   struct Parts {
-    store::Store& store;
+    const store::ExperienceStore& store;
+    store::DistributionStore& distributions;
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit

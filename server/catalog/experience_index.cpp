@@ -20,8 +20,8 @@ std::size_t size_of(const SharedChoice& choice) {
 
 }  // namespace
 
-ExperienceIndex::ExperienceIndex(const store::Store& store, runtime::RobotRegistry& robots,
-                                 const Limits& limits)
+ExperienceIndex::ExperienceIndex(const store::ExperienceStore& store,
+                                 runtime::RobotRegistry& robots, const Limits& limits)
     : limits_(limits),
       memory_(store, robots, limits.paths),
       pool_({.threads = 1, .queue_limit = kMaxQueuedChoices, .niceness = 0}) {}

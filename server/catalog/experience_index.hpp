@@ -19,7 +19,7 @@
 #include "server/fitting/pose_path_memory.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 
@@ -51,9 +51,10 @@ class ExperienceIndex {
   using Done = std::function<void(const SharedChoice&)>;
 
   /// \param store, robots  outlive it.
-  ExperienceIndex(const store::Store& store, runtime::RobotRegistry& robots)
+  ExperienceIndex(const store::ExperienceStore& store, runtime::RobotRegistry& robots)
       : ExperienceIndex(store, robots, Limits{}) {}
-  ExperienceIndex(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits);
+  ExperienceIndex(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
+                  const Limits& limits);
   ~ExperienceIndex() { stop(); }
   ExperienceIndex(const ExperienceIndex&) = delete;
   ExperienceIndex& operator=(const ExperienceIndex&) = delete;

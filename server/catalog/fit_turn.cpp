@@ -10,7 +10,7 @@
 
 namespace kinship::catalog {
 
-FitTurn::FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop,
+FitTurn::FitTurn(store::DistributionStore& store, const Digest& id, const std::stop_token& stop,
                  const Patience& patience)
     : store_(store), id_(id) {
   const auto deadline = std::chrono::steady_clock::now() + patience.longest;

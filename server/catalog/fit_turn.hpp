@@ -4,7 +4,7 @@
 #include <stop_token>
 
 #include "proto/types/digest.hpp"
-#include "server/store/store.hpp"
+#include "server/store/distribution_store.hpp"
 
 namespace kinship::catalog {
 
@@ -20,9 +20,9 @@ class FitTurn {
   /// Waits while another server has the right.
   /// \param store  outlives the turn.
   /// \throws Failure(Unavailable) if stopped, or if the other server takes longer; Failure(Storage)
-  FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop,
+  FitTurn(store::DistributionStore& store, const Digest& id, const std::stop_token& stop,
           const Patience& patience);
-  FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop)
+  FitTurn(store::DistributionStore& store, const Digest& id, const std::stop_token& stop)
       : FitTurn(store, id, stop, Patience{}) {}
   FitTurn(const FitTurn&) = delete;
   FitTurn& operator=(const FitTurn&) = delete;
@@ -33,7 +33,7 @@ class FitTurn {
   bool has_others() const noexcept { return right_.fence > 0; }
 
  private:
-  store::Store& store_;
+  store::DistributionStore& store_;
   const Digest id_;
   store::FitRight right_;
 };

@@ -6,7 +6,7 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 

@@ -9,7 +9,7 @@
 
 #include "proto/types/advice.hpp"
 #include "proto/types/digest.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 

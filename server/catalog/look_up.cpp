@@ -32,16 +32,17 @@ std::optional<FetchReply> find_obstacle(const fitting::DistributionKey& key,
 }  // namespace
 
 LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const SharedReply& in_memory,
-               const store::Store& store, runtime::RobotRegistry& robots) {
+               const store::ExperienceStore& store, const store::DistributionStore& distributions,
+               runtime::RobotRegistry& robots) {
   LookUp found;
   found.end = find_obstacle(key, robots);
   if (found.end)
     return found;
   found.known = in_memory;
   if (!found.known)
-    if (std::optional<Distribution> stored = store.find_distribution(id)) {
+    if (std::optional<Distribution> stored = distributions.find_distribution(id)) {
       found.known = with_distribution(std::move(*stored));
-      store.note_use(id);
+      distributions.note_use(id);
     }
   // After the distribution: every retirement before this is known here.
   const std::vector<store::ExperienceSummary> all = store.experience(key.task);

@@ -6,7 +6,8 @@
 #include "server/catalog/pending_fit.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/distribution_store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::catalog {
 
@@ -24,6 +25,7 @@ struct LookUp {
 /// \param in_memory  the distribution, if it need not be read; may be null.
 /// \throws Failure(Storage)
 LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const SharedReply& in_memory,
-               const store::Store& store, runtime::RobotRegistry& robots);
+               const store::ExperienceStore& store, const store::DistributionStore& distributions,
+               runtime::RobotRegistry& robots);
 
 }  // namespace kinship::catalog

@@ -13,13 +13,13 @@
 #include "server/fitting/target_memory.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::fitting {
 
 /// Inputs of a fit and their limits.
 struct FitContext {
-  const store::Store& store;
+  const store::ExperienceStore& store;
   runtime::RobotRegistry& robots;
   const runtime::Clock& clock;
   /// Paths of all sources together. If they have more, each source contributes its share

@@ -74,7 +74,8 @@ FitNeed need_of(const FitSize& size, std::uint64_t poses, std::uint64_t longest)
 
 /// The poses of the paths of a source that are in use.
 std::vector<std::uint64_t> poses_of_source(const FitSize& size, const Digest& robot,
-                                           const store::Store& store, const std::stop_token& stop) {
+                                           const store::ExperienceStore& store,
+                                           const std::stop_token& stop) {
   std::vector<std::uint64_t> poses;
   std::string cursor;
   do {
@@ -104,7 +105,7 @@ FitNeed need_at_most(const FitSize& size) {
   return need_of(size, poses, longest);
 }
 
-FitNeed need_by_length(const FitSize& size, const store::Store& store,
+FitNeed need_by_length(const FitSize& size, const store::ExperienceStore& store,
                        const std::stop_token& stop) {
   std::uint64_t poses = 0, longest = 0;
   for (std::size_t i = 0; i < size.experience.size(); ++i) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/fitting/distribution_key.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::fitting {
 
@@ -37,7 +37,8 @@ FitNeed need_at_most(const FitSize& size);
 
 /// The same with the lengths of the paths, which the store has: of each source the longest ones.
 /// Reads a listing of the source's paths. \throws Failure(Storage); Stopped.
-FitNeed need_by_length(const FitSize& size, const store::Store& store, const std::stop_token& stop);
+FitNeed need_by_length(const FitSize& size, const store::ExperienceStore& store,
+                       const std::stop_token& stop);
 
 /// One configuration of the pool, with every copy that a fit makes of it.
 std::size_t bytes_of_configuration(Eigen::Index dof);

@@ -145,7 +145,7 @@ class PathTransfer::Share {
   std::list<UnderWay> under_way_;
 };
 
-PathTransfer::PathTransfer(const store::Store& store, const DistributionKey& key,
+PathTransfer::PathTransfer(const store::ExperienceStore& store, const DistributionKey& key,
                            const runtime::Robot& target, const transfer::TargetRobot& prepared,
                            const KnownPaths* known, int threads)
     : store_(store),

@@ -13,7 +13,7 @@
 #include "server/fitting/known_paths.hpp"
 #include "server/fitting/scene_filters.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 #include "server/transfer/arm_pair.hpp"
 #include "server/transfer/filters.hpp"
 
@@ -33,8 +33,9 @@ class PathTransfer {
   /// \param prepared  the target, for transfers.
   /// \param known     of an earlier fit of the same key; outlives it, may be null.
   /// \param threads   at least 1.
-  PathTransfer(const store::Store& store, const DistributionKey& key, const runtime::Robot& target,
-               const transfer::TargetRobot& prepared, const KnownPaths* known, int threads);
+  PathTransfer(const store::ExperienceStore& store, const DistributionKey& key,
+               const runtime::Robot& target, const transfer::TargetRobot& prepared,
+               const KnownPaths* known, int threads);
 
   /// \param pair  of the paths' robot and the target.
   /// \param stop  checked throughout; then the remaining outcomes have neither path nor problem.
@@ -68,7 +69,7 @@ class PathTransfer {
   Prepared prepare(const store::StoredPath& stored, std::size_t index,
                    const transfer::ArmPair& pair, Lane& lane) const;
 
-  const store::Store& store_;
+  const store::ExperienceStore& store_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
   const transfer::TargetRobot& prepared_target_;

@@ -4,7 +4,7 @@
 
 #include "proto/types/task_experience.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::fitting {
 

@@ -13,7 +13,7 @@
 #include "proto/types/uuid.hpp"
 #include "server/fitting/experience_choice.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::fitting {
 
@@ -29,9 +29,10 @@ class PosePathMemory {
   };
 
   /// \param store, robots  outlive it.
-  PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots)
+  PosePathMemory(const store::ExperienceStore& store, runtime::RobotRegistry& robots)
       : PosePathMemory(store, robots, Limits{}) {}
-  PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits)
+  PosePathMemory(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
+                 const Limits& limits)
       : store_(store), robots_(robots), limits_(limits) {}
 
   /// The usable paths of a task now, in the order of arrival; above the limit the newest, equally
@@ -76,7 +77,7 @@ class PosePathMemory {
   static std::size_t size_of(const TaskPaths& known);
   void make_room(std::string_view task);
 
-  const store::Store& store_;
+  const store::ExperienceStore& store_;
   runtime::RobotRegistry& robots_;
   const Limits limits_;
   std::atomic<std::size_t> bytes_ = 0;

@@ -8,7 +8,7 @@
 
 #include "server/fitting/distribution_key.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 #include "server/transfer/scene_filter.hpp"
 
 namespace kinship::fitting {
@@ -30,8 +30,8 @@ class SceneFilters {
  public:
   /// \param store, key, target  outlive it.
   /// \param solids  of the target.
-  SceneFilters(const store::Store& store, const DistributionKey& key, const runtime::Robot& target,
-               collision::RobotSolids solids)
+  SceneFilters(const store::ExperienceStore& store, const DistributionKey& key,
+               const runtime::Robot& target, collision::RobotSolids solids)
       : store_(store), key_(key), target_(target), solids_(std::move(solids)) {}
 
   /// The scene of a path; without a filter if the profile has none, the path has no scene or a
@@ -46,7 +46,7 @@ class SceneFilters {
 
   const PathScene none_;
 
-  const store::Store& store_;
+  const store::ExperienceStore& store_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
   const collision::RobotSolids solids_;

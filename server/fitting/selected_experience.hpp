@@ -5,7 +5,7 @@
 
 #include "proto/types/selection.hpp"
 #include "server/fitting/distribution_key.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::fitting {
 

@@ -35,8 +35,8 @@ Relation relation_of(const transfer::ArmPair& pair) {
 /// says false.
 /// \param source  says from which generation of which robot on.
 template <typename Visit>
-void visit_pages(const store::Store& store, const Source& source, const DistributionKey& key,
-                 Visit visit) {
+void visit_pages(const store::ExperienceStore& store, const Source& source,
+                 const DistributionKey& key, Visit visit) {
   store::PathRange range{.after_id = 0,
                          .limit = kPathsPerRead,
                          .since_ms = key.since_ms,
@@ -62,7 +62,7 @@ Source source_of(const store::ExperienceSummary& experience) {
   return source;
 }
 
-SourceTransfer::SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
+SourceTransfer::SourceTransfer(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
                                const DistributionKey& key, const runtime::Robot& target,
                                const Options& options)
     : store_(store),

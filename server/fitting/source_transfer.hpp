@@ -14,7 +14,7 @@
 #include "server/fitting/pooled_configurations.hpp"
 #include "server/fitting/target_memory.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 #include "server/transfer/transferred_path.hpp"
 
 namespace kinship::fitting {
@@ -48,10 +48,10 @@ class SourceTransfer {
   };
 
   /// \param robots, store, key, target  outlive it.
-  SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
+  SourceTransfer(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
                  const DistributionKey& key, const runtime::Robot& target)
       : SourceTransfer(store, robots, key, target, Options{}) {}
-  SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
+  SourceTransfer(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
                  const DistributionKey& key, const runtime::Robot& target, const Options& options);
 
   /// Number of paths of the source that the key selects.
@@ -84,7 +84,7 @@ class SourceTransfer {
   void add_path(const store::StoredPath& stored, const PathOutcome& outcome,
                 SourceSummary& summary);
 
-  const store::Store& store_;
+  const store::ExperienceStore& store_;
   runtime::RobotRegistry& robots_;
   const DistributionKey& key_;
   const runtime::Robot& target_;

@@ -33,7 +33,7 @@ std::optional<double> option(std::string_view options, std::string_view name, do
 /// Reads the queries of one key.
 class QueryReader {
  public:
-  QueryReader(const store::Store& store, runtime::RobotRegistry& robots,
+  QueryReader(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
               const fitting::DistributionKey& key)
       : store_(store), robots_(robots), key_(key) {}
 
@@ -113,7 +113,7 @@ class QueryReader {
     return scenes_.emplace(id, std::move(shared)).first->second;
   }
 
-  const store::Store& store_;
+  const store::ExperienceStore& store_;
   runtime::RobotRegistry& robots_;
   const fitting::DistributionKey& key_;
   std::map<std::int64_t, SharedScene> scenes_;
@@ -123,7 +123,7 @@ class QueryReader {
 
 }  // namespace
 
-RecordedQueries read_queries(const store::Store& store, runtime::RobotRegistry& robots,
+RecordedQueries read_queries(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
                              const fitting::DistributionKey& key, std::size_t most,
                              const std::stop_token& stop) {
   const std::vector<store::ExperienceSummary> experience =

@@ -11,7 +11,7 @@
 #include "proto/types/uuid.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/runtime/robot_registry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::rehearsal {
 
@@ -40,7 +40,7 @@ struct RecordedQueries {
 /// evenly over the order of arrival. Paths and scenes that cannot be read are left out.
 /// \param stop  checked between pages of paths; the result is then incomplete.
 /// \throws Failure(Storage)
-RecordedQueries read_queries(const store::Store& store, runtime::RobotRegistry& robots,
+RecordedQueries read_queries(const store::ExperienceStore& store, runtime::RobotRegistry& robots,
                              const fitting::DistributionKey& key, std::size_t most,
                              const std::stop_token& stop);
 

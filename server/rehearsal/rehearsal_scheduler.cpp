@@ -20,7 +20,8 @@ namespace {
 constexpr int kNiceness = 19;
 constexpr std::size_t kMaxQueued = 1024;
 
-std::uint64_t count_selected(const store::Store& store, const fitting::DistributionKey& key) {
+std::uint64_t count_selected(const store::ExperienceStore& store,
+                             const fitting::DistributionKey& key) {
   return fitting::count_paths(fitting::selected_experience(key, store.experience(key.task)));
 }
 

@@ -25,7 +25,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
-#include "server/store/store.hpp"
+#include "server/store/experience_store.hpp"
 
 namespace kinship::rehearsal {
 
@@ -70,7 +70,7 @@ class RehearsalScheduler {
 
   /// References; they outlive the scheduler.
   struct Parts {
-    const store::Store& store;
+    const store::ExperienceStore& store;
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
     catalog::ExperienceIndex& experience;

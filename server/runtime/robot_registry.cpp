@@ -55,7 +55,7 @@ Robot robot_of(const kinematics::RobotModel& model) {
 
 }  // namespace
 
-RobotRegistry::RobotRegistry(store::Store& store, Options options)
+RobotRegistry::RobotRegistry(store::RobotStore& store, Options options)
     : store_(store), options_(std::move(options)) {
   try {
     geometry_revisions_ = store.geometry_revisions();

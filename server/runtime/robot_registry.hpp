@@ -19,7 +19,7 @@
 #include "proto/types/result.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/urdf.hpp"
-#include "server/store/store.hpp"
+#include "server/store/robot_store.hpp"
 
 namespace kinship::runtime {
 
@@ -67,8 +67,8 @@ class RobotRegistry {
   };
 
   /// \param store  outlives the registry.
-  explicit RobotRegistry(store::Store& store) : RobotRegistry(store, Options{}) {}
-  RobotRegistry(store::Store& store, Options options);
+  explicit RobotRegistry(store::RobotStore& store) : RobotRegistry(store, Options{}) {}
+  RobotRegistry(store::RobotStore& store, Options options);
 
   /// Identifies and stores a robot, and lists other robots of the store that are the same
   /// arm: at most kMaxSameArms labels, in their order, fewer if the store cannot be read. Refused,
@@ -156,7 +156,7 @@ class RobotRegistry {
   std::vector<std::string> same_arms_in_memory(const Digest& robot,
                                                const kinematics::Chain& chain) const;
 
-  store::Store& store_;
+  store::RobotStore& store_;
   const Options options_;
   std::atomic<bool> is_stopping_ = false;
   mutable std::mutex mutex_;  // guards what follows

@@ -12,7 +12,7 @@
 #include "proto/types/failure.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/summaries.hpp"
-#include "server/store/store.hpp"
+#include "server/store/page.hpp"
 
 namespace kinship::service {
 

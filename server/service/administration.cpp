@@ -182,13 +182,15 @@ AdminPage Administration::show_distribution(const Call& call) {
 
 AdminPage Administration::explain_distribution(const Call& call) {
   Distribution distribution = find_distribution(call.request.argument);
-  if (parts_.advise && has_mixture(distribution.state))
-    distribution.advice = parts_.advise(distribution);
+  if (has_mixture(distribution.state))
+    distribution.advice = parts_.guidance.advise(distribution);
   Explanation explanation =
       service::explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms());
-  if (const std::string trouble = parts_.fit_trouble(explanation.distribution.id); !trouble.empty())
+  if (const std::string trouble = parts_.guidance.trouble_of(explanation.distribution.id);
+      !trouble.empty())
     explanation.next_fit += "; " + trouble;
-  if (const std::shared_ptr<const Rehearsal> known = parts_.rehearsal(explanation.distribution.id))
+  if (const std::shared_ptr<const Rehearsal> known =
+          parts_.guidance.find_rehearsal(explanation.distribution.id))
     explanation.rehearsal = *known;
   return page_of(std::move(explanation));
 }

@@ -22,6 +22,7 @@
 #include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
 #include "server/service/recent_downloads.hpp"
+#include "server/service/served_guidance.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -37,22 +38,8 @@ class Administration {
     runtime::RobotRegistry& robots;
     Jobs& jobs;
     const runtime::Clock& clock;
+    ServedGuidance& guidance;
     std::function<ServerStatus()> status;
-    /// The share of guidance recommended now; empty: the one in the distribution.
-    std::function<Advice(const Distribution&)> advise = {};
-    /// The rehearsal of a distribution; null: none yet.
-    std::function<std::shared_ptr<const Rehearsal>(const Digest& distribution)> rehearsal =
-        [](const Digest&) { return nullptr; };
-    /// A distribution was evicted from the store: no cache may serve it.
-    std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
-    /// Paths of a task were retired: distributions made of them may not be served.
-    std::function<void(const std::string& task)> forget_task = [](const std::string&) {};
-    /// A robot was removed: its distributions may not be served, nor announced.
-    std::function<void(const Digest& robot)> forget_robot = [](const Digest&) {};
-    /// Why the last fit of a distribution failed, as text; empty: it succeeded.
-    std::function<std::string(const Digest&)> fit_trouble = [](const Digest&) {
-      return std::string();
-    };
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
     /// Use of each client.
     std::function<std::vector<ClientUse>()> clients = [] { return std::vector<ClientUse>(); };

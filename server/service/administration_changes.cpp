@@ -34,7 +34,7 @@ AdminPage Administration::evict_distribution(const Call& call) {
   const Digest id = find_distribution_id(parts_.store, prefix).value_or_throw();
   const bool was_there = parts_.store.evict_distribution(id, &call.audit);
   // One that could not be stored is in memory only.
-  parts_.forget_distribution(id);
+  parts_.guidance.forget_distribution(id);
   if (!was_there)
     return page_of(not_found("distribution", prefix));
   parts_.on_change({}, "distribution " + id.short_hex() + " evicted");
@@ -48,7 +48,7 @@ AdminPage Administration::retire_path(const Call& call) {
     return retired(parts_.store.retire_path(report, &call.audit), "path " + uuid);
   } catch (const std::exception&) {  // it may be retired all the same
     if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
-      parts_.forget_task(attempt->task);
+      parts_.guidance.forget_task(attempt->task);
     throw;
   }
 }
@@ -59,11 +59,11 @@ AdminPage Administration::reset_task(const Call& call) {
   try {
     retirement = parts_.store.reset_task(task, parts_.stop, &call.audit);
   } catch (const std::exception&) {  // some of its paths may be retired
-    parts_.forget_task(task);
+    parts_.guidance.forget_task(task);
     throw;
   }
   if (!retirement && retirement.error().code == ErrorCode::Unavailable) {
-    parts_.forget_task(task);
+    parts_.guidance.forget_task(task);
     return page_of_unfinished(retirement.error());
   }
   return retired(std::move(retirement), "reset");
@@ -72,7 +72,7 @@ AdminPage Administration::reset_task(const Call& call) {
 AdminPage Administration::retired(Result<Retirement> retirement, const std::string& what) {
   if (!retirement)
     return page_of(retirement.error());
-  parts_.forget_task(retirement->task);
+  parts_.guidance.forget_task(retirement->task);
   parts_.on_change(retirement->task,
                    what + ": " + std::to_string(retirement->paths) + " paths retired");
   return page_of(std::move(retirement).value());
@@ -105,23 +105,23 @@ AdminPage Administration::remove_robot(const Call& call) {
                                                           : page_of(removed.error());
   }
   for (const Digest& distribution : removed->distributions)
-    parts_.forget_distribution(distribution);
-  parts_.forget_robot(robot.robot);
+    parts_.guidance.forget_distribution(distribution);
+  parts_.guidance.forget_robot(robot.robot);
   for (const std::string& task : removed->tasks)
-    parts_.forget_task(task);
+    parts_.guidance.forget_task(task);
   parts_.on_change({}, describe(removed->removal));
   return page_of(removed->removal);
 }
 
 /// Of a robot that was not removed as a whole.
 void Administration::forget_tasks_of(const Digest& robot) {
-  parts_.forget_robot(robot);
+  parts_.guidance.forget_robot(robot);
   std::string cursor;
   do {
     const store::Page<TaskSummary> page = parts_.store.list_tasks(cursor, kMaxPageRows);
     for (const TaskSummary& task : page.rows)
       if (std::ranges::any_of(task.robots, [&](const auto& row) { return row.robot == robot; }))
-        parts_.forget_task(task.task);
+        parts_.guidance.forget_task(task.task);
     cursor = page.next_cursor;
   } while (!cursor.empty());
 }

@@ -9,7 +9,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/service/admin_page.hpp"
 #include "server/service/audit_rate_limit.hpp"
-#include "server/store/store.hpp"
+#include "server/store/admin_store.hpp"
 
 namespace kinship::service {
 
@@ -21,7 +21,8 @@ AuditEntry audit_entry(const Caller& caller, const AdminRequest& request);
 class AuditTrail {
  public:
   /// \param store, clock  outlive the trail.
-  AuditTrail(store::Store& store, const runtime::Clock& clock) : store_(store), allowance_(clock) {}
+  AuditTrail(store::AdminStore& store, const runtime::Clock& clock)
+      : store_(store), allowance_(clock) {}
 
   /// Call before an action: an action that cannot be logged is not taken.
   /// \throws Failure(Storage)
@@ -42,7 +43,7 @@ class AuditTrail {
  private:
   void add(const AuditEntry& entry) noexcept;
 
-  store::Store& store_;
+  store::AdminStore& store_;
   AuditRateLimit allowance_;
 };
 

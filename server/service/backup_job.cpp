@@ -16,7 +16,7 @@ Error refused(ErrorCode code, const fs::path& file, const std::string& why) {
 }
 
 /// A copy is at most as large as the store with the pages of its WAL.
-std::optional<Error> check_room(const fs::path& file, const store::Store& store,
+std::optional<Error> check_room(const fs::path& file, const store::AdminStore& store,
                                 const BackupPlace& place) {
   const std::uint64_t needed = store.status().bytes;
   const std::uint64_t free = place.free_bytes(file.parent_path());
@@ -27,7 +27,7 @@ std::optional<Error> check_room(const fs::path& file, const store::Store& store,
                      std::to_string(free) + " left");
 }
 
-std::optional<Error> check(const fs::path& file, const store::Store& store,
+std::optional<Error> check(const fs::path& file, const store::AdminStore& store,
                            const BackupPlace& place) {
   std::error_code error;
   if (!fs::is_directory(file.parent_path(), error))
@@ -40,7 +40,7 @@ std::optional<Error> check(const fs::path& file, const store::Store& store,
   return check_room(file, store, place);
 }
 
-bool run_backup(const store::Store& store, const fs::path& file, const BackupPlace& place,
+bool run_backup(const store::AdminStore& store, const fs::path& file, const BackupPlace& place,
                 JobRun& run) {
   if (const auto error = check(file, store, place))  // it may have waited
     throw Failure(*error);
@@ -60,7 +60,7 @@ bool run_backup(const store::Store& store, const fs::path& file, const BackupPla
 
 }  // namespace
 
-Result<Jobs::Task> backup_job(const store::Store& store, const std::string& name,
+Result<Jobs::Task> backup_job(const store::AdminStore& store, const std::string& name,
                               const BackupPlace& place, const std::string& request_key) {
   const fs::path store_file = store.status().file;
   if (auto fault = find_name_fault(name, store_file))

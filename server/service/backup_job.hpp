@@ -5,7 +5,7 @@
 #include "proto/types/result.hpp"
 #include "server/service/backup_files.hpp"
 #include "server/service/jobs.hpp"
-#include "server/store/store.hpp"
+#include "server/store/admin_store.hpp"
 
 namespace kinship::service {
 
@@ -15,7 +15,7 @@ namespace kinship::service {
 /// \param request_key  see Jobs::Task.
 /// \return InvalidInput or Conflict that names the file and its fault; Unavailable, with both
 ///         sizes, if there is no room for it.
-Result<Jobs::Task> backup_job(const store::Store& store, const std::string& name,
+Result<Jobs::Task> backup_job(const store::AdminStore& store, const std::string& name,
                               const BackupPlace& place, const std::string& request_key);
 
 }  // namespace kinship::service

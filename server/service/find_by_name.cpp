@@ -35,7 +35,7 @@ bool begins_with(const Digest& digest, const std::string& prefix) {
 
 }  // namespace
 
-Result<RobotSummary> find_robot(const store::Store& store, const std::string& name) {
+Result<RobotSummary> find_robot(const store::RobotStore& store, const std::string& name) {
   const std::string prefix = digest_prefix(name);
   std::vector<RobotSummary> alike;  // by their digest, the first two
   std::string cursor;
@@ -62,7 +62,8 @@ Result<RobotSummary> find_robot(const store::Store& store, const std::string& na
                                         "' (" + alike[1].robot.short_hex() + ")"};
 }
 
-Result<Digest> find_distribution_id(const store::Store& store, const std::string& name) {
+Result<Digest> find_distribution_id(const store::DistributionStore& store,
+                                    const std::string& name) {
   if (const std::optional<Digest> id = Digest::from_hex(name))
     return *id;
   const std::string prefix = digest_prefix(name);

@@ -38,7 +38,7 @@ struct Ingest::Batch {
   Done done;
 };
 
-Ingest::Ingest(store::Store& store, runtime::RobotRegistry& robots,
+Ingest::Ingest(store::ReportStore& store, runtime::RobotRegistry& robots,
                runtime::WorkerPool& short_task_pool, Options options)
     : store_(store),
       robots_(robots),

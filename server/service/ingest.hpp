@@ -19,7 +19,7 @@
 #include "server/quotas/quota.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
-#include "server/store/store.hpp"
+#include "server/store/report_store.hpp"
 
 namespace kinship::service {
 
@@ -60,8 +60,8 @@ class Ingest {
 
   /// \param store, robots, short_task_pool  outlive the ingest, which drains on destruction;
   /// `short_task_pool` reads robots that are not in memory.
-  Ingest(store::Store& store, runtime::RobotRegistry& robots, runtime::WorkerPool& short_task_pool,
-         Options options);
+  Ingest(store::ReportStore& store, runtime::RobotRegistry& robots,
+         runtime::WorkerPool& short_task_pool, Options options);
   ~Ingest() { drain(); }
   Ingest(const Ingest&) = delete;
   Ingest& operator=(const Ingest&) = delete;
@@ -105,7 +105,7 @@ class Ingest {
   bool is_in_memory(const Attempt& attempt, const std::string& client) const;
   std::optional<quotas::Refusal> begins_too_many(const Batch& batch, const Attempt& attempt) const;
 
-  store::Store& store_;
+  store::ReportStore& store_;
   runtime::RobotRegistry& robots_;
   runtime::WorkerPool& short_task_pool_;
   const Options options_;

@@ -17,7 +17,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/worker_pool.hpp"
 #include "server/service/job_rows.hpp"
-#include "server/store/store.hpp"
+#include "server/store/page.hpp"
 
 namespace kinship::service {
 

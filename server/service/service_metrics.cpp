@@ -168,13 +168,13 @@ void Service::expose(Exposition& page) const {
              std::uint64_t{store.has_value()});
   if (store)
     expose_store(page, *store);
-  expose_upstream(page, store ? store->attempts : 0);
+  upstream_.expose(page, store ? store->attempts : 0);
 }
 
 /// Bounded resources, and their use.
 void Service::expose_use(Exposition& page) const {
-  const catalog::CatalogUse use = catalog_.use();
-  const rehearsal::RehearsalTotals rehearsals = rehearsals_.totals();
+  const catalog::CatalogUse use = fetches_.catalog().use();
+  const rehearsal::RehearsalTotals rehearsals = fetches_.rehearsals().totals();
   struct Bound {
     std::string_view name;
     std::uint64_t used, limit;
@@ -189,22 +189,24 @@ void Service::expose_use(Exposition& page) const {
     for (const Bound& bound : bounds)
       page.sample(bound.limit, {{label, bound.name}});
   };
-  expose("kinship_queue_length", "kinship_queue_limit", "queue", "What waits or is under way.",
-         {{"reports", ingest_.queued(), options_.max_queued_attempts},
-          {"fits", fitters_.queued(), options_.fit_queue},
-          {"fetches", use.waiters, options_.catalog.max_waiters},
-          {"short_tasks", short_tasks(), options_.short_task_queue},
-          {"jobs", jobs_.active(), options_.jobs.queued + 1},
-          {"rehearsals", rehearsals.queued, rehearsal_options().max_rehearsals}});
-  expose("kinship_memory_bytes", "kinship_memory_limit_bytes", "use", "Memory, about.",
-         {{"running_fits", memory_.reserved(), options_.fit_memory_bytes},
-          {"kept_by_fits", use.fit_memory_bytes, fitting::FitMemory::kDefaultBytes},
-          {"distributions", use.memory_bytes, options_.catalog.memory.bytes},
-          {"ways_of_paths", experience_.bytes_of_paths(), options_.experience.paths.bytes}});
+  expose(
+      "kinship_queue_length", "kinship_queue_limit", "queue", "What waits or is under way.",
+      {{"reports", reports_.ingest().queued(), options_.max_queued_attempts},
+       {"fits", fetches_.queued_fits(), options_.fit_queue},
+       {"fetches", use.waiters, options_.catalog.max_waiters},
+       {"short_tasks", pools_.queued(), options_.short_task_queue},
+       {"jobs", administration_.jobs().active(), options_.jobs.queued + 1},
+       {"rehearsals", rehearsals.queued, rehearsal::RehearsalSchedulerOptions{}.max_rehearsals}});
+  expose(
+      "kinship_memory_bytes", "kinship_memory_limit_bytes", "use", "Memory, about.",
+      {{"running_fits", fetches_.memory().reserved(), options_.fit_memory_bytes},
+       {"kept_by_fits", use.fit_memory_bytes, fitting::FitMemory::kDefaultBytes},
+       {"distributions", use.memory_bytes, options_.catalog.memory.bytes},
+       {"ways_of_paths", fetches_.experience().bytes_of_paths(), options_.experience.paths.bytes}});
   page.counter("kinship_cache_hits_total", "Fetches that memory answered.",
-               catalog_.fetches_from_memory());
+               fetches_.catalog().fetches_from_memory());
   page.counter("kinship_cache_misses_total", "Fetches that it did not answer.",
-               catalog_.fetches_not_from_memory());
+               fetches_.catalog().fetches_not_from_memory());
   page.counter("kinship_cache_evictions_total",
                "Distributions dropped from memory for want of room.", use.dropped);
   page.gauge("kinship_cache_entries", "Distributions in memory.", std::uint64_t{use.in_memory});
@@ -213,7 +215,7 @@ void Service::expose_use(Exposition& page) const {
   page.gauge("kinship_leases", "Clients' holds on followed distributions.",
              std::uint64_t{use.holds});
   page.gauge("kinship_followed_distributions", "Distributions that somebody follows.",
-             std::uint64_t{catalog_.followed()});
+             std::uint64_t{fetches_.catalog().followed()});
   page.counter("kinship_rehearsals_total", "Rehearsals that are done.", rehearsals.done);
   page.counter("kinship_rehearsal_cpu_seconds_total", "Processor time that they took.",
                rehearsals.processor_time_s);
@@ -223,7 +225,7 @@ void Service::expose_use(Exposition& page) const {
 
 /// Of the pairs with most attempts among the ones fetched for since the start.
 void Service::expose_guidance(Exposition& page) const {
-  const catalog::GuidanceWorths worths = advice_.worths(kMaxGuidancePairs);
+  const catalog::GuidanceWorths worths = fetches_.advice().worths(kMaxGuidancePairs);
   std::vector<Pair> pairs;
   for (const catalog::GuidanceWorth& worth : worths.pairs)
     pairs.push_back({.task = worth.task,

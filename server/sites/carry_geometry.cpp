@@ -15,7 +15,7 @@ std::uint64_t revision_of(const std::map<Digest, std::uint64_t>& revisions, cons
 }
 
 /// Nothing also if its row is damaged: the next registration mends it.
-std::optional<store::RobotRecord> find_whole(const store::Store& site, const Digest& robot) {
+std::optional<store::RobotRecord> find_whole(const store::RobotStore& site, const Digest& robot) {
   try {
     return site.find_robot(robot);
   } catch (const Failure&) {
@@ -25,8 +25,8 @@ std::optional<store::RobotRecord> find_whole(const store::Store& site, const Dig
 
 }  // namespace
 
-GeometryExchange::GeometryExchange(store::Store& here, store::Store& above, TakeGeometry take_here,
-                                   TakeGeometry take_above)
+GeometryExchange::GeometryExchange(store::RobotStore& here, store::RobotStore& above,
+                                   TakeGeometry take_here, TakeGeometry take_above)
     : here_(here),
       above_(above),
       take_here_(std::move(take_here)),

@@ -7,7 +7,7 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/robot_description.hpp"
-#include "server/store/store.hpp"
+#include "server/store/robot_store.hpp"
 
 namespace kinship::sites {
 
@@ -20,7 +20,7 @@ using TakeGeometry = std::function<bool(const Digest& robot, const RobotDescript
 class GeometryExchange {
  public:
   /// \param here, above  outlive it.
-  GeometryExchange(store::Store& here, store::Store& above, TakeGeometry take_here,
+  GeometryExchange(store::RobotStore& here, store::RobotStore& above, TakeGeometry take_here,
                    TakeGeometry take_above);
 
   /// Compares a robot that both stores have, once.
@@ -35,8 +35,8 @@ class GeometryExchange {
 
   void compare(const Digest& robot);
 
-  store::Store& here_;
-  store::Store& above_;
+  store::RobotStore& here_;
+  store::RobotStore& above_;
   const TakeGeometry take_here_, take_above_;
   std::map<Digest, Revisions> compared_;
 };

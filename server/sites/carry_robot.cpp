@@ -15,7 +15,8 @@ std::string with_digest(const std::string& label, const Digest& robot) {
 
 }  // namespace
 
-std::optional<Error> carry_robot(const store::Store& from, store::Store& to, const Digest& robot) {
+std::optional<Error> carry_robot(const store::RobotStore& from, store::RobotStore& to,
+                                 const Digest& robot) {
   if (to.find_robot(robot))
     return std::nullopt;
   std::optional<store::RobotRecord> record = from.find_robot(robot);

@@ -4,7 +4,7 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/failure.hpp"
-#include "server/store/store.hpp"
+#include "server/store/robot_store.hpp"
 
 namespace kinship::sites {
 
@@ -13,6 +13,7 @@ namespace kinship::sites {
 /// digest identifies the robot.
 /// \return why it cannot be registered; nothing on success.
 /// \throws Failure of either store.
-std::optional<Error> carry_robot(const store::Store& from, store::Store& to, const Digest& robot);
+std::optional<Error> carry_robot(const store::RobotStore& from, store::RobotStore& to,
+                                 const Digest& robot);
 
 }  // namespace kinship::sites

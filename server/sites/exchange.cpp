@@ -51,7 +51,7 @@ void Exchange::begin() {
   down_due_.clear();
 }
 
-TakeGeometry Exchange::take_with_registry(store::Store& store) const {
+TakeGeometry Exchange::take_with_registry(store::RobotStore& store) const {
   return [this, &store](const Digest& robot, const RobotDescription& description) {
     return runtime::RobotRegistry(store).offer_geometry(robot, description,
                                                         options_.clock.unix_ms());
@@ -60,7 +60,7 @@ TakeGeometry Exchange::take_with_registry(store::Store& store) const {
 
 /// Over the line once a connection: if it is removed above meanwhile, its next report says so, and
 /// ends the connection.
-std::optional<Error> Exchange::bring_robot(store::Store& from, store::Store& to,
+std::optional<Error> Exchange::bring_robot(store::RobotStore& from, store::RobotStore& to,
                                            const Digest& robot) {
   if (robots_of_both_.contains(robot) && site_.find_robot(robot))
     return std::nullopt;

@@ -101,8 +101,9 @@ class Exchange {
   std::chrono::nanoseconds take_load();
   void rest_before_write(const std::stop_token& stop);
   void save_if_due();
-  TakeGeometry take_with_registry(store::Store& store) const;
-  std::optional<Error> bring_robot(store::Store& from, store::Store& to, const Digest& robot);
+  TakeGeometry take_with_registry(store::RobotStore& store) const;
+  std::optional<Error> bring_robot(store::RobotStore& from, store::RobotStore& to,
+                                   const Digest& robot);
   Way way_up(const std::stop_token& stop);
   Way way_down(const std::stop_token& stop);
   void commit_here(std::vector<store::ReplicatedReport> reports, store::Store::ReportsDone done);

@@ -47,7 +47,7 @@ std::string text_of(const std::map<std::string, std::string>& texts, std::string
 
 }  // namespace
 
-Positions::Positions(store::Store& site) : site_(&site), saved_(site.notes(kPrefix)) {
+Positions::Positions(store::ReplicationStore& site) : site_(&site), saved_(site.notes(kPrefix)) {
   epochs_ = text_of(saved_, "epochs");
   token = token_of(text_of(saved_, "token"));
   up_retired = text_of(saved_, "up.retired");

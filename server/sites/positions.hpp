@@ -9,7 +9,7 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/uuid.hpp"
 #include "server/sites/carry.hpp"
-#include "server/store/store.hpp"
+#include "server/store/replication_store.hpp"
 
 namespace kinship::sites {
 
@@ -29,7 +29,7 @@ class Positions {
   };
 
   /// \throws Failure(Storage)
-  explicit Positions(store::Store& site);
+  explicit Positions(store::ReplicationStore& site);
 
   /// Begins again from the start if the epochs differ from those of the positions. Durable.
   /// \return whether it did.
@@ -58,7 +58,7 @@ class Positions {
   std::map<std::string, std::string> texts() const;  ///< without refusals
   std::map<std::string, std::optional<std::string>> changes() const;
 
-  store::Store* site_;
+  store::ReplicationStore* site_;
   std::string epochs_;
   std::map<Uuid, Refused> refused_;
   std::map<std::string, std::optional<std::string>> refusals_;  // not saved yet

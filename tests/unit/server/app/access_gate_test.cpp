@@ -22,13 +22,13 @@ class AccessGate : public service::ServiceFixture {
   }
   ReportReply report(std::vector<Attempt> attempts) {
     std::promise<ReportReply> reply;
-    app::report(*service_, caller_, {std::move(attempts), {}},
+    app::report(service_->reports(), service_->registration(), caller_, {std::move(attempts), {}},
                 [&](const ReportReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
   RegisterReply register_robot(const RobotDescription& description) {
     std::promise<RegisterReply> reply;
-    app::register_robot(*service_, caller_, description,
+    app::register_robot(service_->registration(), caller_, description,
                         [&](const RegisterReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
@@ -37,7 +37,7 @@ class AccessGate : public service::ServiceFixture {
     request.task = task;
     request.experience_bytes = experience_bytes_;
     std::promise<FetchReply> reply;
-    app::fetch(*service_, caller_, request, "one",
+    app::fetch(service_->fetches(), service_->registration(), caller_, request, "one",
                [&](const FetchReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
@@ -175,7 +175,7 @@ TEST_F(AccessGate, WhoFindsNoRoomForItsRobotsNamesIsToldWhenToComeAgain) {
   caller_.robots = {"teacher"};
   std::latch may_go_on(1);
   std::promise<void> begun;
-  service_->administer(
+  service_->administration().administer(
       fleet::question(AdminVerb::ListTasks), "other 1",
       [&](const service::AdminPage&) {
         begun.set_value();
@@ -184,7 +184,7 @@ TEST_F(AccessGate, WhoFindsNoRoomForItsRobotsNamesIsToldWhenToComeAgain) {
       fleet::caller_here());
   begun.get_future().wait();
   std::promise<FetchReply> first;
-  app::fetch(*service_, caller_, request_for(*teacher_), "one",
+  app::fetch(service_->fetches(), service_->registration(), caller_, request_for(*teacher_), "one",
              [&](const FetchReply& reply) { first.set_value(reply); });
   const ReportReply reply = report({attempt});
   EXPECT_EQ(of(reply, attempt).status, ReceiptStatus::TryAgain);

@@ -43,7 +43,7 @@ class AccessFixture : public ServiceFixture {
   AdminPage ask_for(const Caller& caller, const AdminRequest& request,
                     const std::string& request_key = {}) {
     std::promise<AdminPage> page;
-    service_->administer(
+    service_->administration().administer(
         request, request_key, [&](const AdminPage& p) { page.set_value(p); }, caller);
     return page.get_future().get();
   }

@@ -9,6 +9,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/fleet.hpp"
+#include "tests/unit/server/service/given_guidance.hpp"
 #include "tests/unit/server/troubled_store.hpp"
 
 namespace kinship::service::administration_test {
@@ -52,25 +53,19 @@ class AdministrationTest : public testing::Test {
             .robots = robots,
             .jobs = jobs_,
             .clock = clock_,
+            .guidance = guidance_,
             .status =
                 [] {
                   ServerStatus status;
                   status.version = "7";
                   return status;
                 },
-            .rehearsal =
-                [this](const Digest& id) {
-                  const auto found = rehearsed_.find(id);
-                  return found == rehearsed_.end() ? nullptr : found->second;
-                },
-            .forget_distribution = [this](const Digest& id) { forgotten_ += id.hex() + "\n"; },
-            .forget_task = [this](const std::string& task) { forgotten_ += task + "\n"; },
             .on_change = [this](const std::string& task,
                                 const std::string& what) { changes_ += task + "|" + what + "\n"; }};
   }
 
-  std::string forgotten_, changes_;
-  std::map<Digest, std::shared_ptr<const Rehearsal>> rehearsed_;
+  std::string changes_;
+  GivenGuidance guidance_;
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
   runtime::RobotRegistry registry_{*store_};
@@ -150,7 +145,7 @@ TEST_F(AdministrationTest, AnExplanationSaysWhatWasRehearsedWithItsDistribution)
   };
   EXPECT_FALSE(explained(one));
   const Rehearsal rehearsal{.guide = Guide::Ways, .is_complete = true, .queries = 7};
-  rehearsed_[one.id] = std::make_shared<const Rehearsal>(rehearsal);
+  guidance_.rehearsed[one.id] = std::make_shared<const Rehearsal>(rehearsal);
   EXPECT_EQ(explained(one), rehearsal);
   EXPECT_FALSE(explained(other));
 }
@@ -217,8 +212,12 @@ TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefuse
 TEST_F(AdministrationTest, AFilterByRobotReadsNoDescriptions) {
   report(fleet::solved(teacher_, "shelf", 2, 1));
   store::TroubledStore watched(*store_);
-  Administration::Parts watched_parts{
-      .store = watched, .robots = registry_, .jobs = jobs_, .clock = clock_, .status = {}};
+  Administration::Parts watched_parts{.store = watched,
+                                      .robots = registry_,
+                                      .jobs = jobs_,
+                                      .clock = clock_,
+                                      .guidance = guidance_,
+                                      .status = {}};
   Administration administration(watched_parts);
   for (const std::string& name : {std::string("teacher"), teacher_.digest.short_hex()}) {
     AdminRequest request = fleet::question(AdminVerb::ListPaths);

@@ -4,6 +4,7 @@
 
 #include "server/service/answered_changes.hpp"
 #include "tests/unit/server/service/access_fixture.hpp"
+#include "tests/unit/server/service/given_guidance.hpp"
 
 namespace kinship::service::audit_test {
 namespace {
@@ -100,10 +101,12 @@ TEST_F(Audit, AResetThatAStopInterruptedHasFailed) {
   stop.request_stop();
   const Jobs::Options none;
   Jobs jobs(clock_, none);
+  GivenGuidance guidance;
   Administration administration({.store = *real_store_,
                                  .robots = *registry_,
                                  .jobs = jobs,
                                  .clock = clock_,
+                                 .guidance = guidance,
                                  .status = {},
                                  .stop = stop.get_token()});
   const AdminPage page = administration.answer(fleet::question(AdminVerb::ResetTask, "shelf"),

@@ -395,7 +395,7 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   const auto question = fleet::question(AdminVerb::ListTasks);
   for (bool is_held = false; !is_held;) {  // refused ones are answered on this thread
     std::promise<bool> begun;
-    service_->administer(
+    service_->administration().administer(
         question, "",
         [&begun, released](const AdminPage& page) {
           const bool is_short_task = page.status == AdminStatus::Ok;
@@ -408,7 +408,7 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   }
   for (bool is_full = false; !is_full;) {
     const auto refused = std::make_shared<std::atomic<bool>>(false);
-    service_->administer(
+    service_->administration().administer(
         question, "",
         [refused](const AdminPage& page) { *refused = page.status != AdminStatus::Ok; },
         fleet::caller_here());

@@ -36,7 +36,7 @@ TEST_F(ChangesElsewhere, NothingIsServedForARobotThatWasRemoved) {
   ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
   ASSERT_TRUE(real_store_->remove_robot(teacher_.digest, {}, nullptr));
   ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready) << "of memory";
-  service_->take_changes(
+  service_->fetches().take_changes(
       {.cursor = {}, .experience = {}, .robots = {teacher_.digest}, .evicted = {}});
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::UnknownRobot);
 }
@@ -59,21 +59,21 @@ TEST_F(ChangesElsewhere, WhoWaitsForAGenerationGetsItAlsoIfAnotherServerWasToldO
   wait_for_short_tasks();
   ASSERT_NE(reply.wait_for(std::chrono::seconds(0)), std::future_status::ready);
   teach_elsewhere(1, 100);
-  service_->take_changes(changed_experience());
+  service_->fetches().take_changes(changed_experience());
   EXPECT_EQ(reply.get().distribution.value().sources[0].generation, 2U);
 }
 
 TEST_F(ChangesElsewhere, WhatIsInMemoryStaysWhenTheSameIsToldAgainOrPathsCame) {
   teach(6);
   reset_elsewhere();
-  service_->take_changes(changed_experience());
+  service_->fetches().take_changes(changed_experience());
   teach(6, 100);
   ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
   const std::uint64_t before = fetches_from_memory();
-  service_->take_changes(changed_experience());
+  service_->fetches().take_changes(changed_experience());
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
   teach_elsewhere(1, 200);
-  service_->take_changes(changed_experience());
+  service_->fetches().take_changes(changed_experience());
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
   EXPECT_EQ(fetches_from_memory(), before + 2);
 }
@@ -88,9 +88,9 @@ TEST_F(ChangesElsewhere, WhatAnErrorOfTheStoreCutShortIsTakenWhenItIsToldAgain) 
   troubled_->on_robot_read = [] {
     throw Failure(ErrorCode::Storage, "the database does not answer");
   };
-  EXPECT_THROW(service_->take_changes(changes), Failure);
+  EXPECT_THROW(service_->fetches().take_changes(changes), Failure);
   troubled_->on_robot_read = [] {};
-  service_->take_changes(changes);
+  service_->fetches().take_changes(changes);
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::NoExperience);
 }
 
@@ -126,7 +126,8 @@ class FitsElsewhere : public ChangesElsewhere {
     teach(6);
     const Distribution made = fetch(request_for(teacher_)).distribution.value();
     EXPECT_TRUE(real_store_->evict_distribution(made.id, nullptr));
-    service_->take_changes({.cursor = {}, .experience = {}, .robots = {}, .evicted = {made.id}});
+    service_->fetches().take_changes(
+        {.cursor = {}, .experience = {}, .robots = {}, .evicted = {made.id}});
     return made;
   }
   void share_fits(std::function<void()> meanwhile = [] {}) {

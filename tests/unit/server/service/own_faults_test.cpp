@@ -34,7 +34,7 @@ class OwnFaults : public CatalogTest {
   }
   std::future<AdminPage> begin_reset(const std::string& task) {
     const auto page = std::make_shared<std::promise<AdminPage>>();
-    service_->administer(
+    service_->administration().administer(
         fleet::question(AdminVerb::ResetTask, task), "",
         [page](const AdminPage& answer) { page->set_value(answer); }, fleet::caller_here());
     return page->get_future();

@@ -84,13 +84,13 @@ TEST_F(Quota, ARegistrationThatFindsNoRoomIsToldWhenToComeAgain) {
   teach(6);
   std::promise<void> go_on;
   const std::shared_future<void> gate = go_on.get_future().share();
-  service_->administer(
+  service_->administration().administer(
       fleet::question(AdminVerb::ListTasks), "other 1",
       [gate](const AdminPage&) { gate.wait(); },  // holds the only thread
       fleet::caller_here());
   const auto ask_again = [this] {
     const auto reply = std::make_shared<std::promise<RegisterReply>>();
-    service_->register_robot(
+    service_->registration().register_robot(
         fleet::pupil(), [reply](const RegisterReply& r) { reply->set_value(r); }, "greedy");
     return reply->get_future();
   };
@@ -140,13 +140,14 @@ TEST_F(Quota, AFitOfAnotherClientComesBeforeTheSecondOfOne) {
   const auto begin = [&](const std::string& who, double x_m) {
     const auto reply = std::make_shared<std::promise<FetchReply>>();
     replies.push_back(reply->get_future());
-    service_->fetch(elsewhere(request_for(pupil_), x_m), who, [&, who, reply](const FetchReply& r) {
-      {
-        const std::lock_guard lock(mutex);
-        order.push_back(who);
-      }
-      reply->set_value(r);
-    });
+    service_->fetches().fetch(elsewhere(request_for(pupil_), x_m), who,
+                              [&, who, reply](const FetchReply& r) {
+                                {
+                                  const std::lock_guard lock(mutex);
+                                  order.push_back(who);
+                                }
+                                reply->set_value(r);
+                              });
     wait_for_short_tasks();  // so that fits are queued in this order
   };
   begin("greedy 0", 0);

@@ -33,8 +33,8 @@ class RolledBack : public ServiceFixture {
   }
   ReportReply say(const ConsistencyToken& token, std::vector<Attempt> attempts = {}) {
     std::promise<ReportReply> reply;
-    service_->report({std::move(attempts), {}, token},
-                     [&](const ReportReply& r) { reply.set_value(r); });
+    service_->reports().report({std::move(attempts), {}, token},
+                               [&](const ReportReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
 
@@ -73,7 +73,7 @@ TEST_F(RolledBack, DistributionInMemoryIsOfTheNewEpoch) {
 TEST_F(RolledBack, WhileNoEpochCanBeginNobodyIsGivenANewerMark) {
   service_->shutdown();
   bool is_answered = false;
-  service_->report({{}, {}, lost_}, [&](const ReportReply&) { is_answered = true; });
+  service_->reports().report({{}, {}, lost_}, [&](const ReportReply&) { is_answered = true; });
   EXPECT_FALSE(is_answered);
 }
 

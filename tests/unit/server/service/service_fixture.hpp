@@ -148,24 +148,26 @@ class ServiceFixture : public testing::Test {
 
   RegisterReply register_robot(const RobotDescription& description) {
     std::promise<RegisterReply> reply;
-    service_->register_robot(description, [&](const RegisterReply& r) { reply.set_value(r); });
+    service_->registration().register_robot(description,
+                                            [&](const RegisterReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
   ReportReply report(const std::vector<Attempt>& attempts) {
     std::promise<ReportReply> reply;
-    service_->report({attempts, {}}, [&](const ReportReply& r) { reply.set_value(r); });
+    service_->reports().report({attempts, {}}, [&](const ReportReply& r) { reply.set_value(r); });
     return reply.get_future().get();
   }
   std::future<FetchReply> begin_fetch(const FetchRequest& request, const std::string& waiter) {
     const auto reply = std::make_shared<std::promise<FetchReply>>();
     std::future<FetchReply> future = reply->get_future();
-    service_->fetch(request, waiter, [reply](const FetchReply& r) { reply->set_value(r); });
+    service_->fetches().fetch(request, waiter,
+                              [reply](const FetchReply& r) { reply->set_value(r); });
     return future;
   }
   FetchReply fetch(const FetchRequest& request) { return begin_fetch(request, "one").get(); }
   AdminPage administer(AdminRequest request) {
     std::promise<AdminPage> page;
-    service_->administer(
+    service_->administration().administer(
         std::move(request), "", [&](const AdminPage& p) { page.set_value(p); },
         fleet::caller_here());
     return page.get_future().get();

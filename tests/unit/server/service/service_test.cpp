@@ -49,8 +49,8 @@ TEST_F(ServiceTest, StatusAndMetricsTellWhenTheServersCertificateEnds) {
 TEST_F(ServiceTest, ReceiptsOfWhatTheDecoderRefusedAreInTheReply) {
   const Receipt refused{Uuid::random(), ReceiptStatus::Refused, "path: 1 waypoint"};
   std::promise<ReportReply> done;
-  service_->report({fleet::solved(teacher_, "shelf", 2, 1), {refused}},
-                   [&](const ReportReply& reply) { done.set_value(reply); });
+  service_->reports().report({fleet::solved(teacher_, "shelf", 2, 1), {refused}},
+                             [&](const ReportReply& reply) { done.set_value(reply); });
   const ReportReply reply = done.get_future().get();
   EXPECT_EQ(reply.store_epoch, service_->status().store_epoch);
   ASSERT_EQ(reply.receipts.size(), 3U);
@@ -78,8 +78,8 @@ TEST_F(ServiceTest, ShutdownAnswersEveryReportAndRefusesNoneForGood) {
   for (std::uint64_t i = 0; i < 50; ++i) {
     const auto promise = std::make_shared<std::promise<ReportReply>>();
     replies.push_back(promise->get_future());
-    service_->report({{fleet::solved(teacher_, "shelf", i)}, {}},
-                     [promise](const ReportReply& reply) { promise->set_value(reply); });
+    service_->reports().report({{fleet::solved(teacher_, "shelf", i)}, {}},
+                               [promise](const ReportReply& reply) { promise->set_value(reply); });
   }
   service_->shutdown();
   for (std::future<ReportReply>& reply : replies) {
@@ -93,7 +93,8 @@ TEST_F(ServiceTest, ShutdownAnswersEveryReportAndRefusesNoneForGood) {
 TEST_F(ServiceTest, OnceStoppedRegisteringIsLeftUnansweredAndAdministrationFails) {
   service_->shutdown();
   bool answered = false;
-  service_->register_robot(fleet::teacher(), [&](const RegisterReply&) { answered = true; });
+  service_->registration().register_robot(fleet::teacher(),
+                                          [&](const RegisterReply&) { answered = true; });
   EXPECT_FALSE(answered);
   EXPECT_EQ(administer(fleet::question(AdminVerb::Status)).status, AdminStatus::Failed);
 }

@@ -62,12 +62,13 @@ class SilentStore : public CatalogTest {
   }
   std::future<RegisterReply> begin_registration(const RobotDescription& robot) {
     const auto reply = std::make_shared<std::promise<RegisterReply>>();
-    service_->register_robot(robot, [reply](const RegisterReply& r) { reply->set_value(r); });
+    service_->registration().register_robot(
+        robot, [reply](const RegisterReply& r) { reply->set_value(r); });
     return reply->get_future();
   }
   std::future<AdminPage> begin_asking(AdminVerb verb) {
     const auto page = std::make_shared<std::promise<AdminPage>>();
-    service_->administer(
+    service_->administration().administer(
         fleet::question(verb), "", [page](const AdminPage& p) { page->set_value(p); },
         fleet::caller_here());
     return page->get_future();
@@ -118,8 +119,8 @@ TEST_F(SilentStore, AMarkThatIsLookedForInTheStoreKeepsNobodyWaiting) {
   const auto reply = std::make_shared<std::promise<ReportReply>>();
   std::future<ReportReply> receipts = reply->get_future();
   std::future<void> taken = std::async(std::launch::async, [this, reply] {  // as the server's loop
-    service_->report({fleet::solved(teacher_, "shelf", 1, 50), {}, ConsistencyToken(40, 7)},
-                     [reply](const ReportReply& r) { reply->set_value(r); });
+    service_->reports().report({fleet::solved(teacher_, "shelf", 1, 50), {}, ConsistencyToken(40, 7)},
+                               [reply](const ReportReply& r) { reply->set_value(r); });
   });
   ASSERT_TRUE(hang_.wait_until_asked());
   EXPECT_TRUE(comes(taken));
