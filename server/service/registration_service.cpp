@@ -32,10 +32,9 @@ void RegistrationService::register_robot(RobotDescription description,
     if (const auto known = parts_.robots.register_known(*robot, asked.may_take))
       return announce_registered(asked, *known);
     begin(parts_.pools.store, registration, [this, registration, robot] {
-      announce_registered(
-          *registration,
-          parts_.robots.register_robot(*robot, parts_.options.clock.unix_ms(),
-                                       registration->may_take));
+      announce_registered(*registration,
+                          parts_.robots.register_robot(*robot, parts_.options.clock.unix_ms(),
+                                                       registration->may_take));
     });
   });
 }

@@ -3,9 +3,9 @@
 #include <future>
 #include <utility>
 
-#include "server/service/validate_attempt.hpp"
 #include "server/service/fetch_service.hpp"
 #include "server/service/report_service.hpp"
+#include "server/service/validate_attempt.hpp"
 
 namespace kinship::service {
 

@@ -43,7 +43,8 @@ class ReplicationStore {
   /// path that is retired, or whose report is among the retired ones, is stored as retired and
   /// answered Recorded. The same then holds for such a path from a robot. A known report that is
   /// retired there is retired here.
-  virtual void commit_replicated(std::vector<ReplicatedReport> reports, ReportStore::ReportsDone done) = 0;
+  virtual void commit_replicated(std::vector<ReplicatedReport> reports,
+                                 ReportStore::ReportsDone done) = 0;
   /// Retires the paths of reports that another store retired, durable on return, in one
   /// transaction. The UUID of an unknown report is kept, so that its path is retired on arrival.
   /// \return the newly retired paths, by task.

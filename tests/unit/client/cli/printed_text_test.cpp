@@ -7,9 +7,9 @@
 #include <sstream>
 #include <vector>
 
-#include "client/cli/listings.hpp"
 #include "client/cli/compare_command.hpp"
 #include "client/cli/distribution_commands.hpp"
+#include "client/cli/listings.hpp"
 #include "client/cli/value_text.hpp"
 #include "client/cli/watch_command.hpp"
 

@@ -119,8 +119,9 @@ TEST_F(SilentStore, AMarkThatIsLookedForInTheStoreKeepsNobodyWaiting) {
   const auto reply = std::make_shared<std::promise<ReportReply>>();
   std::future<ReportReply> receipts = reply->get_future();
   std::future<void> taken = std::async(std::launch::async, [this, reply] {  // as the server's loop
-    service_->reports().report({fleet::solved(teacher_, "shelf", 1, 50), {}, ConsistencyToken(40, 7)},
-                               [reply](const ReportReply& r) { reply->set_value(r); });
+    service_->reports().report(
+        {fleet::solved(teacher_, "shelf", 1, 50), {}, ConsistencyToken(40, 7)},
+        [reply](const ReportReply& r) { reply->set_value(r); });
   });
   ASSERT_TRUE(hang_.wait_until_asked());
   EXPECT_TRUE(comes(taken));
