@@ -60,7 +60,7 @@ std::string millimetres(const Eigen::Ref<const Eigen::MatrixXd>& lengths_m) {
 std::string object(std::initializer_list<std::pair<std::string_view, std::string>> members) {
   std::string json = "{";
   for (const auto& [name, value] : members)
-    json += (json.size() > 1 ? "," : "") + json_string(name) + ":" + value;
+    json.append(json.size() > 1 ? "," : "").append(json_string(name)).append(":").append(value);
   return json + "}";
 }
 
