@@ -29,7 +29,7 @@ int main(int count, char** words) try {
   link::Client client(link::options_from_environment());
   FetchRequest request;
   request.task = "sweep";
-  request.robot = client.register_robot(arm.description).value_or_throw().robot;
+  request.robot = client.register_robot(arm).value_or_throw().robot;
   request.T_task_base = Eigen::Isometry3d::Identity();
   request.deadline = std::chrono::seconds(60);
   const Distribution distribution = client.fetch(request).value_or_throw().distribution.value();

@@ -27,7 +27,7 @@ int main(int count, char** words) try {
       models::load_robot({.source = std::string(words[1]) + "/ur10e"}).value_or_throw();
   const guided::PlannedRobot robot(arm.chain, arm.shapes);
   link::Client client(link::options_from_environment());
-  client.register_robot(arm.description).value_or_throw();
+  client.register_robot(arm).value_or_throw();
 
   guided::GuidanceOptions wanted;
   wanted.task = "sweep";

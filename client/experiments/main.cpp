@@ -92,7 +92,7 @@ void add_compare(CLI::App& app) {
   add("--also",
       "NAME=FILE: other results over the same problems, each compared with uniform planning in a "
       "line below; may be repeated")
-      ->take_all();
+      ->expected(1, CLI::detail::expected_max_vector_size);
   compare->add_flag_callback(
       "--json", [] {}, "one JSON document instead of a table");
 }

@@ -22,8 +22,8 @@ def main() -> int:
         return comparison.fail(f"{error}; on Debian: apt-get install python3-numpy", 1)
     except FileNotFoundError as error:
         return comparison.fail(f"cannot read '{error.filename}': {error.strerror}", 3)
-    except LookupError as error:
-        return comparison.fail(error.args[0], 3)
+    except run_files.IncompleteRun as error:
+        return comparison.fail(str(error), 3)
     except ValueError as error:
         return comparison.fail(str(error), 2)
     except OSError as error:

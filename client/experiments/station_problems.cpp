@@ -140,7 +140,7 @@ void write_station_problems(const StationOptions& options, std::ostream& out,
 }
 
 void write_placement(Station station, const models::RobotArguments& robot, std::ostream& out) {
-  const RobotDescription description = models::describe_robot(robot).value_or_throw();
+  const RobotDescription description = models::describe_robot(robot).value_or_throw().description;
   const PoseArray pose = to_pose_array(placement_at(station, description.label));
   for (std::size_t i = 0; i < pose.size(); ++i)
     out << (i == 0 ? "" : " ") << pose[i];

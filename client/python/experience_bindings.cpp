@@ -69,7 +69,7 @@ void write_experience(const std::filesystem::path& file, const std::vector<Named
   const py::gil_scoped_release unlocked;
   files::OutputFile output(file, std::cout);
   for (const auto& robot : robots)
-    output.stream() << json::to_experience_line(robot->description_for_server()) << '\n';
+    output.stream() << json::to_experience_line(robot->model_for_server().description) << '\n';
   for (const NamedAttempt& attempt : attempts)
     output.stream() << json::to_json(attempt_of(attempt)) << '\n';
   output.keep();

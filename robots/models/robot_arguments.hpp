@@ -15,7 +15,7 @@ inline constexpr std::string_view kChainFile = "chain.toml";
 inline constexpr std::string_view kUrdfFile = "robot.urdf";
 
 /// The robot of a folder with chain.toml and robot.urdf (README.md). The URDF is taken as text;
-/// kinematics::read_chain judges it.
+/// kinematics::read_model judges it.
 /// \return the description; NotFound if the folder or one of its files is missing; InvalidInput
 ///         or TooLarge that names file, field and value otherwise.
 Result<RobotDescription> read_model_folder(const std::filesystem::path& folder);

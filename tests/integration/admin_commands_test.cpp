@@ -38,15 +38,22 @@ TEST_F(AdminCommands, EveryListingIsATableAndADocument) {
           std::string::npos)
         continue;
       seen.insert(noun);
-      const Answer table = server_.kinship({noun, verb, "-o", "wide"});
+      const Answer table = server_.kinship(noun + ' ' + verb + " -o wide");
       EXPECT_EQ(table.code, 0) << noun << ' ' << verb << ": " << table.err;
-      const Answer document = server_.kinship({noun, verb, "--json"});
+      const Answer document = server_.kinship(noun + ' ' + verb + " --json");
       EXPECT_EQ(document.code, 0) << noun << ' ' << verb << ": " << document.err;
       const auto rows = nlohmann::json::parse(document.out).at("rows").size();
       EXPECT_EQ(count_lines(table.out), rows + 1) << table.out;  // headings, or (none)
     }
   EXPECT_EQ(seen,
             (std::set<std::string>{"backup", "distributions", "jobs", "paths", "robots", "tasks"}));
+}
+
+TEST_F(AdminCommands, ARobotThatBreaksARuleIsWrongUsage) {
+  const std::string model = test::source_dir() + "/robots/models/ur10e/robot.urdf";
+  expect_has(
+      server_.ends(2, "robots register " + model + " --base nowhere --tip tool0 --label arm").err,
+      "nowhere");
 }
 
 TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
@@ -160,8 +167,7 @@ TEST_F(AdminCommands, ADistributionIsMadeOfChosenSourcesAndForgotten) {
       server_.ends(0, "distributions fetch --task sweep --robot ur10e --sources panda --wait 100")
           .out,
       "only of " + attempts_.front().robot.short_hex());
-  const Answer nobody =
-      server_.ends(3, "distributions fetch --task sweep --robot ur10e --sources nobody");
+  server_.ends(3, "distributions fetch --task sweep --robot ur10e --sources nobody");
   const Answer later =
       server_.kinship("distributions fetch --task sweep --robot ur10e --since 2100-01-01");
   EXPECT_NE(later.code, 0) << later.out;

@@ -117,5 +117,19 @@ TEST_F(KinshipdIntruder, ARobotAdministersNothing) {
   EXPECT_TRUE(site.keeps_path("shelf"));
 }
 
+TEST_F(KinshipdIntruder, ARobotReportsForItsTasksOnly) {
+  {
+    const Site site = open_site();
+    const auto report = intrude(site, "", {}, {"report", "shelf"});
+    EXPECT_TRUE(site.comes(AdminVerb::ListTasks, "shelf"));
+  }
+  const Site site = secured_site();
+  const fs::path robot = add({.name = "arm", .tasks = {"bin_*"}});
+  const auto other = intrude(site, "arm", robot, {"report", "shelf"});
+  const auto own = intrude(site, "arm", robot, {"report", "bin_1"});
+  EXPECT_TRUE(site.comes(AdminVerb::ListTasks, "bin_1"));
+  EXPECT_FALSE(site.has(AdminVerb::ListTasks, "shelf"));
+}
+
 }  // namespace
 }  // namespace kinship::intruder_test

@@ -9,6 +9,7 @@
 
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/joint_space.hpp"
+#include "robots/inverse/lane_chain.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -144,6 +145,24 @@ TEST_P(InverseOf, AnyNumberOfThreadsGivesTheSameBytes) {
     EXPECT_EQ(one[i], three[i]);
     EXPECT_EQ(one[i], inverse(chain_, poses[i], {.seed = 5}).configurations);
   }
+}
+
+TEST_P(InverseOf, EveryInstructionSetGivesTheSameSolutions) {
+  constexpr int kPoses = 300;
+  std::vector<Solver> solvers;
+  for (const InstructionSet& set : instruction_sets())
+    solvers.emplace_back(chain_, set.kernels, Solver::Engines::Descents);
+  std::vector<int> same(solvers.size(), 0);
+  for (int i = 0; i < kPoses; ++i) {
+    const Eigen::Isometry3d T = kinematics::T_base_tip(chain_, draw(chain_, generator_));
+    const Eigen::MatrixXd first = solvers.front().solve(T).configurations;
+    for (std::size_t s = 0; s < solvers.size(); ++s) {
+      const Eigen::MatrixXd other = solvers[s].solve(T).configurations;
+      same[s] += first.cols() == other.cols() && (first - other).norm() < 1e-5 ? 1 : 0;
+    }
+  }
+  for (std::size_t s = 0; s < solvers.size(); ++s)
+    EXPECT_GE(same[s], 0.995 * kPoses) << instruction_sets()[s].name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, InverseOf, testing::ValuesIn(kModels),

@@ -40,18 +40,24 @@ Answer Cell::run(const std::string& program, const std::string& line) const {
 }
 
 RegisterReply Cell::register_model(const std::string& model) {
-  return client_.register_robot(model_description(model)).value_or_throw();
+  RegisterReply reply = client_.register_robot(model_description(model)).value_or_throw();
+  if (reply.status == RegisterStatus::Refused)
+    throw std::runtime_error("robot " + model + " is refused: " + reply.message);
+  return reply;
 }
 
 std::vector<Uuid> Cell::report(const Digest& panda, std::uint64_t first, std::uint64_t count) {
+  const std::size_t refused_before = client_.outbox().refused;
   std::vector<Uuid> reports;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const Attempt attempt = panda_attempt(panda, kTask, seed);
     reports.push_back(attempt.report_uuid);
     client_.report(attempt);
   }
-  if (const std::size_t pending = client_.flush(kEnough).pending; pending > 0)
-    throw std::runtime_error(std::to_string(pending) + " reports have no receipt");
+  const link::Client::OutboxState state = client_.flush(kEnough);
+  if (state.pending > 0 || state.refused > refused_before)
+    throw std::runtime_error(std::to_string(state.pending) + " reports have no receipt, " +
+                             std::to_string(state.refused - refused_before) + " are refused");
   return reports;
 }
 

@@ -11,7 +11,7 @@ from typing import Any
 from .wilcoxon import Wilcoxon, wilcoxon
 
 Result = dict[str, Any]  # a line of a result file
-_NEEDED = ("name", "solved", "collision_checks", "planning_time_s")
+_NEEDED = {"name": str, "solved": bool, "collision_checks": int, "planning_time_s": (int, float)}
 
 
 def read_results(file: str) -> list[Result]:
@@ -21,9 +21,11 @@ def read_results(file: str) -> list[Result]:
         for number, line in enumerate(lines, 1):
             try:
                 result = json.loads(line)
-                missing = [name for name in _NEEDED if not isinstance(result, dict) or name not in result]
-                if missing:
-                    raise ValueError(f"{missing[0]}: is missing")
+                for name, kind in _NEEDED.items():
+                    if not isinstance(result, dict) or name not in result:
+                        raise ValueError(f"{name}: is missing")
+                    if not isinstance(result[name], kind):
+                        raise ValueError(f"{name}: {json.dumps(result[name])} is of another kind")
             except ValueError as error:
                 raise ValueError(f"{file} line {number}: {error}") from error
             results.append(result)

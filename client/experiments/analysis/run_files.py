@@ -16,10 +16,14 @@ _NEEDED = {"model": ("the robot's model", "(--models)/ROBOT"), "problems": ("its
 _ALONE = ("mixture", "ways", "retreat")  # guides, in the order in which a page has them
 
 
+class IncompleteRun(Exception):
+    """Names everything that a run lacks."""
+
+
 def find_run(words: Words) -> dict[str, Any]:
     """Looks in the folder for files that are not named (kinship-experiments page --help has their names).
 
-    Returns "files" by option, "also" as pairs of name and file, "teachers" as [model, problems, results]. Raises LookupError with
+    Returns "files" by option, "also" as pairs of name and file, "teachers" as [model, problems, results]. Raises IncompleteRun with
     everything that is missing, and how it is named; ValueError for what is written wrongly.
     """
     def value(name: str) -> str:
@@ -27,7 +31,7 @@ def find_run(words: Words) -> dict[str, Any]:
 
     folder, models = value("run"), value("models")
     if folder and not os.path.isdir(folder):
-        raise LookupError(f"--run '{folder}' is no folder")
+        raise IncompleteRun(f"--run '{folder}' is no folder")
     names = sorted(os.listdir(folder)) if folder else []
 
     def found(name: str) -> str:
@@ -49,7 +53,7 @@ def find_run(words: Words) -> dict[str, Any]:
     run = {"files": files, "also": also, "teachers": teachers}
     missing = _missing(run, folder)
     if missing:
-        raise LookupError("this run lacks what a page tells of:" + "".join(f"\n  {each}" for each in missing))
+        raise IncompleteRun("this run lacks what a page tells of:" + "".join(f"\n  {each}" for each in missing))
     return run
 
 

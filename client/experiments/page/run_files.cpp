@@ -8,7 +8,6 @@
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/models/mesh_files.hpp"
-#include "robots/models/scene_meshes.hpp"
 
 namespace kinship::experiments {
 namespace {

@@ -180,5 +180,22 @@ TEST(UnusualArms, SawyersHalfTurnIsTakenAsItIsWritten) {
   }
 }
 
+TEST(UnusualArms, AnswersDependOnPoseAndSeedOnly) {
+  for (const Chain& chain :
+       {test::arms::industrial(), test::arms::general(), test::arms::on_track()}) {
+    std::mt19937_64 generator(kSeed);
+    const Solver solver(chain);
+    std::vector<Eigen::Isometry3d> poses;
+    std::vector<Eigen::MatrixXd> answers;
+    for (int i = 0; i < 5; ++i) {
+      poses.push_back(T_base_tip(chain, test::random_configuration(chain, generator)));
+      answers.push_back(solver.solve(poses.back(), {.max_solutions = 3, .seed = 9}).configurations);
+    }
+    for (std::size_t i = poses.size(); i-- > 0;)
+      EXPECT_EQ(Solver(chain).solve(poses[i], {.max_solutions = 3, .seed = 9}).configurations,
+                answers[i]);
+  }
+}
+
 }  // namespace
 }  // namespace kinship::inverse::unusual_arms_test

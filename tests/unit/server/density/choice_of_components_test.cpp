@@ -153,6 +153,19 @@ TEST(ChoiceOfComponents, AGivenNumberIsHonoured) {
   EXPECT_TRUE(summary.curve.empty());
 }
 
+TEST(ChoiceOfComponents, SameBytesForAnyNumberOfThreads) {
+  const Paths paths = paths_of(60, 4);
+  FitOptions options = choosing(paths);
+  const FitSummary one = fit(paths, options);
+  for (const int threads : {2, 3}) {
+    options.computation.threads = threads;
+    const FitSummary several = fit(paths, options);
+    EXPECT_EQ(several.mixture.means(), one.mixture.means());
+    EXPECT_EQ(several.mixture.covariances(), one.mixture.covariances());
+    EXPECT_EQ(several.curve, one.curve);
+  }
+}
+
 TEST(ChoiceOfComponents, WithoutThePathsIsACallersBug) {
   const Paths paths = paths_of(12, 1);
   EXPECT_THROW(fit(paths, {.components = 0}), std::invalid_argument);

@@ -128,6 +128,16 @@ TEST(Prior, FewPathsChooseWithoutAScore) {
   }
 }
 
+TEST(Prior, SameBytesForAnyNumberOfThreads) {
+  const Paths paths = paths_of(80, 8);
+  FitOptions options = choosing(paths);
+  const FitSummary one = fit(paths, options);
+  options.computation.threads = 3;
+  const FitSummary three = fit(paths, options);
+  expect_same(three.mixture, one.mixture);
+  EXPECT_EQ(three.held_out_score, one.held_out_score);
+}
+
 TEST(Prior, AWarmStartKeepsIt) {
   const Paths paths = paths_of(20, 9);
   FitOptions options = choosing(paths);

@@ -218,18 +218,18 @@ class RunFiles(unittest.TestCase):
         also = run_files.described(run_files.find_run(self.words))["figures"]["also"]
         self.assertEqual([(row[0], row[3]) for row in also], [("with my option", "5.00")])
         self.words["also"] = ["gone=" + str(self.folder / "gone.jsonl")]
-        with self.assertRaisesRegex(LookupError, "of 'gone': there is no"):
+        with self.assertRaisesRegex(run_files.IncompleteRun, "of 'gone': there is no"):
             run_files.find_run(self.words)
 
     def test_all_that_is_missing_is_named_at_once(self):
         for name in ("distribution.json", "ur10e.problems.jsonl"):
             (self.folder / name).unlink()
-        with self.assertRaises(LookupError) as caught:
+        with self.assertRaises(run_files.IncompleteRun) as caught:
             run_files.find_run(self.words)
         for words in ("--distribution, or call it distribution.json", "--problems, or call it ROBOT.problems.jsonl"):
             self.assertIn(words, str(caught.exception))
         self.assertNotIn("--uniform", str(caught.exception))
-        with self.assertRaisesRegex(LookupError, "is no folder"):
+        with self.assertRaisesRegex(run_files.IncompleteRun, "is no folder"):
             run_files.find_run({"run": [str(self.folder / "none")]})
 
     def test_a_run_of_several_robots_asks_which(self):
