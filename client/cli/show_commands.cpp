@@ -141,7 +141,7 @@ void print_upstream(const UpstreamStatus& upstream, std::ostream& out) {
            << upstream.retired_here << " here; " << count_text(upstream.left_out, "report")
            << " without a path that can be read\n";
   if (upstream.refused > 0)
-    line() << count_text(upstream.refused, "report") << " refused and set aside, e.g. "
+    line() << count_text(upstream.refused, "report") << " refused and kept apart, e.g. "
            << upstream.first_refused << '\n';
 }
 

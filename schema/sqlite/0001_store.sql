@@ -229,9 +229,9 @@ CREATE TABLE quarantine (
   PRIMARY KEY (of_table, id)
 ) STRICT, WITHOUT ROWID;
 
--- Paths, in use or retired, that lost their attempts in a repair.
+-- Paths, in use or retired, that lost their attempts, in a repair or a move.
 CREATE TABLE lost_attempt (
-  path_id     INTEGER PRIMARY KEY,
+  id          INTEGER PRIMARY KEY,  -- of the path
   row_crc32c  INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 

@@ -14,7 +14,8 @@ namespace kinship::runtime {
 namespace {
 
 constexpr std::size_t kMaxGeometryBytes = 1024;  // of words, with room for more in a message
-constexpr RetryAfter kMended = std::chrono::minutes(1);  // a damaged row, by people
+constexpr RetryAfter kUnreadableRetry =
+    std::chrono::minutes(1);  // a report or a repair mends a row
 
 RegisterReply refused(const Error& error) {
   RegisterReply reply;
@@ -149,11 +150,11 @@ std::optional<RegisterReply> RobotRegistry::refusal_of_known(const kinematics::R
   // Registering its robot writes a damaged row anew, so its label still counts.
   const std::optional<std::string> label = known ? known.value()->label : listed_label(digest);
   if (!label) {
-    RegisterReply later = refused({known.error().code,
-                                   "the label under which this robot is known "
-                                   "cannot be read: " +
-                                       known.error().message});
-    later.retry_after = kMended;
+    // Without the store's words: they may name what the caller may not see.
+    RegisterReply later =
+        refused({known.error().code,
+                 "robot " + digest.short_hex() + " is known, its label cannot be read now"});
+    later.retry_after = kUnreadableRetry;
     return later;
   }
   const std::optional<Error> refusal = may_take(*label);

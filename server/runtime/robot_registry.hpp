@@ -66,6 +66,9 @@ class RobotRegistry {
     std::function<void(const std::string& message)> on_unreadable = [](const std::string&) {};
   };
 
+  /// Whether other servers may register robots in the store, too.
+  bool is_shared() const { return store_.is_shared(); }
+
   /// \param store  outlives the registry.
   explicit RobotRegistry(store::RobotStore& store) : RobotRegistry(store, Options{}) {}
   RobotRegistry(store::RobotStore& store, Options options);

@@ -18,10 +18,14 @@ namespace {
 /// \throws Failure(InvalidInput) for filters that the verb would not obey.
 void check_filters(const AdminRequest& request) {
   const VerbRule& rule = rule_of(request.verb);
-  if ((!request.robot.empty() && !rule.is(VerbRule::NamesRobot)) ||
-      (!request.task.empty() && !rule.is(VerbRule::NamesTask)))
+  const auto refuse = [&](const char* filter) {
     throw Failure(ErrorCode::InvalidInput,
-                  std::string(rule.name) + " takes no filter of robot or task");
+                  std::string(rule.name) + " takes no filter of " + filter);
+  };
+  if (!request.robot.empty() && !rule.is(VerbRule::NamesRobot))
+    refuse("robot");
+  if (!request.task.empty() && !rule.is(VerbRule::NamesTask))
+    refuse("task");
 }
 
 /// Jobs that were begun are known by themselves, as they stand; and pieces of a backup, which

@@ -26,16 +26,22 @@ void RegistrationService::register_robot(RobotDescription description,
                                          runtime::RobotRegistry::LabelRule may_take) {
   const auto registration = std::make_shared<const Registration>(
       Registration{std::move(description), std::move(done), client, std::move(may_take)});
-  begin(parts_.pools.memory, registration, [this, registration] {
+  const auto register_in_store = [this, registration](const runtime::Candidate& robot) {
+    announce_registered(*registration,
+                        parts_.robots.register_robot(robot, parts_.options.clock.unix_ms(),
+                                                     registration->may_take));
+  };
+  if (!parts_.robots.is_shared())  // registering mends a row that is damaged
+    return begin(parts_.pools.store, registration, [registration, register_in_store] {
+      register_in_store(runtime::Candidate(registration->description));
+    });
+  begin(parts_.pools.memory, registration, [this, registration, register_in_store] {
     const Registration& asked = *registration;
     const auto robot = std::make_shared<const runtime::Candidate>(asked.description);
     if (const auto known = parts_.robots.register_known(*robot, asked.may_take))
       return announce_registered(asked, *known);
-    begin(parts_.pools.store, registration, [this, registration, robot] {
-      announce_registered(*registration,
-                          parts_.robots.register_robot(*robot, parts_.options.clock.unix_ms(),
-                                                       registration->may_take));
-    });
+    begin(parts_.pools.store, registration,
+          [robot, register_in_store] { register_in_store(*robot); });
   });
 }
 

@@ -92,7 +92,7 @@ void Upstream::expose(metrics::Exposition& page, std::uint64_t attempts) const {
   page.gauge("kinship_upstream_oldest_waiting_timestamp_seconds",
              "When the first of them came here; 0: none waits.",
              static_cast<double>(upstream.oldest_waiting_ms) / kMsPerS);
-  page.gauge("kinship_upstream_refused_reports", "Reports that were refused and are set aside.",
+  page.gauge("kinship_upstream_refused_reports", "Reports that were refused and are kept apart.",
              upstream.refused);
   page.gauge("kinship_upstream_tasks", "Tasks whose experience comes down.", upstream.tasks);
   page.counter("kinship_upstream_sent_total", "Reports that were new to it.", upstream.sent);

@@ -13,6 +13,7 @@
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "tests/integration/admin_commands.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::admin_commands_test {
 namespace {

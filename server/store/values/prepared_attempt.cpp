@@ -18,7 +18,7 @@ std::optional<std::string> reason_against(const PlanningRecord& record) {
   std::optional<std::string> reason;
   for_each_field<PlanningRecord>([&]<typename Of, typename T>(const Field<Of, T>& field) {
     if constexpr (std::is_same_v<T, std::uint64_t>)
-      if (record.*field.member > kLargest)
+      if (!reason && record.*field.member > kLargest)
         reason = std::string(field.name) + " " + std::to_string(record.*field.member) +
                  " exceeds " + std::to_string(kLargest);
   });

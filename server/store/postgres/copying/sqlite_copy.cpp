@@ -12,6 +12,7 @@
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/rows/quarantine_rows.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -83,6 +84,7 @@ class RowCopy {
       if (!copy(table))
         return false;
     copy_damage();
+    note_lost_attempts(*target_);
     return true;
   }
 

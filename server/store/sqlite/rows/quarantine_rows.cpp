@@ -66,7 +66,7 @@ void retire_quarantined(Database& database, std::int64_t path_id) {
 
 void note_lost_attempts(Database& database) {
   database.execute(
-      "INSERT OR IGNORE INTO lost_attempt (path_id) SELECT id FROM path WHERE NOT " +
+      "INSERT OR IGNORE INTO lost_attempt (id) SELECT id FROM path WHERE NOT " +
       in_quarantine("path") +
       " AND NOT EXISTS (SELECT 1 FROM attempt WHERE attempt.report_uuid = path.report_uuid"
       " AND attempt.path_id = path.id)");

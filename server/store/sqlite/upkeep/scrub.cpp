@@ -38,23 +38,6 @@ std::size_t bytes_read(Database& database) {
          static_cast<std::size_t>(database.integer("PRAGMA page_size"));
 }
 
-/// Ends the statements of a connection early once `stop` is set; they throw.
-class Interruptible {
- public:
-  Interruptible(Database& database, std::atomic<bool>& stop) : database_(&database) {
-    constexpr int kInstructions = 10'000;  // of SQLite's machine: well below a millisecond
-    sqlite3_progress_handler(
-        &database.connection(), kInstructions,
-        [](void* is_set) { return *static_cast<std::atomic<bool>*>(is_set) ? 1 : 0; }, &stop);
-  }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-  ~Interruptible() { sqlite3_progress_handler(&database_->connection(), 0, nullptr, nullptr); }
-
- private:
-  Database* database_;
-};
-
 }  // namespace
 
 Scrub::Scrub(ReaderPool& readers, Writer& writer, ScrubOptions options)
@@ -67,6 +50,8 @@ Scrub::~Scrub() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
+    if (searched_ != nullptr)  // the check of a structure reads a whole table
+      sqlite3_interrupt(&searched_->connection());
   }
   wake_.notify_all();
   thread_.join();
@@ -97,10 +82,27 @@ void Scrub::run() {
     }
     log_news();
     std::unique_lock lock(mutex_);
-    if (wake_.wait_for(lock, pause, [this] { return stopping_.load(); }))
+    if (wake_.wait_for(lock, pause, [this] { return stopping_; }))
       return;
   }
 }
+
+/// While it lives the connection is interrupted when the search is to end.
+class Scrub::Searching {
+ public:
+  Searching(Scrub& scrub, Database& database) : scrub_(&scrub) { set(&database); }
+  Searching(const Searching&) = delete;
+  Searching& operator=(const Searching&) = delete;
+  ~Searching() { set(nullptr); }
+
+ private:
+  void set(Database* database) {
+    const std::lock_guard lock(scrub_->mutex_);
+    scrub_->searched_ = scrub_->stopping_ ? nullptr : database;
+  }
+
+  Scrub* scrub_;
+};
 
 std::chrono::milliseconds Scrub::step() {
   std::size_t bytes = 0;
@@ -109,7 +111,7 @@ std::chrono::milliseconds Scrub::step() {
     static_cast<void>(bytes_read(*database));
     if (table_ == 0 && last_id_ == 0 && !is_structure_checked_)
       tables_ = tables_of(*database);
-    const Interruptible until_stopped(*database, stopping_);
+    const Searching searching(*this, *database);
     search(*database);
     bytes = bytes_read(*database);
   }

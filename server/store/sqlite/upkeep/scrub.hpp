@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -47,6 +46,8 @@ class Scrub {
   std::string findings() const;
 
  private:
+  class Searching;
+
   void run();
   /// \return the pause before the next step.
   std::chrono::milliseconds step();
@@ -71,7 +72,8 @@ class Scrub {
   std::condition_variable wake_;
   ScrubProgress progress_;                       // guarded by mutex_, like all below
   std::map<std::string, std::string> findings_;  // by table
-  std::atomic<bool> stopping_ = false;           // written under mutex_
+  bool stopping_ = false;
+  Database* searched_ = nullptr;  // by the slice under way
 
   std::thread thread_;  // last: starts when all the rest is there
 };

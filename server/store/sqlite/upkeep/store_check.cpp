@@ -109,7 +109,7 @@ std::vector<Rule> make_rules() {
       "attempt.id"
       " AND replaced_by IS NOT NULL)";
   // A repair may have left it without.
-  const std::string lost_its_attempt = "path.id IN (SELECT path_id FROM lost_attempt)";
+  const std::string lost_its_attempt = "path.id IN (SELECT id FROM lost_attempt)";
   std::vector<Rule> rules = {
       {"path",
        "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"

@@ -23,8 +23,11 @@ Attempt solved_attempt(Eigen::Index dof, Eigen::Index waypoints) {
 /// What an attempt breaks; as a message it is then refused, too.
 std::string complaint(const Attempt& attempt) {
   const auto error = validate(attempt);
+  // What is too large for a message cannot be encoded.
   if (const auto message = encode({}, ReportRequest{{attempt}, {}})) {
     EXPECT_EQ(decode(message->wire)->refused.size(), error ? 1U : 0U);
+  } else {
+    EXPECT_TRUE(error);
   }
   return error ? error->message : "";
 }

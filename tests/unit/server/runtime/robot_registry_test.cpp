@@ -62,8 +62,8 @@ TEST_F(Registry, ARobotWhoseLabelIsDamagedIsRefusedForNowIfItsLabelMatters) {
       fleet::teacher(), 2, [](const std::string&) { return std::optional<Error>(); });
   EXPECT_EQ(reply.status, RegisterStatus::Refused);
   EXPECT_GT(reply.retry_after.count(), 0);
-  EXPECT_EQ(reply.message, "the label under which this robot is known cannot be read: robot " +
-                               robot.short_hex() + ": its row is damaged");
+  EXPECT_EQ(reply.message,
+            "robot " + robot.short_hex() + " is known, its label cannot be read now");
   EXPECT_EQ(registry_.register_robot(fleet::teacher(), 3).status, RegisterStatus::Registered)
       << "written anew by a caller whose labels are not limited";
 }
