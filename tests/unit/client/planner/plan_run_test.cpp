@@ -111,8 +111,9 @@ TEST_F(PlanRun, EachSearchIsWrittenDownWhereItIsAskedForAndChangesNoResult) {
     EXPECT_EQ(results_[i].waypoints, without[i].waypoints);
     EXPECT_EQ(results_[i].collision_checks, without[i].collision_checks);
     EXPECT_EQ(search.path.empty(), !results_[i].solved);
-    if (results_[i].solved)
+    if (results_[i].solved) {
       EXPECT_LE(search.checks.back(), results_[i].collision_checks);
+    }
   }
 }
 

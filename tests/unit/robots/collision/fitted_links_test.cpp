@@ -99,7 +99,7 @@ TEST(FittedLinks, WhatTouchesAMeshTouchesOneOfItsSolids) {
   for (int i = 0; i < 60; ++i) {
     const MeshAndSolids both = random_mesh(generator);
     for (int k = 0; k < 100; ++k) {
-      const Eigen::Isometry3d T_other = test::random_pose(4, generator);
+      const Eigen::Isometry3d T_other = test::random_pose(1.5, generator);
       const bool exact = touch(both.mesh, Eigen::Isometry3d::Identity(), other, T_other);
       const bool held = std::ranges::any_of(both.solids, [&](const auto& solid) {
         return touch(solid.first, solid.second, other, T_other);
