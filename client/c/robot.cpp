@@ -88,9 +88,10 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
 /// With solids around its meshes, if it has any.
 kinematics::RobotModel read_file(const kinship_robot_file& given) {
   models::LoadedRobot robot = read_robot_file(given);
-  robot.description.mesh_solids =
+  kinematics::RobotModel& model = robot;
+  model.description.mesh_solids =
       collision::fit_robot(robot.chain, robot.shapes).value_or_throw().mesh_solids;
-  return robot;
+  return model;
 }
 
 kinship_code register_with(link::Client& line, const kinematics::RobotModel& model,

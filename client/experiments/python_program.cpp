@@ -23,7 +23,7 @@ void become_python(const std::string& script, const CLI::App& command, const nlo
     throw Failure(ErrorCode::NotFound, "no program '" + program.string() + "'");
   nlohmann::json words{{"program", {std::filesystem::read_symlink("/proc/self/exe").string()}}};
   for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_name().substr(2);
+    const std::string& name = option->get_lnames().front();  // get_name() of a hidden one is empty
     if (option->count() > 0)
       words[name] = option->results();
     else if (!option->get_default_str().empty())

@@ -90,7 +90,7 @@ Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
     return rows.error();
   if (rows->empty())
     return Error{ErrorCode::Internal, "the server answered without a row"};
-  return std::move(rows->front());
+  return rows->front();
 }
 
 Error unreadable_row(const Error& why) {

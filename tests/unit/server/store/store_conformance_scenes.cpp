@@ -80,15 +80,6 @@ TEST_P(StoreConformance, ASceneIsPartOfAReportsBody) {
   EXPECT_EQ(report(solved(1)), ReceiptStatus::Refused);
 }
 
-TEST_P(StoreConformance, ABadSceneIsRefusedByName) {
-  RecordedScene bad = kitchen();
-  bad.objects[0].shape = BoxShape{{1, -2, 1}};
-  const Receipt receipt = test::report(*store_, {with(solved(1), bad)})[0];
-  EXPECT_EQ(receipt.status, ReceiptStatus::Refused);
-  EXPECT_NE(receipt.message.find("scene: 'table': size -2 m"), std::string::npos)
-      << receipt.message;
-}
-
 TEST_P(StoreConformance, ExportBringsScenesAndCountsThemToItsPages) {
   RecordedScene large;
   for (int i = 0; i < 100; ++i)
