@@ -212,8 +212,9 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());
+  const kinematics::RobotModel& model = robot;
   ServerLine server(
-      options, robot, [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
+      options, model, [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
       streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";

@@ -129,7 +129,7 @@ TEST(Processes, ReplyThatIsTooLargeBecomesARefusal) {
   const auto reply = requester.call(request, in(10s));
   ASSERT_TRUE(reply) << reply.error().message;
   EXPECT_EQ(reply->status, AdminStatus::Refused);
-  EXPECT_EQ(reply->message, "row: 600000 bytes exceed 524288");
+  EXPECT_EQ(reply->message, "rows: 600000 bytes exceed 524288");
 }
 
 /// What a process forked from this one says of joining a domain; "joined" if it does.
