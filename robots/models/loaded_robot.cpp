@@ -52,7 +52,7 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
   if (!described)
     return described.error();
   std::vector<std::string> warnings = std::move(described->warnings);
-  auto robot = read_model(*std::move(described));
+  auto robot = read_model(std::move(described).value());
   if (!robot)
     return robot.error();
   auto shapes = load_shapes(arguments, *robot);

@@ -11,6 +11,8 @@ namespace kinship::service {
 /// The guidance that a server gives from memory, as administrators see and change it.
 class ServedGuidance {
  public:
+  virtual ~ServedGuidance() = default;
+
   /// The advice of the moment for a distribution.
   virtual Advice advise(const Distribution& distribution) = 0;
   /// The newest rehearsal of a distribution; null: none yet.
@@ -24,9 +26,6 @@ class ServedGuidance {
   virtual void forget_task(const std::string& task) = 0;
   /// A robot was removed: its distributions may not be served, nor announced.
   virtual void forget_robot(const Digest& robot) = 0;
-
- protected:
-  ~ServedGuidance() = default;
 };
 
 }  // namespace kinship::service

@@ -23,8 +23,10 @@ std::vector<std::string> verbs_of(std::vector<std::string> words) {
   words.emplace_back("--help");
   const std::string help = test::run_to_end("kinship", words).out;
   std::vector<std::string> verbs;
-  std::istringstream lines(help.substr(std::min(help.find("\nSubcommands:\n"), help.size())));
-  for (std::string line; std::getline(lines, line);)
+  const std::string heading = "\nSubcommands:\n";
+  const std::size_t list = help.find(heading);
+  std::istringstream lines(list == std::string::npos ? "" : help.substr(list + heading.size()));
+  for (std::string line; std::getline(lines, line) && !line.empty();)
     if (line.starts_with("  ") && std::isalpha(static_cast<unsigned char>(line[2])) != 0)
       verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
   return verbs;

@@ -201,7 +201,7 @@ TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefuse
     request = fleet::question(rule.verb, "x");
     request.task = "bin";
     const AdminPage page = administration_.answer(request, "", fleet::caller_here());
-    const std::string refusal = std::string(rule.name) + " takes no filter of robot or task";
+    const std::string refusal = std::string(rule.name) + " takes no filter of task";
     EXPECT_EQ(page.message == refusal, !rule.is(VerbRule::Filters)) << rule.name << page.message;
   }
   request = fleet::question(AdminVerb::ListTasks);

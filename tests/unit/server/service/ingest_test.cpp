@@ -52,7 +52,7 @@ TEST_F(IngestTest, AnswersABatchOnceInItsOrder) {
   Attempt unknown = fleet::solved(robot_, "shelf", 1);
   unknown.robot.bytes[0] ^= 1U;
   Attempt bad = fleet::solved(robot_, "shelf", 2);
-  bad.record.share = 2;
+  bad.path = fleet::path(4, 2);
   const std::vector<Attempt> batch = {bad, fleet::solved(robot_, "shelf", 3), unknown,
                                       fleet::unsolved(robot_.digest, "shelf")};
   const std::vector<Receipt> receipts = submit(batch).get();
@@ -61,8 +61,8 @@ TEST_F(IngestTest, AnswersABatchOnceInItsOrder) {
                          ReceiptStatus::Recorded}));
   for (std::size_t i = 0; i < batch.size(); ++i)
     EXPECT_EQ(receipts[i].report_uuid, batch[i].report_uuid);
-  EXPECT_EQ(receipts[0].message,
-            "attempt " + bad.report_uuid.text() + ": share: 2 is not between 0 and 1");
+  EXPECT_NE(receipts[0].message.find("a path of 4 joints"), std::string::npos)
+      << receipts[0].message;
   EXPECT_EQ(receipts[2].message,
             "robot " + unknown.robot.short_hex() + " is not known here; register it first");
   EXPECT_EQ(ingest_.received(), 4U);

@@ -1,138 +1,19 @@
-#include <gtest/gtest.h>
+#include "tests/unit/server/store/store_damage.hpp"
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <fstream>
-#include <future>
 #include <iostream>
 #include <mutex>
 #include <thread>
-
-#include "server/store/maintenance.hpp"
-#include "server/store/sqlite/database/database.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
-#include "tests/support/random_values.hpp"
-#include "tests/support/store_values.hpp"
-#include "tests/support/temporary_directory.hpp"
 
 /// Damage in one place of a store, and what becomes of it and of everything else.
 namespace kinship::store::store_damage_test {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::uint64_t kPageSize = 4096;
 constexpr const char* kFlipWaypoints =
     "UPDATE path SET waypoints = CAST (substr(waypoints, 1, 50) || x'A5' ||"
     " substr(waypoints, 52) AS BLOB) WHERE id = 2";
-
-class StoreDamage : public testing::Test {
- protected:
-  StoreDamage() { open(); }
-
-  void open(const SqliteOptions& options = {}) {
-    store_.reset();
-    store_ = open_sqlite_store(file_, options);
-    static_cast<void>(store_->register_robot(robot_));
-  }
-  Attempt attempt(std::uint64_t number, Eigen::Index waypoints = 20) const {
-    Attempt made = test::make_attempt(robot_.digest, "shelf", number);
-    made.path = test::make_path(number, test::kDof, waypoints);
-    return made;
-  }
-  Receipt report(const Attempt& reported) { return test::report(*store_, {reported}).at(0); }
-  std::vector<StoredPath> paths() const {
-    return store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 100'000});
-  }
-  void drain() { test::report(*store_, {}); }
-
-  void edit(const std::string& sql) {
-    store_.reset();
-    Database database(file_, Access::ReadWrite);
-    database.execute(sql);
-    ASSERT_GT(database.changed_rows(), 0) << sql;
-  }
-  /// The pages that belong to a table or an index, in order.
-  std::vector<std::uint64_t> pages_of(const std::string& owner) const {
-    Database database(file_, Access::ReadOnly);
-    std::vector<std::uint64_t> found;
-    for (const Row& row :
-         database.query("SELECT pageno FROM dbstat WHERE name = $1 ORDER BY pageno", owner))
-      found.push_back(static_cast<std::uint64_t>(row.column_integer(0)));
-    return found;
-  }
-  /// Pages with rows, and not what does not fit on one.
-  std::vector<std::uint64_t> leaves_of(const std::string& owner) const {
-    Database database(file_, Access::ReadOnly);
-    std::vector<std::uint64_t> found;
-    for (const Row& row : database.query(
-             "SELECT pageno FROM dbstat WHERE name = $1 AND pagetype = 'leaf' ORDER BY pageno",
-             owner))
-      found.push_back(static_cast<std::uint64_t>(row.column_integer(0)));
-    return found;
-  }
-  /// Of the closed store: SQLite cannot read the page any more.
-  void break_page(std::uint64_t page) const {
-    constexpr std::uint64_t kHeaderOfFileBytes = 100;
-    flip(page, page == 1 ? kHeaderOfFileBytes : 0);
-  }
-  /// Of the closed store: a bit of a page's content.
-  void flip(std::uint64_t page, std::uint64_t place = 4000, int bit = 4) const {
-    std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-    const auto offset = static_cast<std::streamoff>((page - 1) * kPageSize + place);
-    stream.seekg(offset);
-    const int byte = stream.get();
-    stream.seekp(offset);
-    stream.put(static_cast<char>(byte ^ bit));
-    ASSERT_TRUE(stream.good());
-  }
-  /// Where a leaf of a table has the id of its last row: its last byte. The last row is the one
-  /// whose entry ends the array of cells; its id follows the size of its content, both as varints.
-  std::uint64_t place_of_last_id(std::uint64_t page) const {
-    constexpr std::size_t kCells = 3, kArray = 8;
-    std::ifstream stream(file_, std::ios::binary);
-    stream.seekg(static_cast<std::streamoff>((page - 1) * kPageSize));
-    std::array<char, kPageSize> bytes{};
-    stream.read(bytes.data(), bytes.size());
-    const auto number_at = [&](std::size_t at) {
-      return static_cast<std::size_t>(static_cast<unsigned char>(bytes.at(at))) * 256 +
-             static_cast<unsigned char>(bytes.at(at + 1));
-    };
-    std::size_t at = number_at(kArray + 2 * (number_at(kCells) - 1));
-    const auto end_of_varint = [&](std::size_t from) {
-      while (static_cast<unsigned char>(bytes.at(from)) >= 0x80U)
-        ++from;
-      return from;
-    };
-    at = end_of_varint(at) + 1;
-    return end_of_varint(at);
-  }
-  std::string first_finding_of_scrub() {
-    std::promise<std::string> said;
-    store_ = open_sqlite_store(file_,
-                               {.scrub_bytes_per_s = 1'000'000'000,
-                                .log = [&, first = true](std::string_view line) mutable {
-                                  if (line.starts_with("damaged: ") && std::exchange(first, false))
-                                    said.set_value(std::string(line));
-                                }});
-    auto line = said.get_future();
-    if (line.wait_for(std::chrono::seconds(20)) != std::future_status::ready) {
-      ADD_FAILURE() << "the scrub found nothing";
-      return {};
-    }
-    return line.get();
-  }
-  StoreCheck check() const {
-    return check_store(file_, [](double) {});
-  }
-
-  const test::TemporaryDirectory directory_;
-  const fs::path file_ = directory_ / "store.db";
-  const RobotRecord robot_ = test::make_robot("panda", 1);
-  std::unique_ptr<Store> store_;
-};
 
 // Duplicate vouches for what the report brought.
 
@@ -256,7 +137,7 @@ TEST_F(StoreDamage, ARepairKeepsWhatIsKeptAndKnowsWhatIsNot) {
       << store_->status().message;
 }
 
-TEST_F(StoreDamage, ADamagedPathIsSetAsideNamedAndMendedByAResend) {
+TEST_F(StoreDamage, ADamagedPathIsQuarantinedNamedAndMendedByAResend) {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 0; number < 200; ++number)
     attempts.push_back(attempt(number, 60));
@@ -403,133 +284,6 @@ TEST_F(StorePoison, EightClientsOfItCostAHealthyOneLittle) {
   // 0.8 and more on a machine with nothing else to do; under ThreadSanitizer on a busy one 0.5.
   EXPECT_GT(beside, 0.2 * alone);
   EXPECT_FALSE(was_reopened());
-}
-
-// The search for damage.
-
-// A search goes on by ids: behind the last one, whatever it has become, it has to end.
-TEST_F(StoreDamage, ASearchEndsBehindARowWhoseIdIsDamaged) {
-  test::RandomValues random(5);
-  AuditEntry audit;
-  audit.verb = "backup";
-  const RobotRecord second = test::make_robot("second", 2);
-  static_cast<void>(store_->register_robot(second));
-  for (std::uint64_t number = 0; number < 3; ++number) {
-    Attempt reported = attempt(number);
-    reported.task = number == 2 ? "bin" : "shelf";
-    reported.scene = random.recorded_scene();
-    test::report(*store_, {reported});
-    store_->add_audit(audit);
-  }
-  store_.reset();
-  const fs::path sound = directory_ / "sound.db";
-  fs::copy_file(file_, sound);
-  for (const std::string table : {"task", "scene", "robot", "audit", "path", "attempt"}) {
-    const std::uint64_t page = leaves_of(table).back();
-    const std::uint64_t place = place_of_last_id(page);
-    for (const int bit : {1, 4, 64}) {  // one is the id of another row
-      SCOPED_TRACE(table + ", bit " + std::to_string(bit));
-      flip(page, place, bit);
-      EXPECT_GT(check().problems, 0U);
-      EXPECT_NE(first_finding_of_scrub().find("table " + table + ": "), std::string::npos);
-      store_.reset();
-      static_cast<void>(repair_store(file_, [](double) {}));
-      open();
-      static_cast<void>(store_->register_robot(second));  // it may be lost
-      store_.reset();
-      EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
-      for (const char* const sidecar : {"-wal", "-shm", ".high-water-mark"})
-        fs::remove(file_.string() + sidecar);
-      fs::copy_file(sound, file_, fs::copy_options::overwrite_existing);
-    }
-  }
-}
-
-TEST_F(StoreDamage, TheScrubFindsDamageThatNobodyReadsAndNamesIt) {
-  std::vector<Attempt> attempts;
-  for (std::uint64_t number = 0; number < 100; ++number)
-    attempts.push_back(attempt(number, 60));
-  test::report(*store_, std::move(attempts));
-  store_.reset();
-  break_page(leaves_of("attempt_by_task_robot").at(0));
-  const std::string words = first_finding_of_scrub();
-  EXPECT_NE(words.find("table attempt: "), std::string::npos) << words;
-  const StoreStatus status = store_->status();
-  EXPECT_NE(status.message.find("kinshipd repair"), std::string::npos) << status.message;
-  store_.reset();
-}
-
-TEST_F(StoreDamage, TheCheckNamesADamagedRowOnceInWords) {
-  for (std::uint64_t number = 0; number < 200; ++number)
-    test::report(*store_, {attempt(number, 60)});
-  store_.reset();
-  flip(leaves_of("path").at(5));
-  const StoreCheck found = check();
-  std::size_t named = 0;
-  for (const std::string& message : found.messages) {
-    named += message.ends_with(": damaged (checksum)") ? 1U : 0U;
-    EXPECT_EQ(message.find("SELECT"), std::string::npos) << message;
-    EXPECT_EQ(message.find("error code"), std::string::npos) << message;
-  }
-  EXPECT_EQ(named, 1U) << testing::PrintToString(found.messages);
-}
-
-TEST_F(StoreDamage, AStoreWithoutItsFirstPageIsRefusedAndRepaired) {
-  test::report(*store_, {attempt(1)});
-  store_.reset();
-  break_page(1);
-  const StoreCheck found = check();
-  EXPECT_EQ(found.problems, 1U);
-  ASSERT_EQ(found.messages.size(), 1U);
-  EXPECT_NE(found.messages.at(0).find("the schema cannot be read"), std::string::npos)
-      << found.messages.at(0);
-  try {
-    store_ = open_sqlite_store(file_);
-    FAIL() << "opened";
-  } catch (const Failure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("'kinshipd repair'"), std::string::npos)
-        << failure.what();
-  }
-  EXPECT_EQ(repair_store(file_, [](double) {}).damaged_places, 1U);
-  open();
-  EXPECT_EQ(paths().size(), 1U);
-  EXPECT_EQ(report(attempt(1)).status, ReceiptStatus::Duplicate);
-}
-
-TEST_F(StoreDamage, ARepairSaysWhatIsLost) {
-  std::vector<Attempt> attempts;
-  for (std::uint64_t number = 0; number < 200; ++number)
-    attempts.push_back(attempt(number, 60));
-  test::report(*store_, attempts);
-  const Uuid epoch = store_->epoch();
-  store_.reset();
-  break_page(leaves_of("path").at(5));
-  break_page(leaves_of("attempt").at(2));
-  break_page(pages_of("robot").at(0));
-  break_page(pages_of("path_by_task_robot").at(0));
-  const Repaired repaired = repair_store(file_, [](double) {});
-  EXPECT_EQ(repaired.damaged_places, 3U);
-  EXPECT_NE(repaired.restored.epoch, epoch);
-  EXPECT_TRUE(fs::exists(repaired.restored.replaced));
-  const auto lost = [&](const std::string& table) {
-    std::uint64_t rows = 0;
-    for (const Repaired::Lost& part : repaired.lost)
-      if (part.table == table && part.robot == "panda")
-        rows += part.rows;
-    return rows;
-  };
-  EXPECT_EQ(lost("robot"), 1U);
-  EXPECT_GT(lost("path"), 0U);
-  EXPECT_GT(lost("attempt"), 0U);
-  store_ = open_sqlite_store(file_);
-  EXPECT_TRUE(store_->robots().empty());
-  EXPECT_EQ(*store_->register_robot(robot_), RegisterStatus::Registered);
-  EXPECT_EQ(paths().size(), 200 - lost("path"));
-  for (const Receipt& receipt : test::report(*store_, attempts))
-    EXPECT_NE(receipt.status, ReceiptStatus::TryAgain) << receipt.message;
-  EXPECT_EQ(paths().size(), 200U);
-  store_.reset();
-  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
 }
 
 }  // namespace
