@@ -197,11 +197,15 @@ TEST_F(Access, ADistributionShownToSomeRobotsDoesNotNameTheOthersItIsMadeOf) {
       EXPECT_TRUE(is_own || source.robot == Digest());
     }
   }
+  for (const auto& now : explained[0].experience)
+    EXPECT_EQ(now.label, "pupil");
   const Caller ben = named("ben", AccessRole::Reader);
   const auto whole = rows<Distribution>(ask(ben, AdminVerb::ShowDistribution, id));
   ASSERT_EQ(whole.size(), 1U);
   for (const Source& source : whole[0].sources)
     EXPECT_NE(source.label, access::kOtherRobot);
+  EXPECT_EQ(rows<Explanation>(ask(ben, AdminVerb::ExplainDistribution, id)).at(0).experience.size(),
+            2U);
 }
 
 }  // namespace
