@@ -51,7 +51,7 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
   auto described = describe_robot(arguments);
   if (!described)
     return described.error();
-  std::vector<std::string> warnings = std::move(described->warnings);
+  std::vector<std::string> warnings = described->warnings;
   auto robot = read_model(std::move(described).value());
   if (!robot)
     return robot.error();
