@@ -7,12 +7,21 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship::json {
 namespace {
 
 constexpr std::size_t kMaxShownBytes = 40;
+
+/// The beginning of a text from outside, without control characters.
+std::string shown(std::string_view text) {
+  std::string beginning = cut_text(text, kMaxShownBytes);
+  const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7f; };
+  std::ranges::replace_if(beginning, is_control, '?');
+  return beginning;
+}
 
 [[noreturn]] void throw_too_large(const std::string& name, std::size_t value, std::size_t limit,
                                   std::string_view unit) {
@@ -191,7 +200,7 @@ Digest Reader::digest() const {
   const std::string hex = text(kMaxDocumentBytes);
   const auto digest = Digest::from_hex(hex);
   if (!digest)
-    refuse("'" + hex.substr(0, kMaxShownBytes) + "' is not 64 hexadecimal digits");
+    refuse("'" + shown(hex) + "' is not 64 hexadecimal digits");
   return *digest;
 }
 
@@ -199,7 +208,7 @@ Uuid Reader::uuid() const {
   const std::string written = text(kMaxDocumentBytes);
   const auto uuid = Uuid::parse(written);
   if (!uuid)
-    refuse("'" + written.substr(0, kMaxShownBytes) + "' is not a UUID (8-4-4-4-12)");
+    refuse("'" + shown(written) + "' is not a UUID (8-4-4-4-12)");
   return *uuid;
 }
 
