@@ -52,19 +52,23 @@ struct RecallLibrary {
   std::vector<RecallQuery> queries;
   std::vector<RecallPath> paths;
   std::vector<WarpMode> modes;
-  /// Whether each path in each mode solves each query but its own: one bit each, lowest first, row
-  /// by row; a row a query, in it the modes of the first path, then those of the next.
+  /// Whether each path in each mode solves each query but its own, with the goal configuration of
+  /// that query: one bit each, lowest first, row by row; a row a query, in it the modes of the
+  /// first path, then those of the next.
   std::vector<std::uint8_t> solves;
+  /// The same with any configuration at the goal's pose, near the one that the path ends in.
+  std::vector<std::uint8_t> reaches;
 
-  /// Index of a bit of `solves`.
+  /// Index of a bit of `solves` and `reaches`.
   std::size_t bit(std::size_t query, std::size_t path, std::size_t mode) const {
     return (query * paths.size() + path) * modes.size() + mode;
   }
-  bool is_solved(std::size_t query, std::size_t path, std::size_t mode) const {
-    const std::size_t at = bit(query, path, mode);
-    return (solves[at / 8] >> (at % 8) & 1U) != 0;
-  }
 };
+
+/// A bit of RecallLibrary::solves.
+inline bool bit_of(const std::vector<std::uint8_t>& bits, std::size_t at) {
+  return (bits[at / 8] >> (at % 8) & 1U) != 0;
+}
 
 inline constexpr int kRecallWaypoints = 32;
 inline constexpr std::size_t kMaxRecallQueries = 256, kMaxRecallPaths = 512;

@@ -57,6 +57,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string geometry = "robots/geometry";
   const std::string collision = "robots/collision";
   const std::string planning = "robots/planning";
+  const std::string recall = "robots/recall";
   const std::string access = "server/access";
   const std::string metrics = "server/metrics";
   const std::string store = "server/store";
@@ -100,6 +101,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
+      {recall, {{planning, inverse, collision, kinematics, types}, {"Eigen"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
       {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},

@@ -1,0 +1,346 @@
+#include "robots/recall/library_maker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "proto/types/sha256.hpp"
+#include "proto/types/split_mix.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/guided_sampler.hpp"
+#include "robots/planning/path_vertices.hpp"
+#include "robots/recall/anchors.hpp"
+#include "robots/recall/clear_path.hpp"
+#include "robots/recall/recall.hpp"
+
+namespace kinship::recall {
+namespace {
+
+constexpr std::size_t kProbed = 16;    // queries by which modes are chosen
+constexpr double kWorthKeeping = 0.6;  // of the best mode's success
+constexpr std::size_t kMostModes = 4;
+constexpr double kAnotherGoal = 0.1;  // joint units, from the goal reached
+
+std::vector<std::uint8_t> no_bits(const RecallLibrary& library) {
+  return std::vector<std::uint8_t>(
+      (library.queries.size() * library.paths.size() * library.modes.size() + 7) / 8);
+}
+
+void set_bit(std::vector<std::uint8_t>& bits, std::size_t at) {
+  bits[at / 8] = static_cast<std::uint8_t>(bits[at / 8] | 1U << (at % 8));
+}
+
+/// All blends with all frames that furniture may keep, and one with the goal's.
+std::vector<WarpMode> all_modes(std::size_t anchors) {
+  std::vector<WarpMode> modes;
+  for (std::uint32_t frame = kTaskFrame; frame < kFirstAnchor + anchors; ++frame)
+    for (std::uint32_t blend = 0; blend < kWarpBlends.size(); ++blend)
+      modes.push_back({blend, frame});
+  modes.push_back({1, kGoalFrame});
+  return modes;
+}
+
+/// A number that other content has another of. Never 0.
+std::uint64_t revision_of(const RecallLibrary& library) {
+  Sha256 digest;
+  for (const RecallQuery& query : library.queries)
+    digest.add(query.report.bytes).add(query.goal);
+  for (const RecallPath& path : library.paths)
+    digest.add(path.waypoints);
+  digest.add(library.solves).add(library.reaches);
+  const Digest whole = digest.finish();
+  std::uint64_t revision = 0;
+  for (std::size_t i = 0; i < sizeof revision; ++i)
+    revision = revision << 8 | whole.bytes[i];
+  return std::max<std::uint64_t>(revision, 1);
+}
+
+}  // namespace
+
+/// A query's obstacles, and what is free among them.
+struct LibraryMaker::World {
+  World(const LibraryMaker& maker, const collision::Surroundings& surroundings)
+      : world(maker.solids_, surroundings),
+        is_free(planning::free_in(world, maker.options_.before)) {}
+
+  collision::CollisionWorld world;
+  planning::IsFree is_free;
+};
+
+LibraryMaker::LibraryMaker(const kinematics::Chain& chain, const collision::RobotSolids& solids,
+                           std::vector<PosedQuery> queries, LibraryMakerOptions options)
+    : chain_(chain),
+      solids_(solids),
+      queries_(std::move(queries)),
+      options_(std::move(options)),
+      no_experience_(std::make_shared<planning::ExperienceGuide>(chain, TaskExperience{})) {
+  const std::size_t clear = queries_.size() * options_.clearances_m.size();
+  if (!queries_.empty() && clear < options_.max_paths)
+    branches_ = std::min<std::size_t>(static_cast<std::size_t>(options_.branches),
+                                      (options_.max_paths - clear) / queries_.size());
+  advance();
+}
+
+/// To the first phase from here that has a part left.
+void LibraryMaker::advance() {
+  while (phase_ != Phase::Done && next_ >= parts_of_phase()) {
+    next_ = 0;
+    if (phase_ == Phase::Solve)
+      begin_probe();
+    else if (phase_ == Phase::Probe)
+      begin_tries();
+    else
+      finish();
+  }
+}
+
+std::size_t LibraryMaker::parts_of_phase() const {
+  if (phase_ == Phase::Solve)
+    return queries_.size();
+  return phase_ == Phase::Probe ? std::min(kProbed, library_.queries.size())
+                                : library_.queries.size();
+}
+
+bool LibraryMaker::step() {
+  if (phase_ == Phase::Done)
+    return false;
+  if (phase_ == Phase::Solve)
+    solve(next_);
+  else if (phase_ == Phase::Probe)
+    probe(next_ * library_.queries.size() / parts_of_phase());
+  else
+    try_all(next_);
+  ++next_;
+  advance();
+  return true;
+}
+
+planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, const planning::IsFree& is_free,
+                                         const Eigen::MatrixXd& goals, Guide guide,
+                                         std::uint64_t seed) const {
+  planning::BirrtOptions options;
+  options.step = options_.step;
+  options.max_checks = options_.max_checks;
+  std::mt19937_64 generator(seed);
+  const planning::TrackQuery query{posed.surroundings.T_task_base, posed.bounds, posed.start,
+                                   goals};
+  return planning::plan_birrt(
+      posed.start, goals, is_free,
+      planning::guided_sampler(chain_, query, nullptr, no_experience_, {.guide = guide}).sampler,
+      options, generator);
+}
+
+/// Solves a query and keeps its paths with clearance.
+void LibraryMaker::solve(std::size_t query) {
+  const PosedQuery& posed = queries_[query];
+  World world(*this, posed.surroundings);
+  const std::uint64_t seed = split_mixed((query + 1) * kSplitMixStep);
+  planning::PlanSummary found = plan(posed, world.is_free, posed.goals, Guide::None, seed);
+  const planning::PlanSummary backed =
+      plan(posed, world.is_free, posed.goals, Guide::Retreat, seed);
+  uniform_checks_ += static_cast<double>(found.collision_checks);
+  retreat_checks_ += static_cast<double>(backed.collision_checks);
+  if (!found.waypoints)
+    found.waypoints = backed.waypoints;
+  if (!posed.solution && !found.waypoints)
+    return;
+  const Eigen::MatrixXd& raw = posed.solution ? *posed.solution : *found.waypoints;
+  RecallQuery solved;
+  solved.report = posed.report;
+  solved.is_synthetic = !posed.solution.has_value();
+  solved.T_task_base = posed.surroundings.T_task_base;
+  solved.start = posed.start;
+  solved.goal = raw.rightCols<1>();
+  posed_of_.push_back(query);
+  library_.queries.push_back(std::move(solved));
+  add_clear_paths(posed, raw, options_.clearances_m);
+
+  const Eigen::VectorXd from_goal =
+      (posed.goals.colwise() - library_.queries.back().goal).colwise().norm();
+  const Eigen::VectorXd from_start = (posed.goals.colwise() - posed.start).colwise().norm();
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index i = 0; i < posed.goals.cols(); ++i)
+    if (from_goal[i] > kAnotherGoal)
+      others.push_back(i);
+  std::ranges::stable_sort(others, {}, [&](Eigen::Index goal) { return from_start[goal]; });
+  others.resize(std::min(others.size(), branches_));
+  for (const Eigen::Index other : others)
+    if (const planning::PlanSummary branch =
+            plan(posed, world.is_free, posed.goals.col(other), Guide::Retreat, seed);
+        branch.waypoints)
+      add_clear_paths(posed, *branch.waypoints, {options_.clearances_m.data(), 1});
+}
+
+void LibraryMaker::add_clear_paths(const PosedQuery& posed, const Eigen::MatrixXd& raw,
+                                   std::span<const double> clearances_m) {
+  const ClearPathOptions options{.step = options_.step, .plan_checks = options_.max_checks};
+  for (const double clearance_m : clearances_m) {
+    World larger(*this, enlarged(posed.surroundings, clearance_m));
+    std::mt19937_64 generator(library_.paths.size());
+    if (const auto clear = clear_path(raw, larger.is_free, posed.bounds, options, generator))
+      library_.paths.push_back(
+          {static_cast<std::uint32_t>(library_.queries.size() - 1), equal_parts(*clear)});
+  }
+}
+
+/// Chooses the anchors, and tries every mode on a few queries.
+void LibraryMaker::begin_probe() {
+  phase_ = Phase::Probe;
+  std::vector<const std::vector<SceneObject>*> scenes;
+  for (const std::size_t query : posed_of_)
+    scenes.push_back(&queries_[query].surroundings.scene.objects);
+  library_.anchors = choose_anchors(scenes, kMaxRecallAnchors);
+  for (std::size_t i = 0; i < library_.queries.size(); ++i)
+    for (const auto& T_task_anchor : find_anchors(library_.anchors, *scenes[i]))
+      library_.queries[i].T_task_anchors.push_back(*T_task_anchor);
+  library_.modes = all_modes(library_.anchors.size());
+  worked_.assign(library_.modes.size(), 0);
+  library_.solves = library_.reaches = no_bits(library_);
+  guide_.emplace(chain_, library_);
+}
+
+Query LibraryMaker::query_of(std::size_t query, bool is_pose) const {
+  const RecallQuery& solved = library_.queries[query];
+  Query wanted;
+  wanted.T_task_base = solved.T_task_base;
+  wanted.bounds = queries_[posed_of_[query]].bounds;
+  wanted.start = solved.start;
+  if (is_pose)
+    wanted.T_base_goal = kinematics::T_base_transfer(chain_, solved.goal);
+  else
+    wanted.goals = solved.goal;
+  wanted.T_task_anchors.assign(solved.T_task_anchors.begin(), solved.T_task_anchors.end());
+  return wanted;
+}
+
+bool LibraryMaker::works(const planning::IsFree& is_free, const Query& query,
+                         const Candidate& candidate) const {
+  std::uint64_t checks = 0;
+  const auto warped = guide_->warp(query, candidate);
+  return warped && whole_if_free(*warped, is_free, options_.step, checks);
+}
+
+void LibraryMaker::probe(std::size_t query) {
+  World world(*this, queries_[posed_of_[query]].surroundings);
+  const Query wanted = query_of(query, true);
+  for (std::size_t path = 0; path < library_.paths.size(); ++path)
+    for (std::size_t mode = 0; mode < library_.modes.size(); ++mode)
+      if (library_.paths[path].query != query && works(world.is_free, wanted, {path, mode, -1}))
+        ++worked_[mode];
+}
+
+/// Keeps the modes that did best.
+void LibraryMaker::begin_tries() {
+  phase_ = Phase::Try;
+  const std::size_t best = std::ranges::max(worked_);
+  std::vector<std::size_t> order(worked_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [this](std::size_t mode) { return worked_[mode]; });
+  std::vector<WarpMode> kept;
+  for (const std::size_t mode : order)
+    if (kept.size() < kMostModes &&
+        static_cast<double>(worked_[mode]) >= kWorthKeeping * static_cast<double>(best))
+      kept.push_back(library_.modes[mode]);
+  library_.modes = std::move(kept);
+  library_.solves = library_.reaches = no_bits(library_);
+  guide_.emplace(chain_, library_);
+}
+
+/// Fills the rows of one query.
+void LibraryMaker::try_all(std::size_t query) {
+  World world(*this, queries_[posed_of_[query]].surroundings);
+  const Query to_goal = query_of(query, false), to_pose = query_of(query, true);
+  for (std::size_t path = 0; path < library_.paths.size(); ++path)
+    for (std::size_t mode = 0; mode < library_.modes.size(); ++mode) {
+      if (library_.paths[path].query == query)
+        continue;
+      const std::size_t bit = library_.bit(query, path, mode);
+      if (works(world.is_free, to_goal, {path, mode, 0}))
+        set_bit(library_.solves, bit);
+      if (works(world.is_free, to_pose, {path, mode, -1}))
+        set_bit(library_.reaches, bit);
+    }
+}
+
+/// Queries that a path solves in any mode.
+std::vector<bool> LibraryMaker::solved_by(std::size_t path) const {
+  std::vector<bool> solved(library_.queries.size());
+  for (std::size_t query = 0; query < solved.size(); ++query)
+    for (std::size_t mode = 0; mode < library_.modes.size(); ++mode) {
+      const std::size_t bit = library_.bit(query, path, mode);
+      solved[query] =
+          solved[query] || bit_of(library_.solves, bit) || bit_of(library_.reaches, bit);
+    }
+  return solved;
+}
+
+/// The order of paths: each next one solves most of what those before solve least.
+std::vector<std::size_t> LibraryMaker::best_first() const {
+  constexpr std::size_t kFewQueries = 3;  // too few to tell what a path is worth
+  std::vector<std::vector<bool>> solved;
+  for (std::size_t path = 0; path < library_.paths.size(); ++path)
+    solved.push_back(solved_by(path));
+  std::vector<double> worth(library_.queries.size(), 1);
+  std::vector<bool> is_taken(library_.paths.size());
+  std::vector<std::size_t> order;
+  while (order.size() < std::min(options_.max_paths, library_.paths.size())) {
+    double most = library_.queries.size() < kFewQueries ? -1 : 0;
+    std::optional<std::size_t> best;
+    for (std::size_t path = 0; path < solved.size(); ++path) {
+      double gain = 0;
+      for (std::size_t query = 0; query < worth.size(); ++query)
+        gain += solved[path][query] ? worth[query] : 0;
+      if (!is_taken[path] && gain > most) {
+        most = gain;
+        best = path;
+      }
+    }
+    if (!best)
+      break;
+    is_taken[*best] = true;
+    order.push_back(*best);
+    constexpr double kSolvedAgain = 0.5;
+    for (std::size_t query = 0; query < worth.size(); ++query)
+      worth[query] *= solved[*best][query] ? kSolvedAgain : 1;
+  }
+  return order;
+}
+
+void LibraryMaker::finish() {
+  phase_ = Phase::Done;
+  const std::vector<std::size_t> order = best_first();
+  RecallLibrary kept = library_;
+  kept.paths.clear();
+  for (const std::size_t path : order)
+    kept.paths.push_back(library_.paths[path]);
+  kept.solves = kept.reaches = no_bits(kept);
+  for (std::size_t query = 0; query < kept.queries.size(); ++query)
+    for (std::size_t path = 0; path < order.size(); ++path)
+      for (std::size_t mode = 0; mode < kept.modes.size(); ++mode) {
+        const std::size_t from = library_.bit(query, order[path], mode);
+        const std::size_t to = kept.bit(query, path, mode);
+        if (bit_of(library_.solves, from))
+          set_bit(kept.solves, to);
+        if (bit_of(library_.reaches, from))
+          set_bit(kept.reaches, to);
+      }
+  if (!queries_.empty())
+    kept.search_checks =
+        std::min(uniform_checks_, 2 * retreat_checks_) / static_cast<double>(queries_.size());
+  kept.revision = revision_of(kept);
+  library_ = std::move(kept);
+}
+
+std::optional<RecallLibrary> LibraryMaker::take() {
+  if (phase_ != Phase::Done || library_.paths.empty())
+    return std::nullopt;
+  return std::move(library_);
+}
+
+}  // namespace kinship::recall

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "robots/planning/is_free.hpp"
+#include "robots/recall/recall_guide.hpp"
+
+namespace kinship::recall {
+
+struct RecallOptions {
+  double step = 0.1;  ///< between checked configurations, joint units
+  /// Largest part of RecallLibrary::search_checks that tries may cost, as checks.
+  double most_spent = 0.3;
+  double trust = 1;  ///< factor of every candidate's chance, 0 to 1
+};
+
+struct RecallSummary {
+  /// dof x n: from the start to a goal, every configuration at most `step` apart free, and every
+  /// line proven if `is_free` proves them; missing: no candidate was free.
+  std::optional<Eigen::MatrixXd> waypoints;
+  std::uint64_t collision_checks = 0;
+  std::uint64_t tries = 0;
+  double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
+};
+
+/// Whether a path as `RecallGuide::warp` gives it is free: few configurations first, then those
+/// between. \param checks  out: those made are added.
+/// \return the path as RecallSummary::waypoints has it; nothing if it is not free.
+std::optional<Eigen::MatrixXd> whole_if_free(const Eigen::MatrixXd& path,
+                                             const planning::IsFree& is_free, double step,
+                                             std::uint64_t& checks);
+
+/// Tries whole paths on a query, the most promising first, as long as that is cheaper in the mean
+/// than a search. A path is checked at few configurations first, then between these. Starts with
+/// the straight line. Equal arguments, equal answers.
+/// \param query  start and goals need not be free.
+RecallSummary recall(const RecallGuide& guide, const Query& query, const planning::IsFree& is_free,
+                     const RecallOptions& options);
+
+}  // namespace kinship::recall

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "proto/types/recall_library.hpp"
+#include "robots/inverse/solver.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::recall {
+
+/// Where along a path, in parts of its length, its motion goes over from the query's start to the
+/// furniture, and the last part in which its posture turns to that of the goal.
+struct WarpBlend {
+  double begin = 0, end = 0;
+  double posture = 0;  ///< 0: the posture turns while the motion goes over
+};
+
+/// By WarpMode::blend.
+inline constexpr std::array<WarpBlend, 3> kWarpBlends = {
+    {{0, 0.25, 0.4}, {0.1, 0.4, 0.4}, {0, 0.25, 0}}};
+static_assert(kWarpBlends.size() <= kMaxWarpBlends);
+
+/// A path and where the hand was along it.
+struct WarpedPath {
+  Eigen::MatrixXd waypoints;                       ///< dof x kRecallWaypoints
+  std::vector<Eigen::Isometry3d> T_base_transfer;  ///< at each waypoint
+};
+
+/// What a path is moved onto.
+struct WarpTarget {
+  Eigen::Matrix2Xd bounds;                      ///< 2 x dof (planning_bounds)
+  Eigen::VectorXd start, goal;                  ///< dof, within bounds
+  Eigen::Isometry3d T_base_start, T_base_goal;  ///< of the transfer frame
+};
+
+/// Moves whole paths of one robot onto queries.
+class Warper {
+ public:
+  explicit Warper(const kinematics::Chain& chain);
+
+  /// The path with the query's start and goal: its joints are moved by the offsets of start and
+  /// goal, then two damped steps of inverse kinematics a waypoint put the hand where it was in a
+  /// frame, near the start and the goal where it was with respect to these.
+  /// \param T_new_old  of the frame, in the base link: its pose at the query times the inverse of
+  ///                   its pose when the path was planned; nothing: the goal's motion.
+  /// \return dof x kRecallWaypoints within the bounds, the ends those of the query; checked for
+  ///         nothing else.
+  Eigen::MatrixXd warp(const WarpedPath& path, const WarpTarget& target, const WarpBlend& blend,
+                       const std::optional<Eigen::Isometry3d>& T_new_old) const;
+
+  /// Hand poses along a path, for `warp`.
+  WarpedPath posed(Eigen::MatrixXd waypoints) const;
+
+  /// Full turns that bring a configuration nearest to another one; 0 for joints that have no more
+  /// than a turn of room.
+  Eigen::VectorXd turns(const Eigen::Ref<const Eigen::VectorXd>& from,
+                        const Eigen::Ref<const Eigen::VectorXd>& to) const;
+
+  /// The first joint that turns the whole arm about the vertical; -1: none.
+  Eigen::Index yaw_joint() const noexcept { return yaw_joint_; }
+  const kinematics::Chain& chain() const noexcept { return chain_; }
+  const inverse::Solver& solver() const noexcept { return solver_; }
+
+ private:
+  void put_hands(std::span<const Eigen::Isometry3d> wanted, Eigen::Index first,
+                 Eigen::MatrixXd& waypoints) const;
+
+  kinematics::Chain chain_;
+  inverse::Solver solver_;
+  std::vector<bool> turning_;
+  Eigen::Index yaw_joint_ = -1;
+};
+
+}  // namespace kinship::recall

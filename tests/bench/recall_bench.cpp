@@ -1,0 +1,282 @@
+// What recalled paths are worth, in CPU time of one thread with everything a query costs: goal
+// configurations, preparation, search. Beside it uniform planning, and the retreat, which needs no
+// experience; both by the same steps.
+//
+//   recall_bench STUDY [ROBOT...] [--set tuning|test] [--learning N] [--instances N] [--from ROBOT]
+//
+// own: the robot's own learning instances, solved uniformly. first day: the learning instances of
+// another robot (--from, else the next one of the study), of which it knows scene, and the hand at
+// start and goal.
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "client/experiments/studies/fleet.hpp"
+#include "client/experiments/studies/study.hpp"
+#include "client/guided/plan_problem.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/guided_sampler.hpp"
+#include "robots/planning/path_vertices.hpp"
+#include "robots/planning/shortcut.hpp"
+#include "robots/recall/library_maker.hpp"
+#include "robots/recall/recall.hpp"
+#include "tests/bench/figure.hpp"
+#include "tests/bench/measure.hpp"
+#include "tests/support/places.hpp"
+
+namespace kinship::bench {
+namespace {
+
+constexpr std::uint64_t kMaxChecks = 200'000;
+constexpr std::uint64_t kSeeds = 2;
+
+struct Robot {
+  models::LoadedRobot loaded;
+  guided::PlannedRobot planned;
+  experiments::DrawInstance draw;
+};
+
+/// A query with its world.
+struct Item {
+  Item(const Robot& robot, Problem its_problem, double its_step)
+      : problem(std::move(its_problem)),
+        step(its_step),
+        T_task_base(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
+        surroundings{T_task_base, problem.scene, problem.attached, problem.allowed_collisions},
+        world(robot.planned.solids, surroundings),
+        is_free(planning::free_in(world)),
+        bounds(planning::planning_bounds(robot.planned.chain, problem.start)) {}
+
+  Eigen::MatrixXd find_goals(const Robot& robot, int most) {
+    if (!problem.T_task_goal)
+      return problem.goal_configurations;
+    planning::GoalOptions options;
+    options.max_configurations = most;
+    options.seed = problem.seed;
+    return planning::goal_configurations(robot.planned.chain, robot.planned.solver,
+                                         T_task_base.inverse() * *problem.T_task_goal, bounds,
+                                         is_free, options)
+        .configurations;
+  }
+
+  Problem problem;
+  double step;
+  Eigen::Isometry3d T_task_base;
+  collision::Surroundings surroundings;
+  collision::CollisionWorld world;
+  planning::IsFree is_free;
+  Eigen::Matrix2Xd bounds;
+};
+
+struct Costs {
+  std::vector<double> checks, time_s, lengths;
+  int solved = 0;
+
+  void add(double its_checks, double its_time_s, const std::optional<Eigen::MatrixXd>& path) {
+    checks.push_back(its_checks);
+    time_s.push_back(its_time_s);
+    solved += path ? 1 : 0;
+    if (path)
+      lengths.push_back(planning::path_length(*path));
+  }
+  static double mean(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values)
+      sum += value;
+    return sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+  }
+};
+
+class Queries {
+ public:
+  Queries(const Robot& robot, const experiments::Study& study) : robot_(robot), study_(study) {}
+
+  planning::PlanSummary search(Item& item, Guide guide, std::uint64_t seed) const {
+    const Eigen::MatrixXd goals = item.find_goals(robot_, study_.settings.max_goals);
+    planning::BirrtOptions options;
+    options.step = study_.settings.resolution;
+    options.overshoot = study_.settings.overshoot;
+    options.max_checks = kMaxChecks;
+    options.time_limit = std::chrono::seconds(600);
+    std::mt19937_64 generator(seed);
+    const planning::TrackQuery query{item.T_task_base, item.bounds, item.problem.start, goals};
+    return planning::plan_birrt(
+        item.problem.start, goals, item.is_free,
+        planning::guided_sampler(robot_.planned.chain, query, nullptr, nothing_, {.guide = guide})
+            .sampler,
+        options, generator);
+  }
+
+  recall::RecallSummary recall(Item& item, const recall::RecallGuide& guide) const {
+    recall::Query query;
+    query.T_task_base = item.T_task_base;
+    query.bounds = item.bounds;
+    query.start = item.problem.start;
+    if (item.problem.T_task_goal)
+      query.T_base_goal = item.T_task_base.inverse() * *item.problem.T_task_goal;
+    else
+      query.goals = item.problem.goal_configurations;
+    query.T_task_anchors =
+        recall::find_anchors(guide.library().anchors, item.problem.scene.objects);
+    return recall::recall(guide, query, item.is_free, {.step = study_.settings.resolution});
+  }
+
+ private:
+  const Robot& robot_;
+  const experiments::Study& study_;
+  std::shared_ptr<const planning::ExperienceGuide> nothing_ =
+      std::make_shared<planning::ExperienceGuide>(robot_.planned.chain, TaskExperience{});
+};
+
+Uuid uuid_of(std::size_t index) {
+  Uuid uuid{};
+  uuid.bytes[0] = 1;
+  uuid.bytes[14] = static_cast<std::uint8_t>(index >> 8U);
+  uuid.bytes[15] = static_cast<std::uint8_t>(index);
+  return uuid;
+}
+
+/// \param records  problems, of this robot or another one that solved them
+std::optional<RecallLibrary> make_library(const Robot& robot, const experiments::Study& study,
+                                          const std::vector<Problem>& records, bool is_own) {
+  std::vector<recall::PosedQuery> posed;
+  const Queries queries(robot, study);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    Item item(robot, records[i], study.settings.resolution);
+    recall::PosedQuery query{uuid_of(i), {}, item.surroundings, item.bounds, records[i].start, {}};
+    query.goals = item.find_goals(robot, study.settings.max_goals);
+    if (query.goals.cols() == 0 || !item.is_free(query.start))
+      continue;
+    if (is_own)
+      if (const auto found = queries.search(item, Guide::None, records[i].seed); found.waypoints)
+        query.solution = found.waypoints;
+    posed.push_back(std::move(query));
+  }
+  recall::LibraryMakerOptions options;
+  options.step = study.settings.resolution;
+  recall::LibraryMaker maker(robot.planned.chain, robot.planned.solids, std::move(posed), options);
+  while (maker.step()) {
+  }
+  return maker.take();
+}
+
+void compare(const Robot& robot, const experiments::Study& study, const std::string& name,
+             const std::vector<Problem>& records, const std::vector<Problem>& tests, bool is_own) {
+  const double begin_s = thread_cpu_s();
+  const auto library = make_library(robot, study, records, is_own);
+  const double made_s = thread_cpu_s() - begin_s;
+  if (!library) {
+    std::cerr << name << ": no library\n";
+    return;
+  }
+  const recall::RecallGuide guide(robot.planned.chain, *library);
+  Costs uniform, retreat, recalled;
+  int hits = 0;
+  std::uint64_t tries = 0;
+  double hit_s = 0, expected = 0;
+  const Queries queries(robot, study);
+  const Guide fallback = Guide::Retreat;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
+    for (const Problem& problem : tests) {
+      Item item(robot, problem, study.settings.resolution);
+      const auto timed = [&](Costs& costs, auto run) {
+        const std::uint64_t before = item.world.checks();
+        const double from_s = thread_cpu_s();
+        const auto path = run();
+        costs.add(static_cast<double>(item.world.checks() - before), thread_cpu_s() - from_s, path);
+      };
+      timed(uniform, [&] { return queries.search(item, Guide::None, problem.seed + seed).waypoints; });
+      timed(retreat, [&] { return queries.search(item, Guide::Retreat, problem.seed + seed).waypoints; });
+      timed(recalled, [&] {
+        const double from_s = thread_cpu_s();
+        auto summary = queries.recall(item, guide);
+        tries += summary.tries;
+        expected += summary.expected;
+        if (summary.waypoints) {
+          ++hits;
+          hit_s += thread_cpu_s() - from_s;
+          return std::move(summary.waypoints);
+        }
+        return queries.search(item, fallback, problem.seed + seed).waypoints;
+      });
+    }
+  const auto ratio = [](const std::vector<double>& a, const std::vector<double>& b, double at) {
+    return at < 0 ? Costs::mean(a) / Costs::mean(b) : percentile(a, at) / percentile(b, at);
+  };
+  char line[600];
+  std::snprintf(line, sizeof line,
+                "%-34s U %6.0f ck %6.2f ms | retreat ck %5.2f t %5.2f | recall ck %5.2f t %5.2f med %5.2f "
+                "p95 %5.2f | hit %3.0f%% (exp %3.0f%%) tries %.1f hit %.3f ms len %.2f/%.2f solved %d/%d | lib %.1f s F %.0f q %zu p %zu m %zu a %zu",
+                name.c_str(), Costs::mean(uniform.checks), 1e3 * Costs::mean(uniform.time_s),
+                ratio(uniform.checks, retreat.checks, -1), ratio(uniform.time_s, retreat.time_s, -1),
+                ratio(uniform.checks, recalled.checks, -1),
+                ratio(uniform.time_s, recalled.time_s, -1),
+                ratio(uniform.time_s, recalled.time_s, 0.5),
+                ratio(uniform.time_s, recalled.time_s, 0.95),
+                100.0 * hits / static_cast<double>(recalled.checks.size()),
+                100.0 * expected / static_cast<double>(recalled.checks.size()),
+                static_cast<double>(tries) / static_cast<double>(recalled.checks.size()),
+                1e3 * hit_s / std::max(hits, 1), Costs::mean(uniform.lengths),
+                Costs::mean(recalled.lengths), recalled.solved, uniform.solved, made_s,
+                library->search_checks, library->queries.size(), library->paths.size(),
+                library->modes.size(), library->anchors.size());
+  std::cerr << line << "\n";
+}
+
+}  // namespace
+}  // namespace kinship::bench
+
+int main(int argc, char** argv) {
+  using namespace kinship;
+  using namespace kinship::bench;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  std::string set = "tuning", from;
+  std::uint32_t learning = 50, instances = 50;
+  std::vector<std::string> names, studies;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--set")
+      set = words[++i];
+    else if (words[i] == "--learning")
+      learning = static_cast<std::uint32_t>(std::stoul(words[++i]));
+    else if (words[i] == "--instances")
+      instances = static_cast<std::uint32_t>(std::stoul(words[++i]));
+    else if (words[i] == "--from")
+      from = words[++i];
+    else
+      (studies.empty() ? studies : names).push_back(words[i]);
+  }
+  for (const experiments::Study* study : experiments::find_studies(studies.front())) {
+    std::vector<std::unique_ptr<Robot>> robots;
+    for (const experiments::StudyRobot& placed : study->robots) {
+      models::LoadedRobot loaded = experiments::load_study_robot(places::models(), placed.model);
+      guided::PlannedRobot planned(loaded.chain, loaded.shapes);
+      auto draw = study->make_instances(loaded, placed);
+      robots.push_back(
+          std::make_unique<Robot>(Robot{std::move(loaded), std::move(planned), std::move(draw)}));
+    }
+    const auto draw = [&](std::size_t robot, experiments::InstanceSet which, std::size_t as,
+                          std::uint32_t count) {
+      std::vector<Problem> problems;
+      for (std::uint32_t i = 0; i < count; ++i)
+        problems.push_back(robots[as]->draw(experiments::seed_of(which, robot), i));
+      return problems;
+    };
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const std::string& model = study->robots[i].model;
+      if (!names.empty() && std::ranges::find(names, model) == names.end())
+        continue;
+      const auto tests = draw(i, experiments::parse_instance_set(set), i, instances);
+      compare(*robots[i], *study, study->name + " " + model + " own",
+              draw(i, experiments::InstanceSet::Learning, i, learning), tests, true);
+      const std::size_t other = (i + 1) % robots.size();
+      compare(*robots[i], *study, study->name + " " + model + " first day",
+              draw(other, experiments::InstanceSet::Learning, i, learning), tests, false);
+    }
+  }
+}
