@@ -14,6 +14,7 @@
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/guided_sampler.hpp"
 #include "robots/planning/path_vertices.hpp"
+#include "robots/planning/planning_budget.hpp"
 #include "robots/recall/anchors.hpp"
 #include "robots/recall/clear_path.hpp"
 #include "robots/recall/recall.hpp"
@@ -143,6 +144,7 @@ void LibraryMaker::solve(std::size_t query) {
   planning::PlanSummary found = plan(posed, world.is_free, posed.goals, Guide::None, seed);
   const planning::PlanSummary backed =
       plan(posed, world.is_free, posed.goals, Guide::Retreat, seed);
+  planned_s_ += found.planning_time_s;
   uniform_checks_ += static_cast<double>(found.collision_checks);
   retreat_checks_ += static_cast<double>(backed.collision_checks);
   if (!found.waypoints)
@@ -219,10 +221,15 @@ Query LibraryMaker::query_of(std::size_t query, bool is_pose) const {
 }
 
 bool LibraryMaker::works(const planning::IsFree& is_free, const Query& query,
-                         const Candidate& candidate) const {
+                         const Candidate& candidate) {
+  const double begin_s = planning::thread_time_s();
   std::uint64_t checks = 0;
-  const auto warped = guide_->warp(query, candidate);
-  return warped && whole_if_free(*warped, is_free, options_.step, checks);
+  auto warp = guide_->warp(query, candidate);
+  if (warp && whole_if_free(*warp, is_free, options_.step, checks))
+    return true;
+  failed_s_ += planning::thread_time_s() - begin_s;
+  ++failed_;
+  return false;
 }
 
 void LibraryMaker::probe(std::size_t query) {
@@ -333,6 +340,8 @@ void LibraryMaker::finish() {
   if (!queries_.empty())
     kept.search_checks =
         std::min(uniform_checks_, 2 * retreat_checks_) / static_cast<double>(queries_.size());
+  if (failed_ > 0 && planned_s_ > 0)
+    kept.try_checks = failed_s_ / static_cast<double>(failed_) * uniform_checks_ / planned_s_;
   kept.revision = revision_of(kept);
   library_ = std::move(kept);
 }

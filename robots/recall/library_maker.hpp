@@ -74,7 +74,7 @@ class LibraryMaker {
   void finish();
 
   Query query_of(std::size_t query, bool is_pose) const;
-  bool works(const planning::IsFree& is_free, const Query& query, const Candidate& candidate) const;
+  bool works(const planning::IsFree& is_free, const Query& query, const Candidate& candidate);
   std::vector<bool> solved_by(std::size_t path) const;
   std::vector<std::size_t> best_first() const;
 
@@ -89,7 +89,9 @@ class LibraryMaker {
   std::size_t branches_ = 0;  // of a query, at most
   Phase phase_ = Phase::Solve;
   std::size_t next_ = 0;
-  double uniform_checks_ = 0, retreat_checks_ = 0;
+  double uniform_checks_ = 0, retreat_checks_ = 0, planned_s_ = 0;
+  double failed_s_ = 0;  // of tries that failed
+  std::size_t failed_ = 0;
   std::vector<std::size_t> worked_;  // by mode, of the probe
 };
 

@@ -9,107 +9,105 @@
 namespace kinship::recall {
 namespace {
 
-/// Checks whole paths of one query.
-class WholePaths {
+/// Asks which configurations are free, many at once, until one is not.
+class Asked {
  public:
-  WholePaths(const planning::IsFree& is_free, double step) : is_free_(is_free), step_(step) {}
+  Asked(const planning::IsFree& is_free, std::uint64_t& checks)
+      : is_free_(is_free), checks_(checks) {}
 
-  /// \param stride  between the configurations that are checked first: a power of two.
-  /// \return the path as RecallSummary has it, if it is free.
-  std::optional<Eigen::MatrixXd> check(const Eigen::MatrixXd& path, Eigen::Index stride) {
-    const bool proves = is_free_.proves_edges();
-    Eigen::MatrixXd way = proves ? path : planning::densified(path, step_);
-    order_from_coarse(way.cols(), proves ? std::min<Eigen::Index>(stride, kProvenStride) : stride);
-    asked_.resize(way.rows(), planning::kTogether);
-    for (std::size_t done = 0; done < order_.size();) {
-      const std::size_t count =
-          std::min(order_.size() - done, static_cast<std::size_t>(planning::kTogether));
-      for (std::size_t i = 0; i < count; ++i)
-        asked_.col(static_cast<Eigen::Index>(i)) = way.col(order_[done + i]);
-      const Eigen::Index free = is_free_.ahead(asked_.leftCols(static_cast<Eigen::Index>(count)));
-      const bool are_all = free == static_cast<Eigen::Index>(count);
-      checks_ += static_cast<std::uint64_t>(free) + (are_all ? 0 : 1);
-      if (!are_all)
-        return std::nullopt;
-      done += count;
-    }
-    if (proves && !is_free_.way_is_free(way))
-      return std::nullopt;
-    return way;
+  /// \return false: one was not free, and nothing more is asked.
+  bool add(const Eigen::Ref<const Eigen::VectorXd>& q) {
+    if (count_ == 0)
+      asked_.resize(q.size(), planning::kTogether);
+    asked_.col(count_++) = q;
+    return count_ < planning::kTogether || are_free();
   }
 
-  bool is_free(const Eigen::VectorXd& q) {
-    ++checks_;
-    return is_free_(q);
+  /// Asks about those that were added since.
+  bool are_free() {
+    if (count_ == 0)
+      return true;
+    const Eigen::Index free = is_free_.ahead(asked_.leftCols(count_));
+    const bool are_all = free == count_;
+    checks_ += static_cast<std::uint64_t>(free) + (are_all ? 0 : 1);
+    count_ = 0;
+    return are_all;
   }
-
-  std::uint64_t checks() const { return checks_; }
 
  private:
-  static constexpr Eigen::Index kProvenStride = 4;
-
-  /// The last configuration, then every one but the first.
-  void order_from_coarse(Eigen::Index count, Eigen::Index stride) {
-    order_.clear();
-    order_.push_back(count - 1);
-    for (Eigen::Index s = stride; s >= 1; s /= 2)
-      for (Eigen::Index i = s; i < count - 1; i += s)
-        if (s == stride || i % (2 * s) != 0)
-          order_.push_back(i);
-  }
-
   const planning::IsFree& is_free_;
-  const double step_;
-  std::vector<Eigen::Index> order_;
+  std::uint64_t& checks_;
   Eigen::MatrixXd asked_;
-  std::uint64_t checks_ = 0;
+  Eigen::Index count_ = 0;
 };
 
-constexpr Eigen::Index kStride = 8, kLineStride = 16;
+/// Whether the lines of a path are free whose ends are: proven, or checked from coarse to fine.
+/// \return the path as RecallSummary::waypoints has it; nothing if they are not.
+std::optional<Eigen::MatrixXd> lines_if_free(const Eigen::MatrixXd& path,
+                                             const planning::IsFree& is_free, double step,
+                                             std::uint64_t& checks) {
+  constexpr Eigen::Index kStride = 8;
+  if (is_free.proves_edges())
+    return is_free.way_is_free(path) ? std::optional(path) : std::nullopt;
+  Eigen::MatrixXd dense = planning::densified(path, step);
+  Asked asked(is_free, checks);
+  for (Eigen::Index stride = kStride; stride >= 1; stride /= 2)
+    for (Eigen::Index i = stride; i < dense.cols() - 1; i += stride)
+      if ((stride == kStride || i % (2 * stride) != 0) && !asked.add(dense.col(i)))
+        return std::nullopt;
+  return asked.are_free() ? std::optional(std::move(dense)) : std::nullopt;
+}
 
 }  // namespace
 
-std::optional<Eigen::MatrixXd> whole_if_free(const Eigen::MatrixXd& path,
-                                             const planning::IsFree& is_free, double step,
-                                             std::uint64_t& checks) {
-  WholePaths paths(is_free, step);
-  auto whole = paths.check(path, kStride);
-  checks += paths.checks();
-  return whole;
+std::optional<Eigen::MatrixXd> whole_if_free(Warp& warp, const planning::IsFree& is_free,
+                                             double step, std::uint64_t& checks) {
+  const Eigen::MatrixXd& path = warp.waypoints();
+  Asked asked(is_free, checks);
+  if (!asked.add(path.rightCols<1>()))
+    return std::nullopt;
+  constexpr Eigen::Index kCoarse = 4;
+  for (Eigen::Index stride = kCoarse; stride >= 1; stride /= 4) {
+    warp.compute(stride, stride);
+    for (Eigen::Index i = stride; i < path.cols() - 1; i += stride)
+      if ((stride == kCoarse || i % kCoarse != 0) && !asked.add(path.col(i)))
+        return std::nullopt;
+    if (!asked.are_free())
+      return std::nullopt;
+  }
+  return lines_if_free(path, is_free, step, checks);
 }
 
 RecallSummary recall(const RecallGuide& guide, const Query& query, const planning::IsFree& is_free,
                      const RecallOptions& options) {
   RecallSummary summary;
   Ranking ranking(guide, query, options.trust);
-  WholePaths paths(is_free, options.step);
-  const double most =
-      std::max(kChecksOfFailedTry, options.most_spent * guide.library().search_checks);
+  const RecallLibrary& library = guide.library();
+  const double most = options.most_spent * library.search_checks;
   double missed = 1;  // chance that no try works
+  std::uint64_t& checks = summary.collision_checks;
   std::optional<Candidate> candidate = ranking.next(options.step);
-  if (candidate && paths.is_free(query.start)) {
-    bool is_line_tried = false;
-    for (; candidate && static_cast<double>(paths.checks()) < most;
-         candidate = ranking.next(options.step)) {
-      if (const auto warped = guide.warp(query, *candidate)) {
-        if (!std::exchange(is_line_tried, true)) {
-          Eigen::MatrixXd line(query.start.size(), 2);
-          line << query.start, warped->rightCols<1>();
-          summary.waypoints = paths.check(line, kLineStride);
-          if (summary.waypoints)
-            break;
-        }
-        ++summary.tries;
-        missed *= 1 - ranking.chance();
-        summary.waypoints = paths.check(*warped, kStride);
-        if (summary.waypoints)
-          break;
+  if (candidate) {
+    ++checks;
+    if (!is_free(query.start))
+      return summary;
+  }
+  for (; candidate && static_cast<double>(checks) < most; candidate = ranking.next(options.step)) {
+    if (auto warp = guide.warp(query, *candidate)) {
+      if (summary.tries++ == 0) {
+        Eigen::MatrixXd line(query.start.size(), 2);
+        line << query.start, warp->waypoints().rightCols<1>();
+        summary.waypoints = lines_if_free(line, is_free, options.step, checks);
       }
-      ranking.fail();
+      missed *= 1 - ranking.chance();
+      if (!summary.waypoints)
+        summary.waypoints = whole_if_free(*warp, is_free, options.step, checks);
+      if (summary.waypoints)
+        break;
     }
+    ranking.fail();
   }
   summary.expected = 1 - missed;
-  summary.collision_checks = paths.checks();
   return summary;
 }
 

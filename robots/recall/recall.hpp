@@ -25,12 +25,11 @@ struct RecallSummary {
   double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
 };
 
-/// Whether a path as `RecallGuide::warp` gives it is free: few configurations first, then those
-/// between. \param checks  out: those made are added.
+/// Whether a path is free: it is computed and checked at few waypoints first, then at all, then
+/// between these. \param checks  out: those made are added.
 /// \return the path as RecallSummary::waypoints has it; nothing if it is not free.
-std::optional<Eigen::MatrixXd> whole_if_free(const Eigen::MatrixXd& path,
-                                             const planning::IsFree& is_free, double step,
-                                             std::uint64_t& checks);
+std::optional<Eigen::MatrixXd> whole_if_free(Warp& warp, const planning::IsFree& is_free,
+                                             double step, std::uint64_t& checks);
 
 /// Tries whole paths on a query, the most promising first, as long as that is cheaper in the mean
 /// than a search. A path is checked at few configurations first, then between these. Starts with

@@ -18,8 +18,8 @@ namespace {
 constexpr double kRadian_m = 0.3;   // see planning::pose_distance_m
 constexpr double kYawWeight = 0.3;  // of a turn of the whole arm, which changes little
 constexpr int kBins = 16;
-constexpr std::size_t kMostRanked = 120;  // paths in a mode, for one goal
-constexpr double kLeastAlike = 1e-3;
+constexpr std::size_t kMostRanked = 64;  // paths in a mode, for one goal
+constexpr double kLeastAlike = 0.02;
 
 Eigen::Isometry3d inverse_of(const Eigen::Isometry3d& T) { return T.inverse(Eigen::Isometry); }
 
@@ -94,27 +94,32 @@ RecallGuide::Ends RecallGuide::ends_of(const Eigen::VectorXd& start,
 }
 
 double RecallGuide::distance(Metric metric, const Ends& a, const Ends& b) const {
-  const Eigen::VectorXd turns = warper_.turns(a.start, b.start);
-  const auto between = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    Eigen::VectorXd change = to - from - turns;
-    if (warper_.yaw_joint() >= 0)
-      change[warper_.yaw_joint()] *= kYawWeight;
-    return change.norm();
-  };
-  const double of_starts = between(a.start, b.start);
+  double of_starts = 0, of_configurations = 0;  // squared
+  for (Eigen::Index i = 0; i < a.start.size(); ++i) {
+    const double turns = warper_.turns(i, a.start[i], b.start[i]);
+    const double weight = i == warper_.yaw_joint() ? kYawWeight * kYawWeight : 1;
+    const double start = b.start[i] - a.start[i] - turns, goal = b.goal[i] - a.goal[i] - turns;
+    of_starts += weight * start * start;
+    of_configurations += weight * goal * goal;
+  }
   if (metric == Metric::Configurations)
-    return std::hypot(of_starts, between(a.goal, b.goal));
+    return std::sqrt(of_starts + of_configurations);
   const double of_goals =
       (planning::pose_distance_m(a.T_facing_goal, b.T_facing_goal) +
        planning::pose_distance_m(a.T_frame_goal, b.T_frame_goal)) /
           (2 * kRadian_m) +
       kYawWeight * std::abs(std::remainder(a.azimuth - b.azimuth, planning::kTurn));
-  return std::hypot(of_starts, of_goals);
+  return std::sqrt(of_starts + of_goals * of_goals);
 }
 
 /// How often each mode worked, by distance.
 void RecallGuide::learn(Metric metric) {
   Learned& learned = learned_.at(static_cast<std::size_t>(metric));
+  const auto& bits = metric == Metric::Configurations ? library_.solves : library_.reaches;
+  for (std::size_t path = 0; path < paths_.size(); ++path)
+    for (std::size_t mode = 0; mode < library_.modes.size(); ++mode)
+      for (std::size_t query = 0; query < ends_.size(); ++query)
+        learned.works.push_back(bit_of(bits, library_.bit(query, path, mode)) ? 1 : 0);
   struct Pair {
     double distance;
     std::size_t query, path;
@@ -148,7 +153,7 @@ void RecallGuide::learn(Metric metric) {
       constexpr double kBefore = 0.1;  // that one more would have worked, before any did
       double worked = kBefore;
       for (std::size_t i = first; i < last; ++i)
-        worked += works(metric, pairs[i].query, pairs[i].path, mode) ? 1 : 0;
+        worked += works(metric, pairs[i].path, mode)[pairs[i].query];
       learned.worked[mode].push_back(worked / static_cast<double>(last - first + 1));
     }
   }
@@ -160,12 +165,6 @@ double RecallGuide::chance_at(Metric metric, std::size_t mode, double distance) 
   return learned.worked[mode][static_cast<std::size_t>(bin)];
 }
 
-bool RecallGuide::works(Metric metric, std::size_t query, std::size_t path,
-                        std::size_t mode) const {
-  return bit_of(metric == Metric::Configurations ? library_.solves : library_.reaches,
-                library_.bit(query, path, mode));
-}
-
 bool RecallGuide::is_usable(const Query& query, std::size_t mode) const {
   const std::uint32_t frame = library_.modes[mode].frame;
   return frame < kFirstAnchor || query.T_task_anchors[frame - kFirstAnchor].has_value();
@@ -175,7 +174,9 @@ std::optional<Eigen::VectorXd> RecallGuide::goal_at_pose(const Query& query,
                                                          std::size_t path) const {
   constexpr int kIterations = 30;
   const Ends& ends = path_ends_[path];
-  inverse::JointVector q = ends.goal + warper_.turns(ends.start, query.start);
+  inverse::JointVector q = ends.goal;
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    q[i] += warper_.turns(i, ends.start[i], query.start[i]);
   if (const Eigen::Index yaw = warper_.yaw_joint(); yaw >= 0) {
     double azimuth = 0;
     facing(query.T_base_goal, azimuth);
@@ -190,8 +191,7 @@ std::optional<Eigen::VectorXd> RecallGuide::goal_at_pose(const Query& query,
   return q;
 }
 
-std::optional<Eigen::MatrixXd> RecallGuide::warp(const Query& query,
-                                                 const Candidate& candidate) const {
+std::optional<Warp> RecallGuide::warp(const Query& query, const Candidate& candidate) const {
   const RecallQuery& from = library_.queries[library_.paths[candidate.path].query];
   const WarpMode& mode = library_.modes[candidate.mode];
   WarpTarget target{query.bounds, query.start, {}, {}, query.T_base_goal};
@@ -217,7 +217,8 @@ std::optional<Eigen::MatrixXd> RecallGuide::warp(const Query& query,
     }
     T_new_old = T_base_new * inverse_of(T_base_old);
   }
-  return warper_.warp(paths_[candidate.path], target, kWarpBlends.at(mode.blend), T_new_old);
+  return Warp(warper_, paths_[candidate.path], std::move(target), kWarpBlends.at(mode.blend),
+              T_new_old);
 }
 
 Ranking::Ranking(const RecallGuide& guide, const Query& query, double trust)
@@ -239,11 +240,12 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
       guide_.T_base_frame(query.T_task_base, query.T_task_anchors));
   const double near = guide_.learned_.at(static_cast<std::size_t>(metric_)).near;
   Group group;
+  std::vector<double> distances(library.queries.size());
   for (std::size_t i = 0; i < library.queries.size(); ++i) {
+    distances[i] = guide_.distance(metric_, guide_.ends_[i], ends);
     if (query.without == library.queries[i].report)
       continue;
-    const double distance = guide_.distance(metric_, guide_.ends_[i], ends) / near;
-    const double weight = std::exp(-distance * distance);
+    const double weight = std::exp(-distances[i] * distances[i] / (near * near));
     if (weight > kLeastAlike)
       group.alike.push_back({i, weight});
   }
@@ -251,7 +253,9 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
   for (std::size_t path = 0; path < library.paths.size(); ++path) {
     if (query.without == library.queries[library.paths[path].query].report)
       continue;
-    const double distance = guide_.distance(metric_, guide_.path_ends_[path], ends);
+    const double distance = metric_ == RecallGuide::Metric::Poses
+                                ? distances[library.paths[path].query]
+                                : guide_.distance(metric_, guide_.path_ends_[path], ends);
     for (std::size_t mode = 0; mode < library.modes.size(); ++mode)
       if (guide_.is_usable(query, mode))
         candidates.push_back({path, mode, goal, distance});
@@ -271,11 +275,13 @@ void Ranking::rank(Group& group) const {
   for (Ranked& ranked : group.ranked) {
     double worked = guide_.chance_at(metric_, ranked.candidate.mode, ranked.candidate.distance);
     double weights = 1;
+    const std::uint8_t* const works =
+        guide_.works(metric_, ranked.candidate.path, ranked.candidate.mode);
+    const std::size_t own = library.paths[ranked.candidate.path].query;
     for (const auto& [query, weight] : group.alike)
-      if (library.paths[ranked.candidate.path].query != query) {
+      if (query != own) {
         weights += weight;
-        if (guide_.works(metric_, query, ranked.candidate.path, ranked.candidate.mode))
-          worked += weight;
+        worked += works[query] * weight;
       }
     ranked.chance = trust_ * worked / weights;
   }
@@ -288,7 +294,7 @@ std::optional<Candidate> Ranking::next(double step) {
   for (Group& group : groups_)
     for (Ranked& ranked : group.ranked) {
       const double chance = ranked.chance, checks = guide_.length(ranked.candidate.path) / step;
-      const double failed = (1 - chance) * kChecksOfFailedTry;
+      const double failed = (1 - chance) * guide_.library_.try_checks;
       if (ranked.is_tried || chance * (kOfSearch * guide_.library_.search_checks - checks) < failed)
         continue;
       const double worth = chance / (chance * checks + failed);
@@ -305,9 +311,9 @@ void Ranking::fail() {
   constexpr double kUnlike = 0.3;  // a query is less alike if what solved it does not work here
   last_->is_tried = true;
   const Candidate& candidate = last_->candidate;
+  const std::uint8_t* const works = guide_.works(metric_, candidate.path, candidate.mode);
   for (auto& [query, weight] : of_last_->alike)
-    if (guide_.library_.paths[candidate.path].query != query &&
-        guide_.works(metric_, query, candidate.path, candidate.mode))
+    if (works[query] != 0)
       weight *= kUnlike;
   rank(*of_last_);
 }

@@ -36,9 +36,6 @@ struct Query {
 std::vector<std::optional<Eigen::Isometry3d>> find_anchors(const std::vector<std::string>& anchors,
                                                            const std::vector<SceneObject>& objects);
 
-/// Checks that cost as much as a try that fails: its preparation, and the first checks.
-inline constexpr double kChecksOfFailedTry = 40;
-
 /// A path in one mode, for one goal.
 struct Candidate {
   std::size_t path = 0, mode = 0;
@@ -56,10 +53,10 @@ class RecallGuide {
   const RecallLibrary& library() const noexcept { return library_; }
   const Warper& warper() const noexcept { return warper_; }
 
-  /// A path moved onto a query.
+  /// A path to be moved onto a query; borrows this.
   /// \return nothing if the frame of its mode is not in the scene, or no configuration near the
   ///         path's end reaches the goal's pose.
-  std::optional<Eigen::MatrixXd> warp(const Query& query, const Candidate& candidate) const;
+  std::optional<Warp> warp(const Query& query, const Candidate& candidate) const;
 
   /// Length of a path, joint units.
   double length(std::size_t path) const { return lengths_[path]; }
@@ -78,9 +75,10 @@ class RecallGuide {
     Eigen::Isometry3d T_frame_goal;   // in the frame of frame_
   };
 
-  /// How often paths worked, by their distance from the query.
+  /// What the library tells by one metric.
   struct Learned {
-    std::vector<double> edges;                // of bins, ascending
+    std::vector<std::uint8_t> works;          // modes x queries of path after path: 0 or 1
+    std::vector<double> edges;                // of bins of distances, ascending
     std::vector<std::vector<double>> worked;  // modes x bins: chance, 0 to 1
     double near = 1;                          // a usual distance of neighbours
   };
@@ -93,7 +91,11 @@ class RecallGuide {
   double distance(Metric metric, const Ends& a, const Ends& b) const;
   void learn(Metric metric);
   double chance_at(Metric metric, std::size_t mode, double distance) const;
-  bool works(Metric metric, std::size_t query, std::size_t path, std::size_t mode) const;
+  /// Of each query, whether a path in a mode solves it.
+  const std::uint8_t* works(Metric metric, std::size_t path, std::size_t mode) const {
+    return &learned_.at(static_cast<std::size_t>(metric))
+                .works[(path * library_.modes.size() + mode) * library_.queries.size()];
+  }
   bool is_usable(const Query& query, std::size_t mode) const;
   std::optional<Eigen::VectorXd> goal_at_pose(const Query& query, std::size_t path) const;
 

@@ -64,62 +64,60 @@ WarpedPath Warper::posed(Eigen::MatrixXd waypoints) const {
   return path;
 }
 
-Eigen::VectorXd Warper::turns(const Eigen::Ref<const Eigen::VectorXd>& from,
-                              const Eigen::Ref<const Eigen::VectorXd>& to) const {
-  Eigen::VectorXd turns = Eigen::VectorXd::Zero(from.size());
-  for (Eigen::Index i = 0; i < turns.size(); ++i)
-    if (turning_[static_cast<std::size_t>(i)])
-      turns[i] = planning::kTurn * std::round((to[i] - from[i]) / planning::kTurn);
-  return turns;
+Warp::Warp(const Warper& warper, const WarpedPath& path, WarpTarget target, const WarpBlend& blend,
+           const std::optional<Eigen::Isometry3d>& T_new_old)
+    : warper_(warper),
+      path_(path),
+      target_(std::move(target)),
+      blend_(blend),
+      T_new_old_(T_new_old),
+      T_start_(target_.T_base_start * path.T_base_transfer.front().inverse(Eigen::Isometry)),
+      T_goal_(target_.T_base_goal * path.T_base_transfer.back().inverse(Eigen::Isometry)),
+      turns_(target_.start.size()),
+      moved_(path.waypoints.rows(), path.waypoints.cols()) {
+  for (Eigen::Index i = 0; i < turns_.size(); ++i)
+    turns_[i] = warper.turns(i, path.waypoints(i, 0), target_.start[i]);
+  by_start_ = target_.start - path.waypoints.col(0) - turns_;
+  by_goal_ = target_.goal - path.waypoints.rightCols<1>() - turns_;
+  is_same_start_ = by_start_.norm() < kSameStart;
+  moved_.col(0) = target_.start;
+  moved_.rightCols<1>() = target_.goal;
 }
 
-Eigen::MatrixXd Warper::warp(const WarpedPath& path, const WarpTarget& target,
-                             const WarpBlend& blend,
-                             const std::optional<Eigen::Isometry3d>& T_new_old) const {
-  const Eigen::Index count = path.waypoints.cols();
-  Eigen::MatrixXd moved = path.waypoints.colwise() + turns(path.waypoints.col(0), target.start);
-  const Eigen::VectorXd by_start = target.start - moved.col(0);
-  const Eigen::VectorXd by_goal = target.goal - moved.rightCols<1>();
-  const bool is_same_start = by_start.norm() < kSameStart;
-  const Eigen::Isometry3d T_start = target.T_base_start * path.T_base_transfer.front().inverse();
-  const Eigen::Isometry3d T_goal = target.T_base_goal * path.T_base_transfer.back().inverse();
-  const Eigen::VectorXd lower = target.bounds.row(0), upper = target.bounds.row(1);
-  std::vector<Eigen::Isometry3d> wanted;
-  wanted.reserve(static_cast<std::size_t>(count));
-  Eigen::Index first = 1;  // waypoint whose hand is put right
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double at = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double over = std::clamp((at - blend.begin) / (blend.end - blend.begin), 0.0, 1.0);
-    const double turned =
-        blend.posture > 0 ? std::clamp(1 - (1 - at) / blend.posture, 0.0, 1.0) : over;
-    moved.col(i) += (1 - over) * by_start + turned * by_goal;
-    if (yaw_joint_ >= 0)  // the arm faces where the furniture is, whatever its posture
-      moved(yaw_joint_, i) += (over - turned) * by_goal[yaw_joint_];
-    moved.col(i) = moved.col(i).cwiseMax(lower).cwiseMin(upper);
-    if (i == 0 || i == count - 1)
-      continue;
-    if (is_same_start && over <= 0) {
-      first = i + 1;
-      continue;
+std::optional<Eigen::Isometry3d> Warp::move(Eigen::Index waypoint) {
+  const double at = static_cast<double>(waypoint) / static_cast<double>(path_.waypoints.cols() - 1);
+  const double over = std::clamp((at - blend_.begin) / (blend_.end - blend_.begin), 0.0, 1.0);
+  const double turned =
+      blend_.posture > 0 ? std::clamp(1 - (1 - at) / blend_.posture, 0.0, 1.0) : over;
+  auto q = moved_.col(waypoint);
+  q = path_.waypoints.col(waypoint) + turns_ + (1 - over) * by_start_ + turned * by_goal_;
+  if (const Eigen::Index yaw = warper_.yaw_joint(); yaw >= 0)
+    q[yaw] += (over - turned) * by_goal_[yaw];  // the arm faces where the furniture is
+  q = q.cwiseMax(target_.bounds.row(0).transpose()).cwiseMin(target_.bounds.row(1).transpose());
+  if (is_same_start_ && over <= 0)
+    return std::nullopt;
+  const Eigen::Isometry3d& hand = path_.T_base_transfer[static_cast<std::size_t>(waypoint)];
+  Eigen::Isometry3d there = T_goal_ * hand;
+  if (T_new_old_)
+    there = between(*T_new_old_ * hand, there, std::clamp(1 - (1 - at) / kGoalZone, 0.0, 1.0));
+  return over < 1 ? between(T_start_ * hand, there, over) : there;
+}
+
+void Warp::compute(Eigen::Index first, Eigen::Index stride) {
+  std::array<Eigen::Index, kRecallWaypoints> waypoints;
+  std::array<Eigen::Isometry3d, kRecallWaypoints> wanted;
+  std::size_t count = 0;
+  for (Eigen::Index i = first; i < moved_.cols() - 1; i += stride)
+    if (const auto T = i > 0 ? move(i) : std::nullopt) {
+      waypoints.at(count) = i;
+      wanted.at(count++) = *T;
     }
-    const Eigen::Isometry3d& hand = path.T_base_transfer[static_cast<std::size_t>(i)];
-    const double with_goal = T_new_old ? std::clamp(1 - (1 - at) / kGoalZone, 0.0, 1.0) : 1.0;
-    const Eigen::Isometry3d there =
-        T_new_old ? between(*T_new_old * hand, T_goal * hand, with_goal) : T_goal * hand;
-    wanted.push_back(is_same_start ? between(hand, there, over)
-                                   : between(T_start * hand, there, over));
-  }
-  moved.col(0) = target.start;
-  put_hands(wanted, first, moved);
-  for (Eigen::Index i = 1; i < count - 1; ++i)
-    moved.col(i) = moved.col(i).cwiseMax(lower).cwiseMin(upper);
-  moved.col(count - 1) = target.goal;
-  return moved;
+  put_hands({waypoints.data(), count}, {wanted.data(), count});
 }
 
-void Warper::put_hands(std::span<const Eigen::Isometry3d> wanted, Eigen::Index first,
-                       Eigen::MatrixXd& waypoints) const {
-  const inverse::LaneChain& lanes = solver_.lanes();
+void Warp::put_hands(std::span<const Eigen::Index> waypoints,
+                     std::span<const Eigen::Isometry3d> wanted) {
+  const inverse::LaneChain& lanes = warper_.solver().lanes();
   inverse::LaneBatch batch;
   for (std::size_t begin = 0; begin < wanted.size(); begin += inverse::kLanes) {
     for (int lane = 0; lane < inverse::kLanes; ++lane) {
@@ -129,15 +127,15 @@ void Warper::put_hands(std::span<const Eigen::Isometry3d> wanted, Eigen::Index f
         batch.target[i][lane] = i < 9 ? T(i / 3, i % 3) : T(i - 9, 3) / lanes.length_m;
       for (int j = 0; j < lanes.dof; ++j)
         batch.q[j][lane] =
-            waypoints(j, first + static_cast<Eigen::Index>(at)) * lanes.joints[j].scale +
-            lanes.joints[j].offset;
+            moved_(j, waypoints[at]) * lanes.joints[j].scale + lanes.joints[j].offset;
     }
     for (int i = 0; i < kSteps; ++i)
-      solver_.kernels().step(lanes, inverse::LaneLimits::Hold, batch);
+      warper_.solver().kernels().step(lanes, inverse::LaneLimits::Hold, batch);
     for (std::size_t at = begin; at < std::min(begin + inverse::kLanes, wanted.size()); ++at)
       for (int j = 0; j < lanes.dof; ++j)
-        waypoints(j, first + static_cast<Eigen::Index>(at)) =
-            (batch.q[j][at - begin] - lanes.joints[j].offset) / lanes.joints[j].scale;
+        moved_(j, waypoints[at]) =
+            std::clamp((batch.q[j][at - begin] - lanes.joints[j].offset) / lanes.joints[j].scale,
+                       target_.bounds(0, j), target_.bounds(1, j));
   }
 }
 

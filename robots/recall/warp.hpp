@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "proto/types/recall_library.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/planning_bounds.hpp"
 
 namespace kinship::recall {
 
@@ -43,23 +45,16 @@ class Warper {
  public:
   explicit Warper(const kinematics::Chain& chain);
 
-  /// The path with the query's start and goal: its joints are moved by the offsets of start and
-  /// goal, then two damped steps of inverse kinematics a waypoint put the hand where it was in a
-  /// frame, near the start and the goal where it was with respect to these.
-  /// \param T_new_old  of the frame, in the base link: its pose at the query times the inverse of
-  ///                   its pose when the path was planned; nothing: the goal's motion.
-  /// \return dof x kRecallWaypoints within the bounds, the ends those of the query; checked for
-  ///         nothing else.
-  Eigen::MatrixXd warp(const WarpedPath& path, const WarpTarget& target, const WarpBlend& blend,
-                       const std::optional<Eigen::Isometry3d>& T_new_old) const;
-
-  /// Hand poses along a path, for `warp`.
+  /// Hand poses along a path, for `Warp`.
   WarpedPath posed(Eigen::MatrixXd waypoints) const;
 
   /// Full turns that bring a configuration nearest to another one; 0 for joints that have no more
   /// than a turn of room.
-  Eigen::VectorXd turns(const Eigen::Ref<const Eigen::VectorXd>& from,
-                        const Eigen::Ref<const Eigen::VectorXd>& to) const;
+  double turns(Eigen::Index joint, double from, double to) const {
+    return turning_[static_cast<std::size_t>(joint)]
+               ? planning::kTurn * std::round((to - from) / planning::kTurn)
+               : 0;
+  }
 
   /// The first joint that turns the whole arm about the vertical; -1: none.
   Eigen::Index yaw_joint() const noexcept { return yaw_joint_; }
@@ -67,13 +62,46 @@ class Warper {
   const inverse::Solver& solver() const noexcept { return solver_; }
 
  private:
-  void put_hands(std::span<const Eigen::Isometry3d> wanted, Eigen::Index first,
-                 Eigen::MatrixXd& waypoints) const;
-
   kinematics::Chain chain_;
   inverse::Solver solver_;
   std::vector<bool> turning_;
   Eigen::Index yaw_joint_ = -1;
+};
+
+/// A path with the start and goal of a query, computed waypoint by waypoint: its joints are moved
+/// by the offsets of start and goal, then two damped steps of inverse kinematics a waypoint put the
+/// hand where it was in a frame, near the start and the goal where it was with respect to these. It
+/// keeps within the bounds, and is checked for nothing else.
+class Warp {
+ public:
+  /// Borrows all but the target.
+  /// \param T_new_old  of the frame, in the base link: its pose at the query times the inverse of
+  ///                   its pose when the path was planned; nothing: the goal's motion.
+  Warp(const Warper& warper, const WarpedPath& path, WarpTarget target, const WarpBlend& blend,
+       const std::optional<Eigen::Isometry3d>& T_new_old);
+
+  /// Computes waypoints first, first + stride, ... but for the ends, which are there.
+  void compute(Eigen::Index first, Eigen::Index stride);
+
+  /// dof x kRecallWaypoints: the ends, and what was computed.
+  const Eigen::MatrixXd& waypoints() const noexcept { return moved_; }
+
+ private:
+  /// Moves the joints of a waypoint. \return the pose of the hand to be reached there; nothing: it
+  /// is there.
+  std::optional<Eigen::Isometry3d> move(Eigen::Index waypoint);
+  void put_hands(std::span<const Eigen::Index> waypoints,
+                 std::span<const Eigen::Isometry3d> wanted);
+
+  const Warper& warper_;
+  const WarpedPath& path_;
+  const WarpTarget target_;
+  const WarpBlend& blend_;
+  const std::optional<Eigen::Isometry3d> T_new_old_;
+  Eigen::Isometry3d T_start_, T_goal_;  // motions of the ends, in the base link
+  Eigen::VectorXd turns_, by_start_, by_goal_;
+  bool is_same_start_ = false;
+  Eigen::MatrixXd moved_;
 };
 
 }  // namespace kinship::recall

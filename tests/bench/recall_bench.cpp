@@ -191,8 +191,10 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
         const auto path = run();
         costs.add(static_cast<double>(item.world.checks() - before), thread_cpu_s() - from_s, path);
       };
-      timed(uniform, [&] { return queries.search(item, Guide::None, problem.seed + seed).waypoints; });
-      timed(retreat, [&] { return queries.search(item, Guide::Retreat, problem.seed + seed).waypoints; });
+      timed(uniform,
+            [&] { return queries.search(item, Guide::None, problem.seed + seed).waypoints; });
+      timed(retreat,
+            [&] { return queries.search(item, Guide::Retreat, problem.seed + seed).waypoints; });
       timed(recalled, [&] {
         const double from_s = thread_cpu_s();
         auto summary = queries.recall(item, guide);
@@ -210,22 +212,22 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
     return at < 0 ? Costs::mean(a) / Costs::mean(b) : percentile(a, at) / percentile(b, at);
   };
   char line[600];
-  std::snprintf(line, sizeof line,
-                "%-34s U %6.0f ck %6.2f ms | retreat ck %5.2f t %5.2f | recall ck %5.2f t %5.2f med %5.2f "
-                "p95 %5.2f | hit %3.0f%% (exp %3.0f%%) tries %.1f hit %.3f ms len %.2f/%.2f solved %d/%d | lib %.1f s F %.0f q %zu p %zu m %zu a %zu",
-                name.c_str(), Costs::mean(uniform.checks), 1e3 * Costs::mean(uniform.time_s),
-                ratio(uniform.checks, retreat.checks, -1), ratio(uniform.time_s, retreat.time_s, -1),
-                ratio(uniform.checks, recalled.checks, -1),
-                ratio(uniform.time_s, recalled.time_s, -1),
-                ratio(uniform.time_s, recalled.time_s, 0.5),
-                ratio(uniform.time_s, recalled.time_s, 0.95),
-                100.0 * hits / static_cast<double>(recalled.checks.size()),
-                100.0 * expected / static_cast<double>(recalled.checks.size()),
-                static_cast<double>(tries) / static_cast<double>(recalled.checks.size()),
-                1e3 * hit_s / std::max(hits, 1), Costs::mean(uniform.lengths),
-                Costs::mean(recalled.lengths), recalled.solved, uniform.solved, made_s,
-                library->search_checks, library->queries.size(), library->paths.size(),
-                library->modes.size(), library->anchors.size());
+  std::snprintf(
+      line, sizeof line,
+      "%-34s U %6.0f ck %6.2f ms | retreat ck %5.2f t %5.2f | recall ck %5.2f t %5.2f med %5.2f "
+      "p95 %5.2f | hit %3.0f%% (exp %3.0f%%) tries %.1f hit %.3f ms len %.2f/%.2f solved %d/%d | "
+      "lib %.1f s F %.0f/%.0f q %zu p %zu m %zu a %zu",
+      name.c_str(), Costs::mean(uniform.checks), 1e3 * Costs::mean(uniform.time_s),
+      ratio(uniform.checks, retreat.checks, -1), ratio(uniform.time_s, retreat.time_s, -1),
+      ratio(uniform.checks, recalled.checks, -1), ratio(uniform.time_s, recalled.time_s, -1),
+      ratio(uniform.time_s, recalled.time_s, 0.5), ratio(uniform.time_s, recalled.time_s, 0.95),
+      100.0 * hits / static_cast<double>(recalled.checks.size()),
+      100.0 * expected / static_cast<double>(recalled.checks.size()),
+      static_cast<double>(tries) / static_cast<double>(recalled.checks.size()),
+      1e3 * hit_s / std::max(hits, 1), Costs::mean(uniform.lengths), Costs::mean(recalled.lengths),
+      recalled.solved, uniform.solved, made_s, library->search_checks, library->try_checks,
+      library->queries.size(), library->paths.size(), library->modes.size(),
+      library->anchors.size());
   std::cerr << line << "\n";
 }
 
@@ -254,7 +256,10 @@ int main(int argc, char** argv) {
   for (const experiments::Study* study : experiments::find_studies(studies.front())) {
     std::vector<std::unique_ptr<Robot>> robots;
     for (const experiments::StudyRobot& placed : study->robots) {
-      models::LoadedRobot loaded = experiments::load_study_robot(places::models(), placed.model);
+      models::LoadedRobot loaded =
+          models::load_robot(
+              {.source = test::source_dir() + "/robots/models" + ("/" + placed.model)})
+              .value_or_throw();
       guided::PlannedRobot planned(loaded.chain, loaded.shapes);
       auto draw = study->make_instances(loaded, placed);
       robots.push_back(
