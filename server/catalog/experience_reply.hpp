@@ -14,7 +14,7 @@ FetchDone with_experience(ExperienceIndex& experience_index, const FetchRequest&
                           FetchDone done);
 
 /// Bytes of a message left for an experience beside the rest of a reply: a distribution, and a
-/// rehearsal, which takes 2.5 KB at most.
+/// rehearsal, which takes 3 KB at most.
 std::size_t room_for_experience(const FetchReply& reply);
 
 }  // namespace kinship::catalog

@@ -333,7 +333,7 @@ Rehearsal every_rehearsal() {
   rehearsal.queries = next.count();
   rehearsal.left_out = next.count();
   rehearsal.processor_time_s = next.real();
-  for (const Guide guide : {Guide::Retreat, Guide::All}) {
+  for (const Guide guide : {Guide::Retreat, Guide::RetreatWaysMixture}) {
     GuideCost cost{.guide = guide};
     cost.solved = next.count();
     cost.plans = next.count();

@@ -205,15 +205,15 @@ class RandomValues {
 
   Rehearsal rehearsal() {
     Rehearsal rehearsal;
-    rehearsal.guide = static_cast<Guide>(below(8));
+    rehearsal.guide = static_cast<Guide>(below(16));
     rehearsal.is_complete = coin();
     rehearsal.queries = count();
     rehearsal.left_out = count();
     rehearsal.processor_time_s = share();
-    for (int i = below(9); i > 0; --i) {
+    for (int i = below(17); i > 0; --i) {
       const std::uint64_t plans = count();
       rehearsal.costs.push_back(
-          {static_cast<Guide>(below(8)), plans, plans / 2, 1000 * share(), 1000 * share()});
+          {static_cast<Guide>(below(16)), plans, plans / 2, 1000 * share(), 1000 * share()});
     }
     rehearsal.message = name(100);
     return rehearsal;
