@@ -40,7 +40,8 @@ std::size_t room_for_experience(const FetchReply& reply) {
   constexpr std::size_t kTexts = 16 * 1024, kSource = 384, kRecent = 32, kSelected = 32;
   // Sixteen costs of up to 48 bytes, a message of up to 2048, and the rest.
   constexpr std::size_t kRehearsal = 3072;
-  std::size_t used = kTexts + (reply.rehearsal ? kRehearsal : 0);
+  std::size_t used = kTexts + (reply.rehearsal ? kRehearsal : 0) +
+                     (reply.recall ? recall_bytes(*reply.recall) : 0);
   if (reply.distribution) {
     const Distribution& distribution = *reply.distribution;
     used += kSource * distribution.sources.size() + kRecent * distribution.advice.recent.size() +
