@@ -89,7 +89,7 @@ const std::vector<Case> kCases = {
      "recall: query 1: goal: 4 joints are not 3"},
     {[](auto& library) { library.queries[1].start[2] = kNan; },
      "recall: query 1: start: not finite"},
-    {[](auto& library) { library.queries[0].goal[0] = 1 / 0.0; },
+    {[](auto& library) { library.queries[0].goal[0] = std::numeric_limits<double>::infinity(); },
      "recall: query 0: goal: not finite"},
     {[](auto& library) { library.queries[1].T_task_base.translation().x() = 1001; },
      "recall: query 1: T_task_base: pose: coordinate 1001 m exceeds 1000 m"},
