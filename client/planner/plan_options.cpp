@@ -153,11 +153,13 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
                  "part of the queries planned uniformly as control (default: chosen query by query "
                  "with --guidance auto, 0 with always)")
       ->check(between(0.0, 1.0));
-  app.add_option("--guide", raw.guide,
-                 "what guides a query: retreat, ways (stored ways of the hand, moved onto it), "
-                 "mixture (samples of the distribution), any of them joined by +, or none; auto: "
-                 "what the server found best by planning recorded queries again, else all three "
-                 "(default: auto, and mixture with a profile that begins with paper)")
+  app.add_option(
+         "--guide", raw.guide,
+         "what guides a query: recall (stored paths, tried whole), retreat, ways (stored ways "
+         "of the hand, moved onto it), mixture (samples of the distribution), any of them "
+         "joined by + in this order, or none; auto: what the server found best by planning "
+         "recorded queries again, else all "
+         "(default: auto, and mixture with a profile that begins with paper)")
       ->check(CLI::IsMember(guide_words()));
   app.add_flag(
       "--rehearsed", options.rehearsed,

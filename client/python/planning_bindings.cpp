@@ -255,13 +255,13 @@ void bind_guided(py::class_<Plan>& plan) {
       .def_property_readonly("gate_fired", result(&ProblemResult::gate_fired),
                              "Whether the query is far from all that the mixture knows.")
       .def_property_readonly("guide", word(&ProblemResult::guide),
-                             "What of retreat, ways and mixture guided it.")
+                             "What of recall, retreat, ways and mixture guided it.")
       .def_property_readonly("track_share", result(&ProblemResult::track_share),
                              "Of samples around stored ways, a part of share.")
       .def_property_readonly("tracks_followed", result(&ProblemResult::tracks_followed),
                              "Stored ways that were tried.")
       .def_property_readonly("found_by", word(&ProblemResult::found_by),
-                             "'straight_line', 'track', 'search' or 'nothing'.")
+                             "'recalled', 'straight_line', 'track', 'search' or 'nothing'.")
       .def_property_readonly("guidance_reason", result(&ProblemResult::guidance_reason),
                              "Why it was not guided, or less than wanted.")
       .def("attempt", attempt_for, py::arg("task"), py::arg("machine") = "",

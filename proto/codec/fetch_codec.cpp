@@ -3,6 +3,7 @@
 #include "proto/codec/distribution_codec.hpp"
 #include "proto/codec/experience_codec.hpp"
 #include "proto/codec/fields.hpp"
+#include "proto/codec/recall_codec.hpp"
 #include "proto/codec/rehearsal_codec.hpp"
 #include "proto/codec/selection_codec.hpp"
 
@@ -24,6 +25,10 @@ template <>
 struct WireMember<std::optional<Rehearsal>> {
   using Type = decltype(kinship_wire_FetchReply::rehearsal);
 };
+template <>
+struct WireMember<std::optional<RecallLibrary>> {
+  using Type = decltype(kinship_wire_FetchReply::recall);
+};
 
 namespace {
 
@@ -41,6 +46,8 @@ std::optional<Error> validate(const FetchReply& reply) {
     rules.name(codec::validate(*reply.experience));
   if (reply.rehearsal)
     rules.name(codec::validate(*reply.rehearsal));
+  if (reply.recall)
+    rules.name(kinship::validate(*reply.recall));
   return rules.broken();
 }
 

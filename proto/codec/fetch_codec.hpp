@@ -17,7 +17,8 @@ std::optional<Error> validate(const Rehearsal& rehearsal);
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request);
 Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire);
 
-/// \return TooLarge for a mixture, or an experience with it, that does not fit into a sample.
+/// \return TooLarge for a mixture, with an experience and a library, that does not fit into a
+/// sample.
 Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchReply& reply);
 Result<FetchReply> decode(const kinship_wire_FetchReply& wire);
 

@@ -24,7 +24,8 @@ enum class FoundBy {
   Nothing,       ///< no path, or source unknown
   StraightLine,  ///< before any sample
   Track,         ///< a stored pose path, moved onto the query
-  Search         ///< samples
+  Search,        ///< samples
+  Recalled       ///< a stored path, moved onto the query whole, before any sample
 };
 
 /// How the samples of an attempt were chosen: by guidance, uniformly on purpose to compare

@@ -16,6 +16,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/recall_library.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/selection.hpp"
@@ -127,6 +128,7 @@ struct FetchRequest {
   std::uint64_t known_experience = 0;  ///< the revision that the client has: not sent again
   /// The reply waits, until the deadline at most, for a complete rehearsal. Needs experience_bytes.
   bool rehearsed = false;
+  std::uint64_t known_recall = 0;  ///< revision of the library that the client has: not sent again
 };
 
 template <>
@@ -141,7 +143,8 @@ inline constexpr std::tuple kFieldsOf<FetchRequest>{
     Field{"follow_s", &FetchRequest::follow, between(0, kMaxFollow_s)},
     Field{"experience_bytes", &FetchRequest::experience_bytes, between(0, kMaxExperienceBytes)},
     Field{"known_experience", &FetchRequest::known_experience},
-    Field{"rehearsed", &FetchRequest::rehearsed}};
+    Field{"rehearsed", &FetchRequest::rehearsed},
+    Field{"known_recall", &FetchRequest::known_recall}};
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
 
@@ -155,6 +158,8 @@ struct FetchReply {
   /// Of this robot at its placement; missing if no experience was requested, or there is no
   /// rehearsal yet.
   std::optional<Rehearsal> rehearsal = {};
+  /// Of this robot; missing if no experience was requested, it is known already, or there is none.
+  std::optional<RecallLibrary> recall = {};
 };
 
 template <>
@@ -165,7 +170,8 @@ inline constexpr std::tuple kFieldsOf<FetchReply>{
           between(0, std::numeric_limits<std::uint32_t>::max())},
     Field{"message", &FetchReply::message, {.limit = kMaxMessageBytes}},
     Field{"experience", &FetchReply::experience},
-    Field{"rehearsal", &FetchReply::rehearsal}};
+    Field{"rehearsal", &FetchReply::rehearsal},
+    Field{"recall", &FetchReply::recall}};
 
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;

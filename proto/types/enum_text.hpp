@@ -37,15 +37,28 @@ struct Words<SamplingMode> {
 template <>
 struct Words<FoundBy> {
   static constexpr std::string_view kWhat = "found_by";
-  static constexpr std::array<std::string_view, 4> kWords = {"nothing", "straight_line", "track",
-                                                             "search"};
+  static constexpr std::array<std::string_view, 5> kWords = {"nothing", "straight_line", "track",
+                                                             "search", "recalled"};
 };
 template <>
 struct Words<Guide> {
   static constexpr std::string_view kWhat = "guide";
-  static constexpr std::array<std::string_view, 8> kWords = {
-      "none",    "retreat",         "ways",         "retreat+ways",
-      "mixture", "retreat+mixture", "ways+mixture", "retreat+ways+mixture"};
+  static constexpr std::array<std::string_view, 16> kWords = {"none",
+                                                              "retreat",
+                                                              "ways",
+                                                              "retreat+ways",
+                                                              "mixture",
+                                                              "retreat+mixture",
+                                                              "ways+mixture",
+                                                              "retreat+ways+mixture",
+                                                              "recall",
+                                                              "recall+retreat",
+                                                              "recall+ways",
+                                                              "recall+retreat+ways",
+                                                              "recall+mixture",
+                                                              "recall+retreat+mixture",
+                                                              "recall+ways+mixture",
+                                                              "recall+retreat+ways+mixture"};
 };
 template <>
 struct Words<DistributionState> {

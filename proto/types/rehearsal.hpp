@@ -11,9 +11,9 @@
 
 namespace kinship {
 
-/// Guide of a query: any of three, or none. The retreat backs out along the palm first and needs no
-/// experience; ways are stored pose paths, moved onto the query; the mixture is the distribution's.
-/// As bits: 1, 2, 4.
+/// Guide of a query: any of four, or none. The retreat backs out along the palm first and needs no
+/// experience; ways are stored pose paths, moved onto the query; the mixture is the distribution's;
+/// recall tries whole stored paths before the search, which the others guide. As bits: 1, 2, 4, 8.
 enum class Guide {
   None,
   Retreat,
@@ -22,12 +22,29 @@ enum class Guide {
   Mixture,
   RetreatMixture,
   WaysMixture,
+  RetreatWaysMixture,
+  Recall,
+  RecallRetreat,
+  RecallWays,
+  RecallRetreatWays,
+  RecallMixture,
+  RecallRetreatMixture,
+  RecallWaysMixture,
   All,
 };
 
 constexpr bool has_retreat(Guide guide) { return (static_cast<unsigned>(guide) & 1U) != 0; }
 constexpr bool has_ways(Guide guide) { return (static_cast<unsigned>(guide) & 2U) != 0; }
 constexpr bool has_mixture(Guide guide) { return (static_cast<unsigned>(guide) & 4U) != 0; }
+constexpr bool has_recall(Guide guide) { return (static_cast<unsigned>(guide) & 8U) != 0; }
+
+constexpr Guide with_recall(Guide guide) {
+  return static_cast<Guide>(static_cast<unsigned>(guide) | 8U);
+}
+/// The guide of the search alone.
+constexpr Guide without_recall(Guide guide) {
+  return static_cast<Guide>(static_cast<unsigned>(guide) & 7U);
+}
 
 /// Cost of planning recorded queries again with one guide.
 struct GuideCost {
@@ -47,7 +64,7 @@ inline constexpr std::tuple kFieldsOf<GuideCost>{
     Field{"mean_checks", &GuideCost::mean_checks, {.min = 0}},
     Field{"median_checks", &GuideCost::median_checks, {.min = 0}}};
 
-inline constexpr std::size_t kMaxGuideCosts = 8;
+inline constexpr std::size_t kMaxGuideCosts = 16;
 
 /// Result of planning a task's recorded queries again at the server: for one robot at one
 /// placement, with the guidance it would get, each query without the path that once answered it.

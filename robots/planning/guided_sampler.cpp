@@ -61,9 +61,10 @@ struct Parts {
   double mixture = 0;
 };
 
+/// Recall takes no samples.
 Parts parts_of(Guide guide) {
   constexpr std::size_t kAllGoals = 40, kNearestGoals = 3;
-  switch (guide) {
+  switch (without_recall(guide)) {
     case Guide::None:
       break;
     case Guide::Retreat:
@@ -78,8 +79,10 @@ Parts parts_of(Guide guide) {
       return {kAllGoals, 0.3, 0.3};
     case Guide::WaysMixture:
       return {0, 0.1, 0.8};
-    case Guide::All:
+    case Guide::RetreatWaysMixture:
       return {kNearestGoals, 0.5, 0.2};
+    default:
+      break;
   }
   return {};
 }

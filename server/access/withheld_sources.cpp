@@ -43,6 +43,13 @@ class Withholding {
         path.source = {};
   }
 
+  /// What the server planned for the robot was recorded by others.
+  static void apply(RecallLibrary& library) {
+    for (RecallQuery& query : library.queries)
+      if (query.is_synthetic)
+        query.report = {};
+  }
+
  private:
   const Caller& caller_;
   std::set<Digest> own_;
@@ -69,6 +76,8 @@ void withhold_sources(const Caller& caller, const Digest& fetched_for, FetchRepl
     withholding.apply(reply.rehearsal->message);
   if (reply.experience)
     withholding.apply(*reply.experience);
+  if (reply.recall)
+    Withholding::apply(*reply.recall);
 }
 
 }  // namespace kinship::access

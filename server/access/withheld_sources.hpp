@@ -16,7 +16,8 @@ bool withholds_sources(const Caller& caller) noexcept;
 /// digests, and texts that quote a label. The numbers of their contributions stay.
 void withhold_sources(const Caller& caller, Distribution& distribution);
 
-/// The same for a reply to a fetch, with its message and its pose paths.
+/// The same for a reply to a fetch, with its message and its pose paths. Queries of its library
+/// that others recorded lose the UUID of their report; what the server planned for them stays.
 void withhold_sources(const Caller& caller, const Digest& fetched_for, FetchReply& reply);
 
 }  // namespace kinship::access

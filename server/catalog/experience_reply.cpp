@@ -38,9 +38,10 @@ void send(const FetchReply& reply, const SharedChoice& choice, std::uint64_t kno
 std::size_t room_for_experience(const FetchReply& reply) {
   // Upper bounds of the bytes in a message of a distribution's members, with its texts.
   constexpr std::size_t kTexts = 16 * 1024, kSource = 384, kRecent = 32, kSelected = 32;
-  // Eight costs of 40 bytes, a message of up to 2048, and the rest.
-  constexpr std::size_t kRehearsal = 2560;
-  std::size_t used = kTexts + (reply.rehearsal ? kRehearsal : 0);
+  // Sixteen costs of up to 48 bytes, a message of up to 2048, and the rest.
+  constexpr std::size_t kRehearsal = 3072;
+  std::size_t used = kTexts + (reply.rehearsal ? kRehearsal : 0) +
+                     (reply.recall ? recall_bytes(*reply.recall) : 0);
   if (reply.distribution) {
     const Distribution& distribution = *reply.distribution;
     used += kSource * distribution.sources.size() + kRecent * distribution.advice.recent.size() +

@@ -13,8 +13,8 @@ namespace kinship::catalog {
 FetchDone with_experience(ExperienceIndex& experience_index, const FetchRequest& request,
                           FetchDone done);
 
-/// Bytes of a message left for an experience beside the rest of a reply: a distribution, and a
-/// rehearsal, which takes 2.5 KB at most.
+/// Bytes of a message left for an experience beside the rest of a reply: a distribution, a
+/// rehearsal, which takes 3 KB at most, and a library of paths to recall.
 std::size_t room_for_experience(const FetchReply& reply);
 
 }  // namespace kinship::catalog

@@ -25,9 +25,9 @@ double median(std::vector<double> values) {
 }
 
 /// In the order of their preparation before the first sample: the mixture costs most.
-constexpr std::array<Guide, kMaxGuideCosts> kByEffort = {
+constexpr std::array kByEffort = {
     Guide::None,    Guide::Retreat,        Guide::Ways,        Guide::RetreatWays,
-    Guide::Mixture, Guide::RetreatMixture, Guide::WaysMixture, Guide::All};
+    Guide::Mixture, Guide::RetreatMixture, Guide::WaysMixture, Guide::RetreatWaysMixture};
 
 /// \param costs  by effort, at least one.
 Guide cheapest(const std::vector<GuideCost>& costs) {

@@ -20,6 +20,8 @@ std::size_t reply_bytes(const FetchReply& reply) {
   if (reply.experience)
     for (const auto& path : reply.experience->paths)
       bytes += kPathBytes + kPoseBytes * path.poses.size();
+  if (reply.recall)
+    bytes += recall_bytes(*reply.recall);
   return bytes;
 }
 

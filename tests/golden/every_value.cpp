@@ -311,6 +311,7 @@ FetchRequest every_fetch_request() {
   request.experience_bytes = static_cast<std::uint32_t>(next.count());
   request.known_experience = next.count();
   request.rehearsed = true;
+  request.known_recall = next.count();
   return request;
 }
 
@@ -333,7 +334,7 @@ Rehearsal every_rehearsal() {
   rehearsal.queries = next.count();
   rehearsal.left_out = next.count();
   rehearsal.processor_time_s = next.real();
-  for (const Guide guide : {Guide::Retreat, Guide::All}) {
+  for (const Guide guide : {Guide::Retreat, Guide::RetreatWaysMixture}) {
     GuideCost cost{.guide = guide};
     cost.solved = next.count();
     cost.plans = next.count();
@@ -345,6 +346,27 @@ Rehearsal every_rehearsal() {
   return rehearsal;
 }
 
+RecallLibrary every_library() {
+  constexpr Eigen::Index kDof = 2;
+  Distinct next(3300);
+  RecallLibrary library;
+  library.revision = next.count();
+  library.search_checks = next.real();
+  library.anchors = {next.name("anchor"), next.name("anchor")};
+  for (const bool is_synthetic : {false, true})
+    library.queries.push_back({.report = next.id<Uuid>(),
+                               .is_synthetic = is_synthetic,
+                               .T_task_base = next.pose(),
+                               .start = next.matrix(kDof, 1),
+                               .goal = next.matrix(kDof, 1),
+                               .T_task_anchors = {next.pose(), next.pose()}});
+  for (const std::uint32_t query : {1U, 0U, 1U})
+    library.paths.push_back({query, next.matrix(kDof, kRecallWaypoints)});
+  library.modes = {{3, kGoalFrame}, {1, kFirstAnchor + 1}};
+  library.solves = {0b1010'0110, 0b0101};
+  return library;
+}
+
 FetchReply every_fetch_reply() {
   Distinct next(2800);
   FetchReply reply;
@@ -354,6 +376,7 @@ FetchReply every_fetch_reply() {
   reply.message = next.text("message");
   reply.experience = every_experience();
   reply.rehearsal = every_rehearsal();
+  reply.recall = every_library();
   return reply;
 }
 

@@ -35,6 +35,14 @@ class Vandal {
   void spoil(kinship_wire_GuideCost& w) {
     one_of(w.guide, w.solved, w.mean_checks, w.median_checks);
   }
+  void spoil(kinship_wire_RecallLibrary& w) {
+    one_of(w.search_checks, w.anchors, w.queries, w.queries, w.paths, w.paths, w.modes, w.solves);
+  }
+  void spoil(kinship_wire_RecallQuery& w) {
+    one_of(w.T_task_base, w.start, w.goal, w.T_task_anchors);
+  }
+  void spoil(kinship_wire_RecallPath& w) { one_of(w.query, w.waypoints); }
+  void spoil(kinship_wire_WarpMode& w) { one_of(w.blend, w.frame); }
   void spoil(kinship_wire_PlanningRecord& w) {
     one_of(w.outcome, w.planner, w.planner_options, w.planning_time_s, w.sampling_mode, w.share,
            w.distribution_id);
@@ -69,9 +77,10 @@ class Vandal {
       if (values_.below(4) == 0)
         *c = static_cast<char>(values_.below(256));
   }
-  void spoil(double& number) {
-    constexpr double kBad[] = {std::numeric_limits<double>::quiet_NaN(), -1, 1e300,
-                               -std::numeric_limits<double>::infinity(), 2};
+  template <std::floating_point Number>
+  void spoil(Number& number) {
+    using Limits = std::numeric_limits<Number>;
+    constexpr Number kBad[] = {Limits::quiet_NaN(), -1, Limits::max(), -Limits::infinity(), 2};
     number = kBad[values_.below(5)];
   }
   template <std::integral Number>
@@ -169,6 +178,25 @@ TEST(CodecGarbage, SpoiledRehearsalIsRefusedOrKeepsTheRules) {
     const auto read = decode(message.wire);
     if (read)
       EXPECT_FALSE(validate(*read->rehearsal));
+    else
+      ++refused;
+  }
+  EXPECT_GT(refused, 3 * kCases);
+}
+
+TEST(CodecGarbage, SpoiledLibraryIsRefusedOrKeepsTheRules) {
+  test::RandomValues values(kSeed);
+  Vandal vandal(values);
+  int refused = 0;
+  for (int i = 0; i < 10 * kCases; ++i) {
+    FetchReply written;
+    written.status = FetchStatus::Pending;
+    written.recall = values.recall_library(1 + values.below(8));
+    auto message = encode(kHead, written).value_or_throw();
+    vandal.spoil(message.wire.recall._buffer[0]);
+    const auto read = decode(message.wire);
+    if (read)
+      EXPECT_FALSE(validate(*read->recall));
     else
       ++refused;
   }

@@ -130,10 +130,12 @@ TEST(CodecRoundTrip, FetchRequestComesBack) {
     written.follow = std::chrono::seconds(values.below(86'401));
     written.experience_bytes = static_cast<std::uint32_t>(1 + values.below(kMaxExperienceBytes));
     written.rehearsed = values.coin();
+    written.known_recall = values.count();
     const auto read = decode(encode(kHead, written).value_or_throw().wire).value_or_throw();
     EXPECT_EQ(read.selection, written.selection);
     EXPECT_EQ(read.follow, written.follow);
     EXPECT_EQ(read.rehearsed, written.rehearsed);
+    EXPECT_EQ(read.known_recall, written.known_recall);
     EXPECT_EQ(read.deadline, written.deadline);
     EXPECT_EQ(read.task + read.profile, written.task + written.profile);
     EXPECT_EQ(read.minimum_generation, written.minimum_generation);

@@ -10,6 +10,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/publications.hpp"
+#include "proto/types/recall_library.hpp"
 #include "proto/types/robot_description.hpp"
 
 namespace kinship::test {
@@ -205,18 +206,50 @@ class RandomValues {
 
   Rehearsal rehearsal() {
     Rehearsal rehearsal;
-    rehearsal.guide = static_cast<Guide>(below(8));
+    rehearsal.guide = static_cast<Guide>(below(16));
     rehearsal.is_complete = coin();
     rehearsal.queries = count();
     rehearsal.left_out = count();
     rehearsal.processor_time_s = share();
-    for (int i = below(9); i > 0; --i) {
+    for (int i = below(17); i > 0; --i) {
       const std::uint64_t plans = count();
       rehearsal.costs.push_back(
-          {static_cast<Guide>(below(8)), plans, plans / 2, 1000 * share(), 1000 * share()});
+          {static_cast<Guide>(below(16)), plans, plans / 2, 1000 * share(), 1000 * share()});
     }
     rehearsal.message = name(100);
     return rehearsal;
+  }
+
+  /// Of at least one query, path and mode; waypoints that f32 can hold.
+  RecallLibrary recall_library(Eigen::Index dof, int max_paths = 5) {
+    RecallLibrary library;
+    library.revision = 1 + count() / 2;
+    library.search_checks = 1000 * share();
+    for (int i = below(3); i > 0; --i)
+      library.anchors.push_back(name(100));
+    for (int i = 1 + below(5); i > 0; --i) {
+      RecallQuery& query = library.queries.emplace_back();
+      query.report = Uuid::random();
+      query.is_synthetic = coin();
+      query.T_task_base = pose();
+      query.start = matrix(dof, 1);
+      query.goal = matrix(dof, 1);
+      for (std::size_t anchor = 0; anchor < library.anchors.size(); ++anchor)
+        query.T_task_anchors.push_back(pose());
+    }
+    const auto queries = static_cast<int>(library.queries.size());
+    for (int i = 1 + below(max_paths); i > 0; --i)
+      library.paths.push_back({static_cast<std::uint32_t>(below(queries)),
+                               matrix(dof, kRecallWaypoints).cast<float>().cast<double>()});
+    const int frames = 2 + static_cast<int>(library.anchors.size());
+    for (int i = 1 + below(4); i > 0; --i)
+      library.modes.push_back({static_cast<std::uint32_t>(below(kMaxWarpBlends)),
+                               static_cast<std::uint32_t>(below(frames))});
+    library.solves.resize(
+        (library.queries.size() * library.paths.size() * library.modes.size() + 7) / 8);
+    for (std::uint8_t& bits : library.solves)
+      bits = static_cast<std::uint8_t>(below(256));
+    return library;
   }
 
   Announcement announcement() {

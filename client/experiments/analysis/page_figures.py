@@ -30,7 +30,7 @@ def page_figures(uniform: Sequence[Result], guided: Sequence[Result], compared: 
 
 def _bits(guide_and_count: tuple[str, int]) -> int:
     """Of the guide, as the wire has them."""
-    return sum({"retreat": 1, "ways": 2, "mixture": 4}.get(part, 0) for part in guide_and_count[0].split("+"))
+    return sum({"retreat": 1, "ways": 2, "mixture": 4, "recall": 8}.get(part, 0) for part in guide_and_count[0].split("+"))
 
 
 def _count_cheaper(uniform: Sequence[Result], guided: Sequence[Result]) -> int:

@@ -20,11 +20,12 @@
 
   /// What guided the guided queries: not always the distribution.
   function guidesInWords() {
-    const words = {retreat: "backing the hand out of its goal along the palm", ways: "recorded ways of the hand, moved onto each query",
+    const words = {recall: "whole recorded paths, moved onto each query",
+                   retreat: "backing the hand out of its goal along the palm", ways: "recorded ways of the hand, moved onto each query",
                    mixture: "samples from the distribution"};
     const parts = (guide) => guide.split("+").map((part) => words[part] || "nothing");
     const all = total(data.guides.map((each) => each.queries));
-    return `Three things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what costs ` +
+    return `Four things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what costs ` +
       `this robot the fewest checks; here that was ` +
       data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${several(all, "query").replace(/ys$/, "ies")})`).join("; ") + ".";
   }

@@ -55,16 +55,19 @@ TEST(RehearsalCodec, ItComesBackAndNoneIsNone) {
   EXPECT_EQ(decode(message.wire).value_or_throw().rehearsal, Rehearsal{});
 }
 
-TEST(RehearsalCodec, ThereAreEightGuides) {
+TEST(RehearsalCodec, ThereAreSixteenGuides) {
   auto message = encode({}, reply_with(found())).value_or_throw();
   kinship_wire_Rehearsal& wire = message.wire.rehearsal._buffer[0];
-  wire.guide = 8;
-  EXPECT_EQ(decode(message.wire).error().message, "guide of a rehearsal: 8 is not between 0 and 7");
-  wire.guide = 7;
-  EXPECT_EQ(decode(message.wire).value_or_throw().rehearsal->guide, Guide::All);
-  wire.costs._buffer[1].guide = 8;
+  wire.guide = 16;
   EXPECT_EQ(decode(message.wire).error().message,
-            "guide of costs of a rehearsal: 8 is not between 0 and 7");
+            "guide of a rehearsal: 16 is not between 0 and 15");
+  wire.guide = 7;
+  EXPECT_EQ(decode(message.wire).value_or_throw().rehearsal->guide, Guide::RetreatWaysMixture);
+  wire.guide = 15;
+  EXPECT_EQ(decode(message.wire).value_or_throw().rehearsal->guide, Guide::All);
+  wire.costs._buffer[1].guide = 16;
+  EXPECT_EQ(decode(message.wire).error().message,
+            "guide of costs of a rehearsal: 16 is not between 0 and 15");
 }
 
 TEST(RehearsalCodec, NumbersMustBePossible) {
@@ -86,13 +89,13 @@ TEST(RehearsalCodec, NumbersMustBePossible) {
 TEST(RehearsalCodec, ListsAndTextsAreBounded) {
   Rehearsal rehearsal = found();
   rehearsal.costs.resize(kMaxGuideCosts + 1);
-  EXPECT_EQ(fault_of(rehearsal), "costs of a rehearsal: 9 exceeds 8");
+  EXPECT_EQ(fault_of(rehearsal), "costs of a rehearsal: 17 exceeds 16");
   rehearsal = found();
   rehearsal.message = std::string(kMaxMessageBytes + 1, 'x');
   EXPECT_EQ(fault_of(rehearsal), "message of a rehearsal: 2049 bytes exceed 2048");
   auto message = encode({}, reply_with(found())).value_or_throw();
-  message.wire.rehearsal._buffer[0].costs._length = 9;
-  EXPECT_EQ(decode(message.wire).error().message, "costs of a rehearsal: 9 exceeds 8");
+  message.wire.rehearsal._buffer[0].costs._length = 17;
+  EXPECT_EQ(decode(message.wire).error().message, "costs of a rehearsal: 17 exceeds 16");
 }
 
 }  // namespace

@@ -25,6 +25,28 @@ TEST(EnumText, EveryWordIsReadBack) {
     EXPECT_EQ(parse_word<DistributionState>(to_text(state)).value(), state);
 }
 
+TEST(EnumText, AGuideIsTheSumOfItsParts) {
+  for (int index = 0; index <= static_cast<int>(Guide::All); ++index) {
+    const auto guide = static_cast<Guide>(index);
+    std::string parts;
+    const auto add = [&](bool has, const std::string& part) {
+      if (has)
+        parts += (parts.empty() ? "" : "+") + part;
+    };
+    add(has_recall(guide), "recall");
+    add(has_retreat(guide), "retreat");
+    add(has_ways(guide), "ways");
+    add(has_mixture(guide), "mixture");
+    EXPECT_EQ(to_text(guide), parts.empty() ? "none" : parts);
+    EXPECT_EQ(parse_word<Guide>(to_text(guide)).value(), guide);
+    EXPECT_EQ(has_recall(guide) ? with_recall(without_recall(guide)) : without_recall(guide),
+              guide);
+  }
+  EXPECT_EQ(kLastOf<Guide>, Guide::All);
+  EXPECT_EQ(with_recall(Guide::Ways), Guide::RecallWays);
+  EXPECT_EQ(without_recall(Guide::All), Guide::RetreatWaysMixture);
+}
+
 TEST(EnumText, RefusalListsTheAllowedWords) {
   const auto outcome = parse_word<Outcome>("Solved");
   ASSERT_FALSE(outcome);

@@ -82,6 +82,20 @@ TEST(WithheldSources, WaysAloneAreOfItsRobotOrOfAnother) {
   EXPECT_EQ(reply.experience->paths[1].source, Digest());
 }
 
+TEST(WithheldSources, QueriesThatOthersRecordedLoseTheirReport) {
+  FetchReply reply = reply_of_three();
+  reply.recall.emplace().queries.resize(2);
+  for (RecallQuery& query : reply.recall->queries)
+    query.report = Uuid::random();
+  reply.recall->queries[1].is_synthetic = true;
+  const RecallLibrary whole = *reply.recall;
+  withhold_sources(for_robots({}), digest_of(1), reply);
+  EXPECT_EQ(reply.recall->queries[1].report, whole.queries[1].report);
+  withhold_sources(for_robots({"pupil"}), digest_of(1), reply);
+  EXPECT_EQ(reply.recall->queries[0].report, whole.queries[0].report);
+  EXPECT_EQ(reply.recall->queries[1].report, Uuid());
+}
+
 TEST(WithheldSources, OnlyCertificatesForSomeRobotsHaveLess) {
   EXPECT_TRUE(withholds_sources(for_robots({"pupil"})));
   EXPECT_FALSE(withholds_sources(for_robots({})));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/catalog/experience_reply.hpp"
+#include "tests/support/random_values.hpp"
 #include "tests/unit/server/service/catalog_fixture.hpp"
 
 namespace kinship::service {
@@ -144,7 +145,10 @@ TEST_F(ExperienceFetch, LeavesRoomForTheRestOfItsMessage) {
   reply.rehearsal->message = std::string(kMaxMessageBytes, 'w');
   const std::size_t taken = without - catalog::room_for_experience(reply);
   EXPECT_GE(taken, kMaxMessageBytes + kMaxGuideCosts * sizeof(GuideCost));
-  EXPECT_LT(taken, 3'000U);
+  EXPECT_LT(taken, 3'500U);
+  const std::size_t beside = catalog::room_for_experience(reply);
+  reply.recall = test::RandomValues(32).recall_library(7);
+  EXPECT_EQ(beside - catalog::room_for_experience(reply), recall_bytes(*reply.recall));
 }
 
 TEST_F(ExperienceFetch, IsGivenToManyWhoAskWhileReportsComeIn) {
