@@ -94,29 +94,37 @@ static void read_part(const kinship_wire_WarpMode& wire, Reader& /*reader*/, War
 void write_part(const RecallLibrary& library, Arena& arena, kinship_wire_RecallLibrary& wire) {
   wire.revision = library.revision;
   wire.search_checks = library.search_checks;
+  wire.try_checks = library.try_checks;
   write_value(library.anchors, {}, arena, wire.anchors);
   write_value(library.queries, {}, arena, wire.queries);
   write_value(library.paths, {}, arena, wire.paths);
   write_value(library.modes, {}, arena, wire.modes);
   write_value(library.solves, {}, arena, wire.solves);
+  write_value(library.reaches, {}, arena, wire.reaches);
 }
 
 void read_part(const kinship_wire_RecallLibrary& wire, Reader& reader, RecallLibrary& library) {
   constexpr std::size_t kMaxSolves = kMaxRecallQueries * kMaxRecallPaths * kMaxWarpModes / 8;
-  const auto solves = elements(wire.solves);
   const auto read = [&reader]<typename T>(const char* name, const auto& member, std::size_t limit,
                                           std::vector<T>& values) {
     values = read_value<std::vector<T>>({name}, member, {.limit = limit}, reader);
   };
   library.revision = wire.revision;
   library.search_checks = wire.search_checks;
+  library.try_checks = wire.try_checks;
   read("recall: anchors", wire.anchors, kMaxRecallAnchors, library.anchors);
   read("recall: queries", wire.queries, kMaxRecallQueries, library.queries);
   read("recall: paths", wire.paths, kMaxRecallPaths, library.paths);
   read("recall: modes", wire.modes, kMaxWarpModes, library.modes);
-  reader.rules.at_most("recall: solves", solves.size(), kMaxSolves);
-  if (!reader.rules.broken())
-    library.solves.assign(solves.begin(), solves.end());
+  const auto read_bits = [&reader](const char* name, const auto& member,
+                                   std::vector<std::uint8_t>& bits) {
+    const auto bytes = elements(member);
+    reader.rules.at_most(name, bytes.size(), kMaxSolves);
+    if (!reader.rules.broken())
+      bits.assign(bytes.begin(), bytes.end());
+  };
+  read_bits("recall: solves", wire.solves, library.solves);
+  read_bits("recall: reaches", wire.reaches, library.reaches);
 }
 
 }  // namespace kinship::codec

@@ -18,6 +18,7 @@ std::string name_of(const char* what, std::size_t index) {
 void check_counts(const RecallLibrary& library, Rules& rules) {
   rules.that(library.revision != 0, "recall: revision 0")
       .not_negative("recall: search_checks", library.search_checks)
+      .not_negative("recall: try_checks", library.try_checks)
       .at_most("recall: anchors", library.anchors.size(), kMaxRecallAnchors)
       .at_most("recall: queries", library.queries.size(), kMaxRecallQueries)
       .at_most("recall: paths", library.paths.size(), kMaxRecallPaths)
@@ -26,9 +27,10 @@ void check_counts(const RecallLibrary& library, Rules& rules) {
     rules.not_empty("recall: anchor", anchor).text("recall: anchor", anchor, kMaxLinkNameBytes);
   const std::size_t bits = library.queries.size() * library.paths.size() * library.modes.size();
   const std::size_t bytes = (bits + kBitsOfByte - 1) / kBitsOfByte;
-  rules.that(library.solves.size() == bytes,
-             "recall: solves: " + std::to_string(library.solves.size()) + " bytes are not " +
-                 std::to_string(bytes));
+  for (const auto& [what, bits_of] :
+       {std::pair("solves: ", &library.solves), std::pair("reaches: ", &library.reaches)})
+    rules.that(bits_of->size() == bytes, "recall: " + (what + std::to_string(bits_of->size())) +
+                                             " bytes are not " + std::to_string(bytes));
 }
 
 void check_query(const RecallQuery& query, std::size_t index, const RecallLibrary& library,
@@ -88,7 +90,8 @@ std::optional<Error> validate(const RecallLibrary& library) {
 std::size_t recall_bytes(const RecallLibrary& library) {
   constexpr std::size_t kFixed = 160, kAnchor = 16, kQuery = 168, kPath = 32, kMode = 8;
   constexpr std::size_t kNumbersOfPose = 7;
-  std::size_t bytes = kFixed + kMode * library.modes.size() + library.solves.size();
+  std::size_t bytes = kFixed + kMode * library.modes.size() + library.solves.size() +
+                      library.reaches.size();
   for (const std::string& anchor : library.anchors)
     bytes += kAnchor + anchor.size();
   for (const RecallQuery& query : library.queries)

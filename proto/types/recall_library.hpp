@@ -74,7 +74,7 @@ inline bool bit_of(const std::vector<std::uint8_t>& bits, std::size_t at) {
 inline constexpr int kRecallWaypoints = 32;
 inline constexpr std::size_t kMaxRecallQueries = 256, kMaxRecallPaths = 512;
 inline constexpr std::size_t kMaxRecallAnchors = 2, kMaxWarpModes = 16;
-inline constexpr std::size_t kMaxWarpBlends = 4;
+inline constexpr std::size_t kMaxWarpBlends = 3;
 
 /// The rule that a library breaks, if any: counts within the limits, sizes that agree, indices that
 /// exist, finite numbers, proper poses. It begins with "recall".

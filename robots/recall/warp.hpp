@@ -25,7 +25,7 @@ struct WarpBlend {
 /// By WarpMode::blend.
 inline constexpr std::array<WarpBlend, 3> kWarpBlends = {
     {{0, 0.25, 0.4}, {0.1, 0.4, 0.4}, {0, 0.25, 0}}};
-static_assert(kWarpBlends.size() <= kMaxWarpBlends);
+static_assert(kWarpBlends.size() == kMaxWarpBlends);
 
 /// A path and where the hand was along it.
 struct WarpedPath {
