@@ -26,20 +26,23 @@ std::optional<Eigen::VectorXd> find_start(const runtime::Robot& robot,
 }  // namespace
 
 std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
-                                     const Eigen::Isometry3d& T_task_base,
+                                     const Eigen::Isometry3d& T_task_base_today,
                                      const RecordedQuery& recorded) {
   PosedQuery posed;
+  const Eigen::Isometry3d T_task_base =
+      recorded.own ? recorded.own->T_task_base : T_task_base_today;
   const collision::RobotSolids solids(robot.chain, robot.shapes);
-  posed.world = std::make_unique<collision::CollisionWorld>(
-      solids, recorded.scene ? transfer::recorded_surroundings(solids, *recorded.scene, T_task_base)
-                             : collision::Surroundings{T_task_base, {}, {}, {}});
+  posed.surroundings = recorded.scene
+                           ? transfer::recorded_surroundings(solids, *recorded.scene, T_task_base)
+                           : collision::Surroundings{T_task_base, {}, {}, {}};
+  posed.world = std::make_unique<collision::CollisionWorld>(solids, posed.surroundings);
   const Eigen::Isometry3d T_base_task = T_task_base.inverse();
   const std::optional<TaskSpaceRegion> region =
       recorded.scene ? recorded.scene->constraint : std::nullopt;
   const planning::IsFree is_free = planning::free_in(*posed.world);
   const std::optional<Eigen::VectorXd> start =
-      recorded.start ? recorded.start
-                     : find_start(robot, T_base_task * recorded.T_task_start, is_free);
+      recorded.own ? std::optional<Eigen::VectorXd>(recorded.own->waypoints.col(0))
+                   : find_start(robot, T_base_task * recorded.T_task_start, is_free);
   if (!start || !is_free(*start))
     return std::nullopt;
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, *start);

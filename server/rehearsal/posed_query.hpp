@@ -16,17 +16,17 @@ namespace kinship::rehearsal {
 /// A recorded query, posed to one robot at its placement.
 struct PosedQuery {
   planning::TrackQuery query;  ///< `without` is the path that once answered it
+  collision::Surroundings surroundings;
   std::unique_ptr<collision::CollisionWorld> world;
   std::optional<planning::RegionConstraint> constraint;
 };
 
-/// Start and goals in the recorded scene. The robot of the recorded path starts at its recorded
-/// start; another robot at the free configuration with the transfer frame at the recorded start
-/// that is nearest to the middle of its joints' ranges. Goals are all free configurations with the
-/// transfer frame at the recorded goal, up to 20. Pairs that always touch, such as a base and its
-/// table, may touch.
-/// \param T_task_base  of the robot's base in the task frame.
-/// \return nothing if it has no start or no goal.
+/// Start and goals in the recorded scene. The robot of the recorded path stands and starts as it
+/// did; another robot starts at the free configuration with the transfer frame at the recorded
+/// start that is nearest to the middle of its joints' ranges. Goals are all free configurations
+/// with the transfer frame at the recorded goal, up to 20. Pairs that always touch, such as a base
+/// and its table, may touch. \param T_task_base  of the robot's base in the task frame, for what
+/// another robot recorded. \return nothing if it has no start or no goal.
 std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
                                      const Eigen::Isometry3d& T_task_base,
                                      const RecordedQuery& recorded);

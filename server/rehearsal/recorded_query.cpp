@@ -5,7 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "proto/types/pose.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "server/fitting/selected_experience.hpp"
 
@@ -91,17 +90,10 @@ class QueryReader {
         stored.report_uuid, T_task_base * kinematics::T_base_transfer(robot.chain, start),
         T_task_base * kinematics::T_base_transfer(robot.chain, stored.path.waypoints().col(last)),
         std::nullopt, std::move(scene)};
-    if (robot.digest == key_.robot && stands_as_today(stored.T_task_base))
-      query.start = start;
+    if (robot.digest == key_.robot)
+      query.own = {T_task_base, stored.path.waypoints()};
     found_.queries.push_back(std::move(query));
     newest_ = stored.report_uuid;
-  }
-
-  bool stands_as_today(const std::optional<Eigen::Isometry3d>& T_task_base) const {
-    const auto numbers = [](const std::optional<Eigen::Isometry3d>& T) {
-      return to_pose_array(snapped(T.value_or(Eigen::Isometry3d::Identity())));
-    };
-    return numbers(T_task_base) == numbers(key_.T_task_base);
   }
 
   SharedScene find_scene(std::int64_t id) {

@@ -20,8 +20,12 @@ struct RecordedQuery {
   Uuid path;                       ///< the report with the answer
   Eigen::Isometry3d T_task_start;  ///< of the transfer frame
   Eigen::Isometry3d T_task_goal;
-  /// Of the rehearsed robot, if the path is its own and was recorded at its current placement.
-  std::optional<Eigen::VectorXd> start;
+  /// The rehearsed robot's own answer: where it stood, and its path, dof x n.
+  struct Own {
+    Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+    Eigen::MatrixXd waypoints;
+  };
+  std::optional<Own> own;                      ///< missing: another robot answered
   std::shared_ptr<const RecordedScene> scene;  ///< null: none was recorded
 };
 

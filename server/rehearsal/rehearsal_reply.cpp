@@ -11,11 +11,28 @@ bool carries_rehearsal(FetchStatus status) {
          status == FetchStatus::Pending;
 }
 
-void send(FetchReply reply, const SharedRehearsal& known, const catalog::FetchDone& done) {
-  if (known)
-    reply.rehearsal = *known;
-  done(reply);
-}
+/// A reply with what is known for its robot where it stands.
+class Addition {
+ public:
+  Addition(const RehearsalScheduler& rehearsals, RehearsalKey key, std::uint64_t known_recall)
+      : rehearsals_(rehearsals), key_(std::move(key)), known_recall_(known_recall) {}
+
+  const RehearsalKey& key() const { return key_; }
+
+  void send(FetchReply reply, const SharedRehearsal& known, const catalog::FetchDone& done) const {
+    if (known)
+      reply.rehearsal = *known;
+    const SharedLibrary library = rehearsals_.library(key_);
+    if (library && library->revision != known_recall_)
+      reply.recall = *library;
+    done(reply);
+  }
+
+ private:
+  const RehearsalScheduler& rehearsals_;
+  const RehearsalKey key_;
+  const std::uint64_t known_recall_;  // revision that the client holds
+};
 
 }  // namespace
 
@@ -25,16 +42,19 @@ catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchReq
       fitting::make_key(request, rehearsals.geometry_revision(request.robot));
   if (!distribution)
     return done;  // it will be refused
-  return [&rehearsals, key = RehearsalKey{*distribution, request.experience_bytes},
-          deadline = now + request.deadline, waits = request.rehearsed,
+  const Addition addition(rehearsals, {*distribution, request.experience_bytes},
+                          request.known_recall);
+  return [&rehearsals, addition, deadline = now + request.deadline, waits = request.rehearsed,
           done = std::move(done)](const FetchReply& reply) {
     if (!carries_rehearsal(reply.status))
       return done(reply);
     if (!waits)
-      return send(reply, rehearsals.ask(key), done);
-    rehearsals.wait(key, deadline,
-                    [own = std::make_shared<FetchReply>(reply),
-                     done](const SharedRehearsal& known) { send(std::move(*own), known, done); });
+      return addition.send(reply, rehearsals.ask(addition.key()), done);
+    rehearsals.wait(
+        addition.key(), deadline,
+        [own = std::make_shared<FetchReply>(reply), addition, done](const SharedRehearsal& known) {
+          addition.send(std::move(*own), known, done);
+        });
   };
 }
 

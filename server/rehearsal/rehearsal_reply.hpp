@@ -6,8 +6,9 @@
 
 namespace kinship::rehearsal {
 
-/// A `done` that first adds the known rehearsal of the request's robot and task to the reply, if
-/// the reply is Ready, Failed or Pending. A request for a rehearsed reply waits for the rehearsal
+/// A `done` that first adds the known rehearsal of the request's robot and task to the reply, and
+/// its library of paths to recall unless the client holds it, if the reply is Ready, Failed or
+/// Pending. A request for a rehearsed reply waits for the rehearsal
 /// until its deadline.
 /// \param request  a request for experience.
 /// \param rehearsals  outlive the reply.

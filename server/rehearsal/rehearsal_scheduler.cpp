@@ -13,6 +13,7 @@
 #include "robots/planning/planning_budget.hpp"
 #include "server/fitting/fit_distribution.hpp"
 #include "server/fitting/selected_experience.hpp"
+#include "server/rehearsal/recall_queries.hpp"
 
 namespace kinship::rehearsal {
 namespace {
@@ -66,9 +67,48 @@ SharedRehearsal RehearsalScheduler::ask(const RehearsalKey& key) {
   const std::lock_guard lock(mutex_);
   if (is_stopping_ || options_.processor_fraction == 0)
     return nullptr;
-  const SharedRehearsal known = use(key).known;
+  const SharedRehearsal known = known_to(use(key));
   make_room();
   return known;
+}
+
+/// Its own rehearsal, or that of the nearest placement.
+SharedRehearsal RehearsalScheduler::known_to(const Entry& entry) const {
+  if (entry.known)
+    return entry.known;
+  const Entry* const near = nearest(entry.key);
+  return near != nullptr ? near->known : nullptr;
+}
+
+/// The entry of the same robot and task at the nearest other placement that has been rehearsed.
+const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey& key) const {
+  constexpr double kNear_m = 1.5;  // a radian counts as 0.3 m
+  const auto place = [](const RehearsalKey& of) {
+    return of.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  };
+  const Entry* found = nullptr;
+  double least = kNear_m;
+  for (const auto& [id, entry] : entries_) {
+    const fitting::DistributionKey &a = entry.key.distribution, &b = key.distribution;
+    if (!entry.known || entry.is_lost || a.robot != b.robot || a.task != b.task ||
+        a.sources != b.sources || a.since_ms != b.since_ms)
+      continue;
+    const double distance = planning::pose_distance_m(place(entry.key), place(key));
+    if (distance <= least) {
+      least = distance;
+      found = &entry;
+    }
+  }
+  return found;
+}
+
+SharedLibrary RehearsalScheduler::library(const RehearsalKey& key) const {
+  const std::lock_guard lock(mutex_);
+  const auto own = entries_.find(identify(key.distribution));
+  if (own != entries_.end() && own->second.library)
+    return own->second.library;
+  const Entry* const near = nearest(key);
+  return near != nullptr ? near->library : nullptr;
 }
 
 void RehearsalScheduler::wait(const RehearsalKey& key, TimePoint deadline, const Done& done) {
@@ -78,8 +118,8 @@ void RehearsalScheduler::wait(const RehearsalKey& key, TimePoint deadline, const
     const std::lock_guard lock(mutex_);
     if (!is_stopping_ && options_.processor_fraction > 0) {
       Entry& entry = use(key);
-      known = entry.known;
-      waits = entry.is_working && waiters_ < options_.max_waiters;
+      known = known_to(entry);
+      waits = entry.is_working && !(known && !entry.known) && waiters_ < options_.max_waiters;
       if (waits) {
         entry.waiters.push_back({deadline, done});
         ++waiters_;
@@ -98,9 +138,11 @@ RehearsalScheduler::Entry& RehearsalScheduler::use(const RehearsalKey& key) {
   Entry& entry = entries_[id];
   entry.key = key;
   entry.last_used = ++uses_;
+  ++entry.asked;
   const bool is_current = entry.known && !entry.is_lost &&
                           entry.looked_at == versions_.of(key.distribution.task).changes;
-  if (!is_current && !entry.is_working)
+  const bool is_served = entry.asked == 1 && nearest(key) != nullptr;
+  if (!is_current && !entry.is_working && !is_served)
     entry.is_working = pool_.submit(runtime::WorkerPool::Priority::Background,
                                     {.run = [this, id] { work(id); }, .abandon = {}});
   return entry;
@@ -235,33 +277,9 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   Rehearsal result;
   result.is_complete = true;
   if (Result<Subject> subject = subject_of(key)) {
-    // A longer way round than the robot needs, or a shorter one.
-    const std::string shapes =
-        subject.value().robot->grade == GeometryGrade::Exact
-            ? std::string()
-            : "with the shapes that the server knows: " + subject.value().robot->geometry;
-    RehearsalOptions plan = options_.plan;
-    plan.stop = stop_source_.get_token();
-    Rehearsing rehearsing(*std::move(subject), plan);
-    double rested_s = planning::thread_time_s();
-    std::size_t kept_rounds = 0;
-    while (!stop_source_.stop_requested() && rehearsing.step()) {
-      const double now_s = planning::thread_time_s();
-      if (rehearsing.rounds() > kept_rounds) {
-        kept_rounds = rehearsing.rounds();
-        result = rehearsing.result();
-        result.processor_time_s = now_s - begin_s;
-        if (!result.is_complete)
-          keep(id, result, paths);
-      }
-      rest(id, now_s - rested_s);
-      rested_s = now_s;
-    }
+    result = try_guides(id, *std::move(subject), paths);
     if (stop_source_.stop_requested())
       return;
-    result = rehearsing.result();
-    if (result.message.empty())
-      result.message = shapes;
   } else {
     result.message = "not rehearsed: " + subject.error().message;
   }
@@ -272,6 +290,61 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
                " of processor time" + described(result.costs) +
                (result.message.empty() ? "" : ": " + result.message));
   keep(id, std::move(result), paths);
+}
+
+/// Makes the library, then plans every query with every guide.
+Rehearsal RehearsalScheduler::try_guides(const Digest& id, Subject subject, std::uint64_t paths) {
+  const double begin_s = planning::thread_time_s();
+  const runtime::Robot& robot = *subject.robot;
+  // A longer way round than the robot needs, or a shorter one.
+  const std::string shapes =
+      robot.grade == GeometryGrade::Exact
+          ? std::string()
+          : "with the shapes that the server knows: " + subject.robot->geometry;
+  if (const SharedLibrary library = make_library(id, subject))
+    subject.recall = std::make_shared<recall::RecallGuide>(robot.chain, *library);
+  RehearsalOptions plan = options_.plan;
+  plan.stop = stop_source_.get_token();
+  Rehearsing rehearsing(std::move(subject), plan);
+  double rested_s = planning::thread_time_s();
+  std::size_t kept_rounds = 0;
+  while (!stop_source_.stop_requested() && rehearsing.step()) {
+    const double now_s = planning::thread_time_s();
+    if (rehearsing.rounds() > kept_rounds) {
+      kept_rounds = rehearsing.rounds();
+      Rehearsal result = rehearsing.result();
+      result.processor_time_s = now_s - begin_s;
+      if (!result.is_complete)
+        keep(id, std::move(result), paths);
+    }
+    rest(id, now_s - rested_s);
+    rested_s = now_s;
+  }
+  Rehearsal result = rehearsing.result();
+  if (result.message.empty())
+    result.message = shapes;
+  return result;
+}
+
+/// \return null: none can be made.
+SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& subject) {
+  recall::LibraryMakerOptions options;
+  options.step = subject.recorded.steps.step;
+  options.before = [stop = stop_source_.get_token()] { throw_if_stopped(stop); };
+  recall::LibraryMaker maker(
+      subject.robot->chain, {subject.robot->chain, subject.robot->shapes},
+      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries), options);
+  double rested_s = planning::thread_time_s();
+  while (maker.step()) {
+    const double now_s = planning::thread_time_s();
+    rest(id, now_s - rested_s);
+    rested_s = now_s;
+  }
+  std::optional<RecallLibrary> made = maker.take();
+  SharedLibrary library = made ? std::make_shared<const RecallLibrary>(*std::move(made)) : nullptr;
+  const std::lock_guard lock(mutex_);
+  entries_[id].library = library;
+  return library;
 }
 
 void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths) {

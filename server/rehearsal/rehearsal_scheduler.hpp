@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/recall_library.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/result.hpp"
 #include "server/catalog/experience_index.hpp"
@@ -46,6 +47,9 @@ struct RehearsalSchedulerOptions {
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
 
+/// A library of paths to recall, shared likewise.
+using SharedLibrary = std::shared_ptr<const RecallLibrary>;
+
 /// Totals of a scheduler since construction.
 struct RehearsalTotals {
   std::uint64_t done = 0, queued = 0;
@@ -58,10 +62,11 @@ struct RehearsalKey {
   std::uint32_t experience_bytes = 0;  ///< of the stored pose paths that the robot gets
 };
 
-/// Finds the best guide for a robot and task before its first query, on a low-priority thread of
-/// its own. A rehearsal is valid until the experience has grown by a fifth and ten paths, or lost
-/// one; after a restart there is none. May be shared between threads; no lock is held across the
-/// store, a plan or an answer.
+/// Finds the best guide for a robot and task before its first query, and makes its library of paths
+/// to recall, on a low-priority thread of its own. Both are valid until the experience has grown by
+/// a fifth and ten paths, or lost one; after a restart there is none. At a placement that has none,
+/// those of the nearest one count; it is rehearsed itself from its second request on. May be shared
+/// between threads; no lock is held across the store, a plan or an answer.
 class RehearsalScheduler {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -94,6 +99,10 @@ class RehearsalScheduler {
   void new_experience(std::string_view task);  ///< there are new paths
   void forget(std::string_view task);          ///< paths were retired
 
+  /// The known library of a robot and task, at this placement or the nearest one; null: none.
+  /// Begins nothing.
+  SharedLibrary library(const RehearsalKey& key) const;
+
   /// The known rehearsal of a distribution, by its id; begins none.
   SharedRehearsal find(const Digest& distribution) const;
   RehearsalTotals totals() const;
@@ -113,6 +122,8 @@ class RehearsalScheduler {
   struct Entry {
     RehearsalKey key;
     SharedRehearsal known;
+    SharedLibrary library;
+    std::uint64_t asked = 0;
     std::uint64_t paths = 0;      // it was made of
     std::uint64_t looked_at = 0;  // changes of the task's experience when it was last compared
     bool is_lost = false;         // paths were retired since
@@ -124,6 +135,8 @@ class RehearsalScheduler {
 
   // Under the lock.
   Entry& use(const RehearsalKey& key);
+  SharedRehearsal known_to(const Entry& entry) const;
+  const Entry* nearest(const RehearsalKey& key) const;
   void let_go(Entry& entry, WaiterAnswers& answers);
   void make_room();
 
@@ -132,6 +145,8 @@ class RehearsalScheduler {
   bool is_out_of_date(const RehearsalKey& key, const Entry& entry);
   void rehearse(const Digest& id, const RehearsalKey& key);
   Result<Subject> subject_of(const RehearsalKey& key);
+  Rehearsal try_guides(const Digest& id, Subject subject, std::uint64_t paths);
+  SharedLibrary make_library(const Digest& id, const Subject& subject);
   void keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths);
   void rest(const Digest& id, double worked_s);
 

@@ -12,6 +12,7 @@
 #include "proto/types/mixture.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "robots/planning/experience_guide.hpp"
+#include "robots/recall/recall_guide.hpp"
 #include "server/rehearsal/posed_query.hpp"
 #include "server/rehearsal/recorded_query.hpp"
 #include "server/runtime/robot_registry.hpp"
@@ -28,6 +29,7 @@ struct Subject {
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
   RecordedQueries recorded;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< not null
+  std::shared_ptr<const recall::RecallGuide> recall;            ///< null: there is none
   /// Fitted without the paths of half 0, and of half 1; missing: there is no mixture.
   std::array<std::optional<Mixture>, kHalves> mixtures = {};
 };

@@ -1,0 +1,33 @@
+#include "server/rehearsal/recall_queries.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "server/rehearsal/posed_query.hpp"
+
+namespace kinship::rehearsal {
+
+std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
+                                               const Eigen::Isometry3d& T_task_base,
+                                               const std::vector<RecordedQuery>& recorded) {
+  std::vector<recall::PosedQuery> queries;
+  for (const RecordedQuery& query : recorded) {
+    if (!query.scene || query.scene->constraint)
+      continue;
+    std::optional<PosedQuery> posed = pose_query(robot, T_task_base, query);
+    if (!posed)
+      continue;
+    recall::PosedQuery wanted{query.path,
+                              std::nullopt,
+                              std::move(posed->surroundings),
+                              posed->query.bounds,
+                              std::move(posed->query.start),
+                              std::move(posed->query.goals)};
+    if (query.own)
+      wanted.solution = query.own->waypoints;
+    queries.push_back(std::move(wanted));
+  }
+  return queries;
+}
+
+}  // namespace kinship::rehearsal

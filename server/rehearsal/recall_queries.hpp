@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "robots/recall/library_maker.hpp"
+#include "server/rehearsal/recorded_query.hpp"
+#include "server/runtime/robot_registry.hpp"
+
+namespace kinship::rehearsal {
+
+/// The recorded queries of which a library of paths to recall is made for a robot: those with a
+/// scene and without a constraint, that it can start and end.
+/// \param T_task_base  of the robot's base in the task frame, for what other robots recorded.
+std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
+                                               const Eigen::Isometry3d& T_task_base,
+                                               const std::vector<RecordedQuery>& recorded);
+
+}  // namespace kinship::rehearsal
