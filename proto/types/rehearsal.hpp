@@ -28,6 +28,8 @@ enum class Guide {
 constexpr bool has_retreat(Guide guide) { return (static_cast<unsigned>(guide) & 1U) != 0; }
 constexpr bool has_ways(Guide guide) { return (static_cast<unsigned>(guide) & 2U) != 0; }
 constexpr bool has_mixture(Guide guide) { return (static_cast<unsigned>(guide) & 4U) != 0; }
+/// Whether it uses anything but the retreat.
+constexpr bool needs_experience(Guide guide) { return (static_cast<unsigned>(guide) & ~1U) != 0; }
 
 /// Cost of planning recorded queries again with one guide.
 struct GuideCost {
