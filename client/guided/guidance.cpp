@@ -74,7 +74,11 @@ std::string validate(const Distribution& distribution, Eigen::Index dof) {
   return "";
 }
 
-/// Guidance by the distribution, the experience, or both.
+bool needs_server(const GuidanceOptions& wanted) {
+  return !wanted.guide || needs_experience(*wanted.guide);
+}
+
+/// Guidance by the distribution, the experience, or both; with neither by the robot alone.
 GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience experience,
                            const Rehearsal* rehearsal, const GuidanceOptions& wanted) {
   const Guide guide = wanted.guide.value_or(rehearsal != nullptr ? rehearsal->guide : Guide::All);
@@ -95,7 +99,9 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
     guidance.mixture = distribution->mixture;
     answer.message = describe(*distribution);
   }
-  if (experience)
+  if (!needs_server(wanted))
+    answer.message = "guide " + std::string(to_text(guide)) + ", which needs no experience";
+  else if (experience)
     answer.message += (answer.message.empty() ? "" : "; ") + describe(experience->experience());
   if (rehearsal != nullptr && !wanted.guide)
     answer.message += "; " + describe(*rehearsal);
@@ -149,6 +155,11 @@ GuidanceAnswer without_guidance(const FetchReply& reply, const GuidanceOptions& 
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base,
                               SharedExperience known) {
+  if (!needs_server(wanted)) {
+    if (!known && wanted.chain)
+      known = std::make_shared<planning::ExperienceGuide>(*wanted.chain, TaskExperience{});
+    return answer_with(nullptr, std::move(known), nullptr, wanted);
+  }
   FetchRequest request;
   request.task = wanted.task;
   request.robot = wanted.robot;
@@ -194,7 +205,9 @@ std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(
     server_missing_ = true;
   if (answer.guidance)
     experience_ = answer.guidance->experience;
-  if (answer.sampling)  // of the same task and robot as those before, and newer
+  // The answer's is of the same task and robot as those before, and newer; without a server it
+  // knows nothing.
+  if (answer.sampling && (needs_server(wanted_) || !sampling_))
     sampling_ = answer.sampling;
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }

@@ -26,7 +26,8 @@ struct GuidanceOptions {
   std::string task;
   Digest robot;
   Eigen::Index dof = 0;
-  std::optional<kinematics::Chain> chain;  ///< to follow stored ways of the hand; missing: none
+  /// To retreat and to follow stored ways of the hand; missing: neither.
+  std::optional<kinematics::Chain> chain;
   std::string profile = "default";
   Selection selection;
   SamplingModeOptions sampling;
@@ -49,7 +50,8 @@ struct GuidanceAnswer {
 /// The task's experience as one robot follows it; null: none.
 using SharedExperience = std::shared_ptr<const planning::ExperienceGuide>;
 
-/// Fetches once. Never throws for a server's reply.
+/// Fetches once; not at all with a guide that needs no experience: the robot alone is enough. Never
+/// throws for a server's reply.
 /// \param known  earlier experience of robot and task: kept unless the reply has newer.
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base,

@@ -31,6 +31,8 @@ Examples:
   kinship-plan --robot robots/models/ur10e --task box_to_shelf --problems problems.jsonl --guidance always --sources panda,iiwa14
       --since 14d
       a model folder; every query guided, by these robots' experience of the last two weeks
+  kinship-plan --robot robots/models/panda --problems problems.jsonl --guide retreat
+      without experience and without a server: the hand backs out of its goal along the palm first
   kinship-plan --robot robots/models/panda --problems pour.jsonl --planner ompl:RRTConnect --max-checks 200000
       name the planner (without --planner: birrt, and cbirrt2 for problems with a constraint)
 
@@ -137,11 +139,12 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
 void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   using arguments::between;
   app.add_option("--task", options.task, "task under which experience is kept")->type_name("TASK");
-  app.add_option(
-         "--guidance", raw.guidance,
-         "uniform (or none): no guidance; auto: guided where that is cheaper, by what both "
-         "ways cost so far; always: every query for which there is a distribution; require: "
-         "as auto, fails without one (default: auto with --task, otherwise uniform)")
+  app.add_option("--guidance", raw.guidance,
+                 "uniform (or none): no guidance; auto: guided where that is cheaper, by what both "
+                 "ways cost so far; always: every query for which there is guidance; require: as "
+                 "auto, fails "
+                 "without it (default: auto with --task, otherwise uniform, and always with "
+                 "--guide retreat)")
       ->check(CLI::IsMember({"uniform", "none", "auto", "always", "require"}));
   arguments::add_profile_options(app, options.profile);
   arguments::add_selection_options(app, raw.selection);
@@ -155,9 +158,10 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       ->check(between(0.0, 1.0));
   app.add_option(
          "--guide", raw.guide,
-         "what guides a query: recall (stored paths, tried whole), retreat, ways (stored ways "
-         "of the hand, moved onto it), mixture (samples of the distribution), any of them "
-         "joined by + in this order, or none; auto: what the server found best by planning "
+         "what guides a query: recall (stored paths, tried whole), retreat (the hand backs "
+         "out first; needs neither --task nor a server), ways (stored ways of the hand, moved onto "
+         "it), mixture (samples of the distribution), any of them joined by + in this order, or "
+         "none; auto: what the server found best by planning "
          "recorded queries again, else all "
          "(default: auto, and mixture with a profile that begins with paper)")
       ->check(CLI::IsMember(guide_words()));
@@ -191,10 +195,12 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
       ->type_name("FOLDER");
 }
 
-/// Options that say which distribution is wanted and how it is used.
-constexpr std::initializer_list<const char*> kOfGuidance = {
-    "--profile", "--estimator",     "--sources", "--weighting", "--since",
-    "--share",   "--control-share", "--wait",    "--guide",     "--rehearsed"};
+/// Options that say which experience is wanted.
+constexpr std::initializer_list<const char*> kOfExperience = {
+    "--profile", "--estimator", "--sources", "--weighting", "--since", "--wait", "--rehearsed"};
+/// Options that say how guidance is used.
+constexpr std::initializer_list<const char*> kOfSampling = {"--guide", "--share",
+                                                            "--control-share"};
 constexpr std::initializer_list<const char*> kOfReports = {"--machine", "--record-scenes",
                                                            "--outbox"};
 constexpr std::initializer_list<const char*> kOfServer = {"--server", "--domain", "--timeout"};
@@ -219,13 +225,22 @@ bool is_given(const CLI::App& app, const std::string& option) {
 void require_task(const CLI::App& app, const PlanOptions& options) {
   if (!options.task.empty())
     return;
-  if (options.guidance != GuidanceMode::Uniform)
-    throw CLI::ValidationError("--guidance", "needs --task");
   if (options.report)
     throw CLI::ValidationError("--report", "needs --task");
-  for (const char* option : kOfGuidance)
+  for (const char* option : kOfExperience)
     if (is_given(app, option))
-      throw CLI::ValidationError(option, "needs --task: there is no guidance without one");
+      throw CLI::ValidationError(option, "needs --task: experience is kept by task");
+  if (options.guide && !needs_experience(*options.guide))
+    return;
+  if (is_given(app, "--guide"))
+    throw CLI::ValidationError("--guide", app.get_option("--guide")->as<std::string>() +
+                                              " needs --task, whose experience it uses; retreat "
+                                              "and none use none");
+  if (options.guidance != GuidanceMode::Uniform)
+    throw CLI::ValidationError("--guidance", "needs --task, or --guide retreat");
+  for (const char* option : kOfSampling)
+    if (is_given(app, option))
+      throw CLI::ValidationError(option, "needs --task, or --guide retreat");
 }
 
 void note_unused(const CLI::App& app, const std::initializer_list<const char*>& unused,
@@ -237,23 +252,30 @@ void note_unused(const CLI::App& app, const std::initializer_list<const char*>& 
 
 void note_unused(const CLI::App& app, const PlanOptions& options, std::ostream& notes) {
   const bool is_uniform = options.guidance == GuidanceMode::Uniform;
+  const std::string why =
+      is_uniform ? "with --guidance uniform" : "with a guide that needs no experience";
+  if (!options.needs_experience())
+    note_unused(app, kOfExperience, why, notes);
   if (is_uniform)
-    note_unused(app, kOfGuidance, "with --guidance uniform", notes);
+    note_unused(app, kOfSampling, why, notes);
   else if (options.sampling.guided_fraction == 0.0)
     note_unused(app, {"--control-share"}, "with --share 0", notes);
   if (!options.report)
     note_unused(app, kOfReports, "without --report yes", notes);
   if (options.settings.planner.kind == guided::PlannerKind::Ompl)
     note_unused(app, {"--overshoot"}, "on planners of OMPL", notes);
-  if (is_uniform && !options.report) {
+  if (!options.needs_experience() && !options.report) {
     note_unused(app, kOfServer, "where no server is needed", notes);
-    note_unused(app, {"--task"}, "with neither guidance nor reports", notes);
+    note_unused(app, {"--task"}, "with neither experience nor reports", notes);
   }
 }
 
 GuidanceMode guidance_of(const RawOptions& raw, const PlanOptions& options) {
+  if (raw.guidance.empty() && options.task.empty())
+    return options.guide && !needs_experience(*options.guide) ? GuidanceMode::Always
+                                                              : GuidanceMode::Uniform;
   if (raw.guidance.empty())
-    return options.task.empty() ? GuidanceMode::Uniform : GuidanceMode::Auto;
+    return GuidanceMode::Auto;
   if (raw.guidance == "auto")
     return GuidanceMode::Auto;
   if (raw.guidance == "always")
@@ -287,13 +309,13 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
   require_name(check_machine(options.machine), "--machine");
   if (!raw.planner.empty())
     options.settings.planner = guided::parse_planner(raw.planner).value_or_throw();
-  options.guidance = guidance_of(raw, options);
   options.report = raw.report == "yes";
   options.record_scenes = raw.record_scenes == "yes";
   if (raw.guide != "auto")
     options.guide = parse_word<Guide>(raw.guide).value_or_throw();
   else if (app.count("--guide") == 0 && options.profile.starts_with("paper"))
     options.guide = Guide::Mixture;
+  options.guidance = guidance_of(raw, options);
   require_task(app, options);
   complete_shares(app, raw, options);
   options.selection =

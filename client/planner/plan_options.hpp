@@ -17,10 +17,10 @@
 namespace kinship::planner {
 
 enum class GuidanceMode {
-  Uniform,  ///< no distribution is fetched
+  Uniform,  ///< no guidance
   Auto,     ///< guided or control, query by query, by the cost of both so far
-  Always,   ///< every query that has a distribution is guided, without control
-  Require   ///< as Auto, and a run without a distribution fails
+  Always,   ///< every query that has guidance is guided, without control
+  Require   ///< as Auto, and a run without guidance fails
 };
 
 /// The command line of kinship-plan.
@@ -49,6 +49,11 @@ struct PlanOptions {
   std::chrono::milliseconds timeout{5000};
   std::chrono::milliseconds wait{30000};
   std::filesystem::path outbox;  ///< empty: the client's default
+
+  /// Whether guidance needs the experience of a server.
+  bool needs_experience() const {
+    return guidance != GuidanceMode::Uniform && (!guide || kinship::needs_experience(*guide));
+  }
 };
 
 /// Reports an option without effect beside the others on `err`, or refuses it.

@@ -23,6 +23,9 @@ std::string guidance_text(const ProblemResult& result) {
     return "guided by " + result.distribution_id->short_hex() + " revision " +
            std::to_string(result.distribution_revision) + ", share " +
            with_digits(result.share, kShareDigits);
+  if (result.guidance_reason.empty() && result.guide != Guide::None)
+    return "guided by " + std::string(to_text(result.guide)) + ", share " +
+           with_digits(result.share, kShareDigits);
   return result.guidance_reason.empty() ? "uniform" : "uniform: " + result.guidance_reason;
 }
 

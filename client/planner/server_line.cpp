@@ -33,7 +33,7 @@ ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot,
       stop_(stop) {
   if (options_.guidance == GuidanceMode::Uniform)
     why_unguided_ = options_.task.empty() ? "no task is named" : "--guidance uniform";
-  if (options_.guidance == GuidanceMode::Uniform && !options_.report)
+  if (!options_.needs_experience() && !options_.report)
     return;
   link::ClientOptions client;
   client.domain = options_.domain;
@@ -124,7 +124,9 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
                                               const std::vector<ProblemLine>& lines) {
   if (options_.guidance == GuidanceMode::Uniform)
     return guided::NoGuidance::None;
-  const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wanted.selection);
+  std::optional<Error> trouble;
+  if (options_.needs_experience())
+    trouble = trouble_ ? trouble_ : find_sources(wanted.selection);
   if (trouble) {
     messages_ << "no guidance, all is planned uniformly: " << trouble->message << '\n';
     why_unguided_ = trouble->message;

@@ -1,5 +1,9 @@
 #include "client/python/guidance_handle.hpp"
 
+#include <string>
+
+#include "proto/types/enum_text.hpp"
+
 namespace kinship::python {
 
 std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
@@ -20,6 +24,21 @@ std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
   if (!answer.guidance)
     throw Failure(ErrorCode::InvalidInput, answer.message);
   return std::make_shared<GuidanceHandle>(wanted.robot, std::move(answer));
+}
+
+std::shared_ptr<GuidanceHandle> GuidanceHandle::of_robot(const Robot& robot, Guide guide) {
+  if (needs_experience(guide))
+    throw Failure(
+        ErrorCode::InvalidInput,
+        "guide '" + std::string(to_text(guide)) +
+            "' needs the experience of a task: Client.guidance(); retreat and none do not");
+  guided::GuidanceOptions wanted;
+  wanted.robot = robot.digest();
+  wanted.chain = robot.chain();
+  wanted.guide = guide;
+  wanted.sampling.control_fraction = 0;
+  return std::make_shared<GuidanceHandle>(wanted.robot,
+                                          guided::fetch_guidance({}, wanted, std::nullopt));
 }
 
 double GuidanceHandle::guided_part() const {

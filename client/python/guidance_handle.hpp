@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/guided/guidance.hpp"
+#include "client/python/robot.hpp"
 #include "client/python/sampled_distribution.hpp"
 
 namespace kinship::python {
@@ -21,6 +22,10 @@ class GuidanceHandle {
   /// A distribution alone: without stored ways, and without control.
   /// \throws Failure(InvalidInput) if it can guide no robot.
   static std::shared_ptr<GuidanceHandle> of_distribution(const SampledDistribution& distribution);
+
+  /// The robot alone, each query by a guide that needs no experience.
+  /// \throws Failure(InvalidInput) if the guide needs experience.
+  static std::shared_ptr<GuidanceHandle> of_robot(const Robot& robot, Guide guide);
 
   const Digest& robot() const noexcept { return robot_; }
   const guided::Guidance& guidance() const noexcept { return *answer_.guidance; }

@@ -169,6 +169,13 @@ void bind_guidance(py::module_& module) {
       "What guides a robot's queries of a task from one placement: a distribution, stored ways of "
       "the hand, and how far to trust them. Learns from what is planned with it. Threads may share "
       "it.")
+      .def_static(
+          "alone",
+          [](const Robot& robot, const std::string& guide) {
+            return GuidanceHandle::of_robot(robot, parse_word<Guide>(guide).value_or_throw());
+          },
+          py::arg("robot"), py::arg("guide") = "retreat",
+          "By the robot alone, without experience and server: guide 'retreat', or 'none'.")
       .def_property_readonly("message", &GuidanceHandle::message, "What it is made of, for people.")
       .def_property_readonly(
           "guide",
@@ -186,7 +193,7 @@ void bind_guidance(py::module_& module) {
             const auto& id = self.guidance().distribution_id;
             return id ? std::optional(id->hex()) : std::nullopt;
           },
-          "Of its distribution; None: stored ways alone.")
+          "Of its distribution; None: it has none.")
       .def_property_readonly(
           "revision", [](const GuidanceHandle& self) { return self.guidance().revision; },
           "Of its distribution.")

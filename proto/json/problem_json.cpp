@@ -80,7 +80,7 @@ constexpr std::tuple kEffort{
     Field{"planning_time_s", &ProblemResult::planning_time_s, {.min = 0}},
     Field{"time_limit_s", &ProblemResult::time_limit_s, {.min = 0}}};
 
-/// If there is a distribution or experience.
+/// If there is a distribution, or the query was guided or control.
 constexpr std::tuple kGuidance{
     Field{"distribution_id", &ProblemResult::distribution_id, {.may_be_missing = true}},
     Field{"revision", &ProblemResult::distribution_revision},
@@ -152,7 +152,7 @@ std::string to_json(const ProblemResult& result) {
   object["waypoints"] =
       result.waypoints ? list_of_columns(*result.waypoints) : OrderedJson(nullptr);
   object["guidance"] = nullptr;
-  if (result.distribution_id || result.experience_revision != 0)
+  if (result.distribution_id || result.sampling_mode != SamplingMode::Uniform)
     add_members(result, kGuidance, object["guidance"]);
   add_members(result, kReasons, object);
   return write(object);

@@ -45,6 +45,8 @@ constexpr Guide with_recall(Guide guide) {
 constexpr Guide without_recall(Guide guide) {
   return static_cast<Guide>(static_cast<unsigned>(guide) & 7U);
 }
+/// Whether it uses anything but the retreat.
+constexpr bool needs_experience(Guide guide) { return (static_cast<unsigned>(guide) & ~1U) != 0; }
 
 /// Cost of planning recorded queries again with one guide.
 struct GuideCost {

@@ -41,7 +41,7 @@ class Figures:
     """
 
     solved: int
-    with_guidance: int  # attempts that drew from a distribution
+    with_guidance: int  # attempts with guided samples
     mean_checks: float
     median_checks: float
     mean_time_s: float
@@ -106,7 +106,7 @@ def _ranked(results: Sequence[Result], what: str) -> list[float]:
 
 def _draws(result: Result) -> bool:
     guidance = result.get("guidance") or {}
-    return bool(guidance.get("distribution_id")) and guidance.get("share", 0) > 0
+    return guidance.get("share", 0) > 0
 
 
 def _figures(results: Sequence[Result]) -> Figures:

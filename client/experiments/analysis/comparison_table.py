@@ -65,8 +65,8 @@ def notes(comparison: Comparison) -> list[str]:
         "differ).": True,
         "An unsolved attempt counts in a mean with what it had used when it gave up: that mean is a lower bound. In a median it is worse "
         "than all that are solved.": min(uniform.solved, guided.solved) < pairs,
-        f"Only {guided.with_guidance} of the {pairs} guided attempts drew from a distribution.": guided.with_guidance < pairs,
-        f"{uniform.with_guidance} of the uniform attempts drew from a distribution.": uniform.with_guidance > 0,
+        f"Only {guided.with_guidance} of the {pairs} guided attempts had guided samples.": guided.with_guidance < pairs,
+        f"{uniform.with_guidance} of the uniform attempts had guided samples.": uniform.with_guidance > 0,
         f"Of {comparison.proven_by_one} pairs of paths one is proven and the other is not (--resolution): they are not asked the same, in "
         "checks or in time.": comparison.proven_by_one > 0,
         f"{comparison.unpaired} problems were answered by one side only and left out.": comparison.unpaired > 0,

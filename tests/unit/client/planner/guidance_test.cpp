@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "tests/unit/client/planner/planar_problem.hpp"
+
 namespace kinship::guided::guidance_test {
 namespace {
 
@@ -178,6 +180,40 @@ TEST(GuidanceCache, FindsOnlyWhatWasAskedAndGot) {
   EXPECT_EQ(cache.choose(problem_at(0.5)).guidance, nullptr);
   ASSERT_NE(cache.choose(problem_at(1)).guidance, nullptr);
   EXPECT_EQ(cache.choose(problem_at(1)).guidance->revision, 3U);
+}
+
+TEST(GuidanceCache, AGuideThatNeedsNoExperienceAsksNoServerAndKeepsItsEvidence) {
+  GuidanceOptions alone = wanted();
+  alone.guide = Guide::Retreat;
+  alone.chain = test::planar_robot().chain;
+  GuidanceCache cache(nullptr, alone);
+  const GuidanceAnswer& answer = cache.ask(placement(0)).first;
+  ASSERT_TRUE(answer.guidance);
+  EXPECT_EQ(answer.message,
+            "guide retreat, which needs no experience; share 1.00, the first query guided with "
+            "probability 0.64");
+  EXPECT_EQ(answer.guidance->guide, Guide::Retreat);
+  EXPECT_FALSE(answer.guidance->distribution_id);
+  ASSERT_NE(answer.guidance->experience, nullptr);
+
+  PlannedProblem planned;
+  planned.outcome = Outcome::Solved;
+  for (int i = 0; i < 20; ++i)
+    for (const SamplingMode mode : {SamplingMode::Guided, SamplingMode::Control}) {
+      planned.result.sampling_mode = mode;
+      planned.result.collision_checks = mode == SamplingMode::Guided ? 10'000 : 1000;
+      cache.add(planned);
+    }
+  cache.ask(placement(1));
+  int guided = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed)
+    guided += cache.choose(problem_at(1, seed)).sampling_mode == SamplingMode::Guided ? 1 : 0;
+  EXPECT_LT(guided, 20) << "what was learned at another placement";
+
+  alone.guide = Guide::None;
+  GuidanceCache none(nullptr, alone);
+  none.ask(placement(0));
+  EXPECT_EQ(none.choose(problem_at(0)).sampling_mode, SamplingMode::Uniform);
 }
 
 /// Guided queries at one placement that cost ten times as much as control ones.

@@ -90,6 +90,39 @@ TEST(PlanOptions, AlwaysMeansWithoutControlUnlessSaid) {
             0.2);
 }
 
+TEST(PlanOptions, AGuideThatNeedsNoExperienceNeedsNoTaskAndGuidesEveryQuery) {
+  for (const char* guide : {"retreat", "none"}) {
+    const Parsed answer = parsed({"p", "m", "--guide", guide});
+    ASSERT_TRUE(std::holds_alternative<PlanOptions>(answer.answer)) << answer.err;
+    EXPECT_EQ(answer.err, "");
+    EXPECT_EQ(answer.options().guidance, GuidanceMode::Always);
+    EXPECT_EQ(answer.options().sampling.control_fraction, 0.0);
+    EXPECT_FALSE(answer.options().needs_experience());
+  }
+  const PlanOptions compared =
+      parsed({"p", "m", "--guide", "retreat", "--guidance", "auto", "--share", "0.5"}).options();
+  EXPECT_EQ(compared.guidance, GuidanceMode::Auto);
+  EXPECT_FALSE(compared.sampling.control_fraction);
+  EXPECT_TRUE(parsed({"p", "m", "--task", "a", "--guide", "ways"}).options().needs_experience());
+  EXPECT_TRUE(parsed({"p", "m", "--task", "a"}).options().needs_experience());
+  const Parsed noted = parsed({"p", "m", "--task", "a", "--guide", "retreat", "--wait", "1"});
+  EXPECT_NE(noted.err.find("note: --wait has no effect with a guide that needs no experience\n"),
+            std::string::npos)
+      << noted.err;
+  EXPECT_NE(noted.err.find("note: --task"), std::string::npos) << noted.err;
+}
+
+TEST(PlanOptions, AGuideThatNeedsExperienceSaysThatTheTaskIsMissing) {
+  for (const char* guide : {"ways", "mixture", "retreat+ways", "auto"}) {
+    const Parsed answer = parsed({"p", "m", "--guide", guide});
+    ASSERT_TRUE(std::holds_alternative<int>(answer.answer)) << guide;
+    EXPECT_EQ(answer.code(), 2);
+    EXPECT_NE(answer.err.find("--guide: " + std::string(guide) + " needs --task"),
+              std::string::npos)
+        << answer.err;
+  }
+}
+
 TEST(PlanOptions, UniformIsAlsoCalledNone) {
   for (const char* word : {"uniform", "none"})
     EXPECT_EQ(parsed({"p", "m", "--guidance", word}).options().guidance, GuidanceMode::Uniform);
@@ -232,6 +265,8 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {"p", "--model", "m", "--control-share", "0.5"},
       {"p", "--model", "m", "--profile", "paper"},
       {"p", "--model", "m", "--sources", "panda"},
+      {"p", "--model", "m", "--sources", "panda", "--guide", "retreat"},
+      {"p", "--model", "m", "--report", "--guide", "retreat"},
       {"p", "--model", "m", "--guidance", "always"},
       {"p", "--model", "m", "--task", "a", "--share", "nan"},
       {"p", "--model", "m", "--task", "a", "--wait", "nan"},

@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "client/guided/guidance.hpp"
 #include "client/guided/plan_problem.hpp"
+#include "proto/json/problem_json.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/path_vertices.hpp"
@@ -80,6 +82,22 @@ TEST(PlanProblemByExperience, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
   EXPECT_EQ(control.collision_checks, planned(again).result.collision_checks);
   EXPECT_EQ(control.tracks_followed, 0U);
   EXPECT_EQ(control.track_share, 0);
+}
+
+TEST(PlanProblemByExperience, TheRetreatNeedsNone) {
+  GuidanceOptions wanted;
+  wanted.chain = planar_robot().chain;
+  wanted.guide = Guide::Retreat;
+  const GuidanceAnswer alone = fetch_guidance(nullptr, wanted, std::nullopt);
+  const ProblemResult guided =
+      planned(wall_problem(), {}, {&*alone.guidance, SamplingMode::Guided}).result;
+  ASSERT_TRUE(guided.solved) << guided.reason;
+  EXPECT_EQ(guided.guide, Guide::Retreat);
+  EXPECT_GE(guided.tracks_followed, 1U);
+  EXPECT_GT(guided.track_share, 0);
+  const ProblemResult read = json::problem_result_from_json(json::to_json(guided)).value_or_throw();
+  EXPECT_EQ(read.sampling_mode, SamplingMode::Guided);
+  EXPECT_EQ(read.guide, Guide::Retreat);
 }
 
 TEST(PlanProblemByExperience, WhereTheStraightLineIsFreeNoTrackIsFollowed) {

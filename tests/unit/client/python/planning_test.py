@@ -56,6 +56,16 @@ class Paths(OfAUr10e):
         self.assertTrue(kinship.World.of_problem(self.robot, self.problem).free(np.concatenate(steps)).all())
         self.assertFalse(kinship.World.of_problem(self.robot, self.problem).free(np.linspace(START, GOAL, 40)).all())
 
+    def test_retreat_without_experience(self):
+        alone = kinship.Guidance.alone(self.robot)
+        self.assertEqual((alone.guide, alone.guided_part, alone.distribution_id), ("retreat", 1, None))
+        plan = kinship.plan(self.robot, self.problem, alone)
+        self.assertTrue(plan.solved, plan.reason)
+        self.assertEqual((plan.sampling_mode, plan.guide), ("guided", "retreat"))
+        self.assertGreater(plan.tracks_followed, 0)
+        with self.assertRaisesRegex(kinship.errors.InvalidInput, "guide 'ways' needs the experience"):
+            kinship.Guidance.alone(self.robot, "ways")
+
     def test_are_the_same_for_equal_seeds_alone(self):
         first, again, other = (kinship.plan(self.robot, self.problem, seed=seed) for seed in (5, 5, 6))
         np.testing.assert_array_equal(first.waypoints, again.waypoints)
