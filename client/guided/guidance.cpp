@@ -1,5 +1,6 @@
 #include "client/guided/guidance.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -53,6 +54,15 @@ std::string describe(const TaskExperience& experience) {
          std::to_string(experience.paths_known);
 }
 
+/// "80 paths to recall, planned for 40 recorded queries, 12 of them its own".
+std::string describe(const RecallLibrary& library) {
+  const auto own =
+      std::ranges::count_if(library.queries, [](const auto& query) { return !query.is_synthetic; });
+  return std::to_string(library.paths.size()) + " paths to recall, planned for " +
+         std::to_string(library.queries.size()) + " recorded queries, " + std::to_string(own) +
+         " of them its own";
+}
+
 /// "rehearsed on 50 queries: guide retreat+ways".
 std::string describe(const Rehearsal& rehearsal) {
   if (rehearsal.queries == 0 && !rehearsal.message.empty())
@@ -79,7 +89,7 @@ bool needs_server(const GuidanceOptions& wanted) {
 }
 
 /// Guidance by the distribution, the experience, or both; with neither by the robot alone.
-GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience experience,
+GuidanceAnswer answer_with(const Distribution* distribution, KnownExperience known,
                            const Rehearsal* rehearsal, const GuidanceOptions& wanted) {
   const Guide guide = wanted.guide.value_or(rehearsal != nullptr ? rehearsal->guide : Guide::All);
   SamplingModeOptions sampling = wanted.sampling;
@@ -101,11 +111,14 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
   }
   if (!needs_server(wanted))
     answer.message = "guide " + std::string(to_text(guide)) + ", which needs no experience";
-  else if (experience)
-    answer.message += (answer.message.empty() ? "" : "; ") + describe(experience->experience());
+  else if (known.ways)
+    answer.message += (answer.message.empty() ? "" : "; ") + describe(known.ways->experience());
+  if (known.recall)
+    answer.message += (answer.message.empty() ? "" : "; ") + describe(known.recall->library());
   if (rehearsal != nullptr && !wanted.guide)
     answer.message += "; " + describe(*rehearsal);
-  guidance.experience = std::move(experience);
+  guidance.experience = std::move(known.ways);
+  guidance.recall = std::move(known.recall);
   answer.sampling.emplace(advice, sampling);
   answer.message += "; " + describe(*answer.sampling, guidance.guided_fraction);
   if (!advice.evidence.empty())
@@ -150,14 +163,19 @@ GuidanceAnswer without_guidance(const FetchReply& reply, const GuidanceOptions& 
   return refusal(NoGuidance::Failed, or_else(reply.message, "the server refused the request"));
 }
 
+/// Whether a library can guide this robot.
+bool is_for(const RecallLibrary& library, Eigen::Index dof) {
+  return !library.paths.empty() && library.queries.front().start.size() == dof;
+}
+
 }  // namespace
 
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base,
-                              SharedExperience known) {
+                              KnownExperience known) {
   if (!needs_server(wanted)) {
-    if (!known && wanted.chain)
-      known = std::make_shared<planning::ExperienceGuide>(*wanted.chain, TaskExperience{});
+    if (!known.ways && wanted.chain)
+      known.ways = std::make_shared<planning::ExperienceGuide>(*wanted.chain, TaskExperience{});
     return answer_with(nullptr, std::move(known), nullptr, wanted);
   }
   FetchRequest request;
@@ -169,7 +187,8 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
   request.deadline = wanted.wait;
   if (wanted.chain) {
     request.experience_bytes = kDefaultExperienceBytes;
-    request.known_experience = known ? known->experience().revision : 0;
+    request.known_experience = known.ways ? known.ways->experience().revision : 0;
+    request.known_recall = known.recall ? known.recall->library().revision : 0;
     request.rehearsed = wanted.rehearsed;
   }
   const Result<FetchReply> reply = fetch(request);
@@ -178,10 +197,12 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     return refusal(nobody ? NoGuidance::NoServer : NoGuidance::Failed, reply.error().message);
   }
   if (wanted.chain && reply->experience && !reply->experience->paths.empty())
-    known = std::make_shared<planning::ExperienceGuide>(*wanted.chain, *reply->experience);
+    known.ways = std::make_shared<planning::ExperienceGuide>(*wanted.chain, *reply->experience);
+  if (wanted.chain && reply->recall && is_for(*reply->recall, wanted.dof))
+    known.recall = std::make_shared<recall::RecallGuide>(*wanted.chain, *reply->recall);
   const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
                          validate(*reply->distribution, wanted.dof).empty();
-  if (!is_usable && !known)
+  if (!is_usable && !known.ways && !known.recall)
     return without_guidance(*reply, wanted);
   return answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known),
                      reply->rehearsal ? &*reply->rehearsal : nullptr, wanted);
@@ -200,11 +221,11 @@ std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(
     return {known->second, false};
   GuidanceAnswer answer = server_missing_
                               ? refusal(NoGuidance::NoServer, "no server answered before")
-                              : fetch_guidance(fetch_, wanted_, T_task_base, experience_);
+                              : fetch_guidance(fetch_, wanted_, T_task_base, known_);
   if (answer.why_not == NoGuidance::NoServer)
     server_missing_ = true;
   if (answer.guidance)
-    experience_ = answer.guidance->experience;
+    known_ = {answer.guidance->experience, answer.guidance->recall};
   // The answer's is of the same task and robot as those before, and newer; without a server it
   // knows nothing.
   if (answer.sampling && (needs_server(wanted_) || !sampling_))

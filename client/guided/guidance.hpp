@@ -50,12 +50,18 @@ struct GuidanceAnswer {
 /// The task's experience as one robot follows it; null: none.
 using SharedExperience = std::shared_ptr<const planning::ExperienceGuide>;
 
+/// What a robot holds of a task's experience, for all placements.
+struct KnownExperience {
+  SharedExperience ways;
+  std::shared_ptr<const recall::RecallGuide> recall;  ///< null: none
+};
+
 /// Fetches once; not at all with a guide that needs no experience: the robot alone is enough. Never
 /// throws for a server's reply.
 /// \param known  earlier experience of robot and task: kept unless the reply has newer.
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base,
-                              SharedExperience known = nullptr);
+                              KnownExperience known = {});
 
 /// The guidance of a run, fetched once per distinct placement (snapped to 1 mm and 1 mrad) before
 /// planning; a missing placement counts as one of its own. After one fetch without an answer it
@@ -82,7 +88,7 @@ class GuidanceCache {
   Fetch fetch_;
   GuidanceOptions wanted_;
   std::map<Key, GuidanceAnswer> answers_;
-  SharedExperience experience_;                  // of all placements
+  KnownExperience known_;                        // of all placements
   std::optional<SamplingModeChooser> sampling_;  // of all placements: same task, same robot
   bool server_missing_ = false;
 };

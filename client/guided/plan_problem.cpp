@@ -25,6 +25,7 @@
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/repetition_roadmap.hpp"
 #include "robots/planning/shortcut.hpp"
+#include "robots/recall/recall.hpp"
 
 namespace kinship::guided {
 namespace {
@@ -156,8 +157,12 @@ class Planning {
     bounds_ = planning::planning_bounds(robot_.chain, start_);
     if (problem_.constraint)
       constraint_.emplace(robot_.chain, *problem_.constraint, T_task_base_, bounds_);
-    const Eigen::MatrixXd goals = find_goals(planned.result);
-    if (goals.cols() == 0)
+    Eigen::MatrixXd goals;
+    if (!problem_.T_task_goal && (goals = find_goals(planned.result)).cols() == 0)
+      return;
+    if (guidance != nullptr && recall(*guidance, goals, planned))
+      return;
+    if (problem_.T_task_goal && (goals = find_goals(planned.result)).cols() == 0)
       return;
     planning::BirrtOptions options;
     options.step = settings_.resolution;
@@ -178,15 +183,47 @@ class Planning {
     planned.outcome = outcome_of(summary);
     planned.result.not_planned = not_planned_by(summary.reason);
     planned.result.solved = summary.waypoints.has_value();
-    planned.result.collision_checks = summary.collision_checks;
+    planned.result.collision_checks += summary.collision_checks;
     planned.result.projections = summary.projections;
-    planned.result.planning_time_s = planning::thread_time_s() - begin_s - shortening_s_;
+    planned.result.planning_time_s += planning::thread_time_s() - begin_s - shortening_s_;
     planned.result.tracks_followed = summary.tracks_followed;
     planned.result.found_by = summary.found_by;
     planned.result.reason = explain(summary.reason, summary.planner_message);
   }
 
  private:
+  /// Tries whole stored paths, which needs no goal configurations of a pose.
+  /// \return whether one solves the problem.
+  bool recall(const Guidance& guidance, const Eigen::MatrixXd& goals, PlannedProblem& planned) {
+    ProblemResult& result = planned.result;
+    if (!guidance.recall || !has_recall(guidance.guide) || constraint_ ||
+        result.sampling_mode != SamplingMode::Guided)
+      return false;
+    const double begin_s = planning::thread_time_s();
+    recall::Query query{T_task_base_, bounds_, start_, goals};
+    if (problem_.T_task_goal)
+      query.T_base_goal = T_task_base_.inverse() * *problem_.T_task_goal;
+    query.T_task_anchors =
+        recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
+    recall::RecallSummary summary =
+        recall::recall(*guidance.recall, query, is_free_, {.step = settings_.resolution});
+    result.guide = guidance.guide;
+    result.collision_checks = summary.collision_checks;
+    result.recall_tries = summary.tries;
+    result.planning_time_s = planning::thread_time_s() - begin_s;
+    if (!summary.waypoints)
+      return false;
+    result.solved = true;
+    result.not_planned.reset();
+    result.found_by = FoundBy::Recalled;
+    result.proven = is_free_.proves_edges();
+    if (result.proven && std::isfinite(summary.least_clearance_m))
+      result.least_clearance_m = summary.least_clearance_m;
+    result.waypoints = vertices(*summary.waypoints, settings_.resolution);
+    planned.outcome = Outcome::Solved;
+    return true;
+  }
+
   planning::IsFree what_is_free(const std::function<bool()>& stop) {
     const auto interrupt = [&stop] {
       if (stop())

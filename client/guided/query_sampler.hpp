@@ -13,6 +13,7 @@
 #include "robots/kinematics/chain.hpp"
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/experience_guide.hpp"
+#include "robots/recall/recall_guide.hpp"
 
 namespace kinship::guided {
 
@@ -23,6 +24,7 @@ struct Guidance {
   std::uint64_t revision = 0;             ///< of the distribution
   std::optional<Mixture> mixture;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< null: none
+  std::shared_ptr<const recall::RecallGuide> recall;            ///< null: none
   double guided_fraction = 0;  ///< of the samples of a guided query
   Guide guide = Guide::All;    ///< the parts that a guided query uses
 };

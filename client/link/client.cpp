@@ -176,13 +176,15 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
     return line_->fetching.call(request, Clock::now() + line_->timeout);
   const Clock::time_point deadline = Clock::now() + request.deadline;
   std::optional<Result<FetchReply>> last;
-  std::optional<TaskExperience> experience;  // a reply that is not final may have brought it
+  // A reply that is not final may have brought them.
+  std::optional<TaskExperience> experience;
+  std::optional<RecallLibrary> recall;
   const auto answer = [&]() -> Result<FetchReply> {
-    if (!*last || (*last)->experience || !experience)
-      return *std::move(last);
-    FetchReply whole = **last;
-    whole.experience = std::move(experience);
-    return whole;
+    if (*last && !(*last)->experience)
+      (*last)->experience = std::move(experience);
+    if (*last && !(*last)->recall)
+      (*last)->recall = std::move(recall);
+    return *std::move(last);
   };
   while (true) {
     const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
@@ -195,6 +197,10 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
     if (*last && (*last)->experience) {
       experience = (*last)->experience;
       request.known_experience = (*last)->experience->revision;
+    }
+    if (*last && (*last)->recall) {
+      recall = (*last)->recall;
+      request.known_recall = (*last)->recall->revision;
     }
     const std::optional<milliseconds> pause = is_worse ? std::nullopt : pause_after(*last);
     if (!pause || Clock::now() + *pause >= deadline)

@@ -267,6 +267,8 @@ void bind_guided(py::class_<Plan>& plan) {
                              "Of samples around stored ways, a part of share.")
       .def_property_readonly("tracks_followed", result(&ProblemResult::tracks_followed),
                              "Stored ways that were tried.")
+      .def_property_readonly("recall_tries", result(&ProblemResult::recall_tries),
+                             "Whole stored paths that were tried before a search.")
       .def_property_readonly("found_by", word(&ProblemResult::found_by),
                              "'recalled', 'straight_line', 'track', 'search' or 'nothing'.")
       .def_property_readonly("guidance_reason", result(&ProblemResult::guidance_reason),

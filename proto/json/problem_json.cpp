@@ -90,6 +90,7 @@ constexpr std::tuple kGuidance{
     Field{"track_share", &ProblemResult::track_share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"experience_revision", &ProblemResult::experience_revision, {.may_be_missing = true}},
     Field{"tracks_followed", &ProblemResult::tracks_followed, {.may_be_missing = true}},
+    Field{"recall_tries", &ProblemResult::recall_tries, {.may_be_missing = true}},
     Field{"guide", &ProblemResult::guide, {.may_be_missing = true}}};
 
 constexpr std::tuple kReasons{

@@ -61,6 +61,7 @@ struct ProblemResult {
   double track_share = 0;                 ///< of samples around tracks; a part of share
   std::uint64_t experience_revision = 0;  ///< of the stored pose paths behind the tracks; 0: none
   std::uint64_t tracks_followed = 0;
+  std::uint64_t recall_tries = 0;  ///< whole stored paths tried before a search
   /// Guided, but with fewer samples of the mixture than wanted, or none: start or goals are far
   /// from the mixture.
   bool gate_fired = false;

@@ -223,9 +223,9 @@ Query LibraryMaker::query_of(std::size_t query, bool is_pose) const {
 bool LibraryMaker::works(const planning::IsFree& is_free, const Query& query,
                          const Candidate& candidate) {
   const double begin_s = planning::thread_time_s();
-  std::uint64_t checks = 0;
+  RecallSummary summary;
   auto warp = guide_->warp(query, candidate);
-  if (warp && whole_if_free(*warp, is_free, options_.step, checks))
+  if (warp && is_whole_free(*warp, is_free, options_.step, summary))
     return true;
   failed_s_ += planning::thread_time_s() - begin_s;
   ++failed_;

@@ -1,6 +1,7 @@
 #include "robots/recall/recall.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -42,40 +43,51 @@ class Asked {
 };
 
 /// Whether the lines of a path are free whose ends are: proven, or checked from coarse to fine.
-/// \return the path as RecallSummary::waypoints has it; nothing if they are not.
-std::optional<Eigen::MatrixXd> lines_if_free(const Eigen::MatrixXd& path,
-                                             const planning::IsFree& is_free, double step,
-                                             std::uint64_t& checks) {
+bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free, double step,
+                    RecallSummary& summary) {
   constexpr Eigen::Index kStride = 8;
-  if (is_free.proves_edges())
-    return is_free.way_is_free(path) ? std::optional(path) : std::nullopt;
+  if (is_free.proves_edges()) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const auto& line :
+         is_free.edges(path.leftCols(path.cols() - 1), path.rightCols(path.cols() - 1))) {
+      if (!line)
+        return false;
+      least_m = std::min(least_m, *line);
+    }
+    summary.least_clearance_m = least_m;
+    summary.waypoints = path;
+    return true;
+  }
   Eigen::MatrixXd dense = planning::densified(path, step);
-  Asked asked(is_free, checks);
+  Asked asked(is_free, summary.collision_checks);
   for (Eigen::Index stride = kStride; stride >= 1; stride /= 2)
     for (Eigen::Index i = stride; i < dense.cols() - 1; i += stride)
       if ((stride == kStride || i % (2 * stride) != 0) && !asked.add(dense.col(i)))
-        return std::nullopt;
-  return asked.are_free() ? std::optional(std::move(dense)) : std::nullopt;
+        return false;
+  if (!asked.are_free())
+    return false;
+  summary.waypoints = std::move(dense);
+  return true;
 }
 
 }  // namespace
 
-std::optional<Eigen::MatrixXd> whole_if_free(Warp& warp, const planning::IsFree& is_free,
-                                             double step, std::uint64_t& checks) {
+bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
+                   RecallSummary& summary) {
   const Eigen::MatrixXd& path = warp.waypoints();
-  Asked asked(is_free, checks);
+  Asked asked(is_free, summary.collision_checks);
   if (!asked.add(path.rightCols<1>()))
-    return std::nullopt;
+    return false;
   constexpr Eigen::Index kCoarse = 4;
-  for (Eigen::Index stride = kCoarse; stride >= 1; stride /= 4) {
+  for (Eigen::Index stride = kCoarse; stride >= 1; stride /= kCoarse) {
     warp.compute(stride, stride);
     for (Eigen::Index i = stride; i < path.cols() - 1; i += stride)
       if ((stride == kCoarse || i % kCoarse != 0) && !asked.add(path.col(i)))
-        return std::nullopt;
+        return false;
     if (!asked.are_free())
-      return std::nullopt;
+      return false;
   }
-  return lines_if_free(path, is_free, step, checks);
+  return are_lines_free(path, is_free, step, summary);
 }
 
 RecallSummary recall(const RecallGuide& guide, const Query& query, const planning::IsFree& is_free,
@@ -85,24 +97,24 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
   const RecallLibrary& library = guide.library();
   const double most = options.most_spent * library.search_checks;
   double missed = 1;  // chance that no try works
-  std::uint64_t& checks = summary.collision_checks;
   std::optional<Candidate> candidate = ranking.next(options.step);
   if (candidate) {
-    ++checks;
+    ++summary.collision_checks;
     if (!is_free(query.start))
       return summary;
   }
-  for (; candidate && static_cast<double>(checks) < most; candidate = ranking.next(options.step)) {
+  for (; candidate && static_cast<double>(summary.tries) * library.try_checks <= most;
+       candidate = ranking.next(options.step)) {
     if (auto warp = guide.warp(query, *candidate)) {
       if (summary.tries++ == 0) {
         Eigen::MatrixXd line(query.start.size(), 2);
         line << query.start, warp->waypoints().rightCols<1>();
-        summary.waypoints = lines_if_free(line, is_free, options.step, checks);
+        ++summary.collision_checks;
+        if (is_free(line.col(1)) && are_lines_free(line, is_free, options.step, summary))
+          break;
       }
       missed *= 1 - ranking.chance();
-      if (!summary.waypoints)
-        summary.waypoints = whole_if_free(*warp, is_free, options.step, checks);
-      if (summary.waypoints)
+      if (is_whole_free(*warp, is_free, options.step, summary))
         break;
     }
     ranking.fail();

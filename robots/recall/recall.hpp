@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "robots/planning/is_free.hpp"
@@ -22,14 +23,16 @@ struct RecallSummary {
   std::optional<Eigen::MatrixXd> waypoints;
   std::uint64_t collision_checks = 0;
   std::uint64_t tries = 0;
+  /// Of a proven path: see planning::IsFree::Lines, m.
+  double least_clearance_m = std::numeric_limits<double>::infinity();
   double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
 };
 
 /// Whether a path is free: it is computed and checked at few waypoints first, then at all, then
-/// between these. \param checks  out: those made are added.
-/// \return the path as RecallSummary::waypoints has it; nothing if it is not free.
-std::optional<Eigen::MatrixXd> whole_if_free(Warp& warp, const planning::IsFree& is_free,
-                                             double step, std::uint64_t& checks);
+/// between these.
+/// \param summary  out: checks are added; if it is free, its waypoints and clearance.
+bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
+                   RecallSummary& summary);
 
 /// Tries whole paths on a query, the most promising first, as long as that is cheaper in the mean
 /// than a search. A path is checked at few configurations first, then between these. Starts with
