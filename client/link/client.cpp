@@ -180,11 +180,14 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
   std::optional<TaskExperience> experience;
   std::optional<RecallLibrary> recall;
   const auto answer = [&]() -> Result<FetchReply> {
-    if (*last && !(*last)->experience)
-      (*last)->experience = std::move(experience);
-    if (*last && !(*last)->recall)
-      (*last)->recall = std::move(recall);
-    return *std::move(last);
+    if (!*last)
+      return *std::move(last);
+    FetchReply whole = **last;
+    if (!whole.experience)
+      whole.experience = std::move(experience);
+    if (!whole.recall)
+      whole.recall = std::move(recall);
+    return whole;
   };
   while (true) {
     const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
