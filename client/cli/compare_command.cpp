@@ -8,6 +8,7 @@
 #include "client/cli/cell_text.hpp"
 #include "client/cli/plot_commands.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/cli/value_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "client/link/robot_names.hpp"
 #include "client/plots/plot_pages.hpp"
@@ -146,10 +147,12 @@ Transferability compare_pair(link::Client& server, const CompareOptions& options
   return pair;
 }
 
-/// The queries that a target could not take, and the messages of pairs.
+/// By time and by checks, the queries that a target could not take, and the messages of pairs.
 void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out) {
   for (const Transferability& pair : pairs) {
     const std::string names = pair.target_label + " from " + pair.source_label + ": ";
+    if (const auto value = pair.rehearsal ? worth(*pair.rehearsal) : std::nullopt)
+      out << names << worth_text(*value) << '\n';
     if (!pair.message.empty())
       out << names << pair.message << '\n';
     if (pair.rehearsal && pair.rehearsal->left_out > 0)
@@ -162,11 +165,11 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
 void print_comparison(const std::string& task, const std::vector<Transferability>& pairs,
                       std::ostream& out) {
   out << "What the experience of each source is worth to each target on '" << task
-      << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
-         "source's recorded queries; * the best of a row. The path that once\nanswered a query "
-         "never "
-         "guides that query again, also on the diagonal, where a\nrobot uses its own "
-         "experience.\n\n";
+      << "': processor time of\nthe best guide that needs no experience (none, retreat) to that of "
+         "the best that uses it,\nby rehearsal of the source's recorded queries; above 1 it pays, "
+         "* "
+         "the best of a row. The\npath that once answered a query never guides that query again, "
+         "also on the diagonal,\nwhere a robot uses its own experience.\n\n";
   print_worths(pairs, out);
   out << '\n';
   print_remarks(pairs, out);
@@ -186,11 +189,13 @@ void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) 
     double best = 0;
     for (std::size_t i = row; i < row + sources; ++i)
       if (pairs[i].rehearsal)
-        best = std::max(best, worth(*pairs[i].rehearsal).value_or(0));
+        best = std::max(best, worth(*pairs[i].rehearsal).value_or(Worth{}).value());
     std::vector<std::string> cells{pairs[row].target_label};
     for (std::size_t i = row; i < row + sources; ++i) {
       const auto value = pairs[i].rehearsal ? worth(*pairs[i].rehearsal) : std::nullopt;
-      cells.push_back(!value ? "-" : number_text(*value, kDigits) + (*value == best ? "*" : " "));
+      cells.push_back(!value ? "-"
+                             : number_text(value->value(), kDigits) +
+                                   (value->value() == best ? "*" : " "));
     }
     table.add_row(std::move(cells));
   }

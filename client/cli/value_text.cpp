@@ -9,6 +9,7 @@
 
 #include "client/cli/cell_text.hpp"
 #include "proto/tables/table.hpp"
+#include "proto/types/duration_text.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::cli {
@@ -39,16 +40,25 @@ std::string sentence(const Rehearsal& rehearsal) {
   return text + (rehearsal.message.empty() ? "" : ": " + rehearsal.message);
 }
 
-/// How many times the checks of a guide are needed without one; "-" if unknown.
-std::string gain_text(const std::vector<GuideCost>& costs, const GuideCost& cost) {
+/// How many times the cost of a guide is spent without one; "-" if unknown.
+std::string gain_text(const std::vector<GuideCost>& costs, const GuideCost& cost,
+                      double GuideCost::*mean) {
   constexpr int kDigits = 2;
   const auto none = std::ranges::find(costs, Guide::None, &GuideCost::guide);
-  if (none == costs.end() || cost.mean_checks <= 0)
+  if (none == costs.end() || cost.*mean <= 0 || (*none).*mean <= 0)
     return "-";
-  return number_text(none->mean_checks / cost.mean_checks, kDigits);
+  return number_text((*none).*mean / cost.*mean, kDigits);
 }
 
 }  // namespace
+
+std::string worth_text(const Worth& worth) {
+  constexpr int kDigits = 2;
+  return (worth.by_time ? number_text(*worth.by_time, kDigits) + " by time, " : std::string()) +
+         number_text(worth.by_checks, kDigits) + " by checks (best without experience " +
+         std::string(to_text(worth.without)) + ", with it " + std::string(to_text(worth.with)) +
+         ")";
+}
 
 std::string axes_text(const TaskAxes& axes) {
   if (axes.all())
@@ -100,13 +110,19 @@ void print_rehearsal(const std::optional<Rehearsal>& rehearsal, std::ostream& ou
   out << sentence(*rehearsal) << '\n';
   if (rehearsal->costs.empty())
     return;
-  Table table({"GUIDE", "PLANS", "SOLVED", "MEAN CHECKS", "MEDIAN CHECKS", "UNIFORM / GUIDED", ""});
+  Table table({"GUIDE", "PLANS", "SOLVED", "MEAN TIME", "UNIFORM / GUIDED", "MEAN CHECKS",
+               "UNIFORM / GUIDED", ""});
   for (const GuideCost& cost : rehearsal->costs)
     table.add_row({std::string(to_text(cost.guide)), std::to_string(cost.plans),
-                   std::to_string(cost.solved), number_text(cost.mean_checks, 0),
-                   number_text(cost.median_checks, 0), gain_text(rehearsal->costs, cost),
+                   std::to_string(cost.solved),
+                   cost.mean_time_s > 0 ? duration_text(cost.mean_time_s) : "-",
+                   gain_text(rehearsal->costs, cost, &GuideCost::mean_time_s),
+                   number_text(cost.mean_checks, 0),
+                   gain_text(rehearsal->costs, cost, &GuideCost::mean_checks),
                    cost.guide == rehearsal->guide ? "chosen" : ""});
   table.print(out);
+  if (const auto value = worth(*rehearsal))
+    out << "worth of the experience: " << worth_text(*value) << '\n';
 }
 
 }  // namespace kinship::cli

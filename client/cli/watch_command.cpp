@@ -12,6 +12,7 @@
 
 #include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/cli/value_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/admin_rows_json.hpp"
@@ -182,7 +183,10 @@ class Watch {
 
   /// Robots and tasks whose evidence changed since the last reading; at first, all wanted ones.
   void read_guidance() {
-    std::vector<std::string> changed;
+    struct Change {
+      std::string task, robot, text;
+    };
+    std::vector<Change> changed;
     const RobotNames wanted = robot();
     const auto take = [&](const std::string& row) {
       const auto task = json::row_from_json<TaskSummary>(row);
@@ -194,13 +198,28 @@ class Watch {
         std::string text = printable(guidance_text(task->task, robot));
         std::string& known = known_guidance_[{task->task, robot.label}];
         if (!text.empty() && text != known)
-          changed.push_back(known = std::move(text));
+          changed.push_back({task->task, robot.label, known = std::move(text)});
       }
       return true;
     };
     static_cast<void>(link::for_each_row(server_, {.verb = AdminVerb::ListTasks}, take));
     if (!changed.empty())
-      guidance_ = std::move(changed);
+      guidance_.clear();
+    for (const Change& change : changed)
+      guidance_.push_back(change.text + printable(worth_of(change.task, change.robot)));
+  }
+
+  /// Of a robot's experience, by rehearsal with its newest distribution; empty: not rehearsed.
+  std::string worth_of(const std::string& task, const std::string& robot) {
+    const auto newest = link::row_of<DistributionSummary>(
+        server_, {.verb = AdminVerb::ListDistributions, .robot = robot, .task = task, .limit = 1});
+    if (!newest)
+      return {};
+    const auto explained = link::row_of<Explanation>(
+        server_, {.verb = AdminVerb::ExplainDistribution, .argument = newest->id.hex()});
+    const auto value =
+        explained && explained->rehearsal ? worth(*explained->rehearsal) : std::nullopt;
+    return value ? "; worth of its experience " + worth_text(*value) : std::string();
   }
 
   void tell_rates() {

@@ -59,7 +59,8 @@ class ServerRates {
 
 /// The cost of guided and uniform planning of a robot on a task so far, as checks per solution:
 /// "ur10e on box_to_shelf: 487 checks a solution guided, 852 uniform: 1.75 times fewer"; empty
-/// while one of the two sampling modes has no solution.
+/// while one of the two sampling modes has no solution. Guidance includes the retreat, so this is
+/// not the worth of experience.
 std::string guidance_text(const std::string& task, const TaskRobotSummary& robot);
 
 }  // namespace kinship::cli

@@ -20,19 +20,22 @@
     const cost = pair.rehearsal && pair.rehearsal.costs.find((each) => each.guide === guide);
     return cost || null;
   }
+  const time = (cost) => (cost && cost.mean_time_s ? `${fixed(1e3 * cost.mean_time_s, 2)}\u2009ms` : "\u2013");
+  const costs = (cost) => `${time(cost)}, ${count(cost.mean_checks)} checks in the mean, ${count(cost.solved)} of ${count(cost.plans)} plans solved`;
 
   /// What is known of a pair, in sentences.
   function sentences(pair) {
     const said = [`${pair.target_label} with the experience of ${isOwn(pair) ? "its own" : pair.source_label}: ` +
-                  (pair.worth === null ? "not known." : `${fixed(pair.worth, 2)}\u2009\u00d7 the collision checks without guidance to those with it.`)];
+                  (pair.worth === null ? "not known." : `the best guide without experience takes ${fixed(pair.worth, 2)}\u2009\u00d7 as ` +
+                    (pair.worth_by_time === null ? "many collision checks as the best with it." :
+                      `long as the best with it; ${fixed(pair.worth_by_checks, 2)}\u2009\u00d7 as many collision checks.`))];
     const {rehearsal} = pair;
     if (rehearsal) {
-      const none = costOf(pair, "none"), guided = costOf(pair, rehearsal.guide);
+      const without = costOf(pair, pair.without_experience), guided = costOf(pair, pair.with_experience);
       said.push(`${rehearsal.is_complete ? "Rehearsed" : "Being rehearsed"} on ${count(rehearsal.queries)} recorded ${rehearsal.queries === 1 ? "query" : "queries"}` +
         (rehearsal.left_out ? `; ${count(rehearsal.left_out)} left out, whose start or goal it cannot take where it stands.` : "."));
-      if (none && guided)
-        said.push(`Guide ${rehearsal.guide}: mean ${count(guided.mean_checks)} checks, ${count(guided.solved)} of ${count(guided.plans)} plans solved; ` +
-          `without: ${count(none.mean_checks)}, ${count(none.solved)} of ${count(none.plans)}.`);
+      if (without && guided)
+        said.push(`With experience, ${pair.with_experience}: ${costs(guided)}. Without, ${pair.without_experience}: ${costs(without)}. Chosen: ${rehearsal.guide}.`);
     }
     if (pair.message) said.push(pair.message);
     return said;
@@ -60,8 +63,8 @@
   byId("title").textContent = `Whose experience helps whom on \u201c${task}\u201d`;
   byId("lead").textContent = `Predicted before anybody planned with it: the server planned the recorded queries of ${listed(sources)} again for ${listed(targets)}, ` +
     "each time with the experience of one robot alone.";
-  byId("matrix-text").textContent = "A row is a robot that plans, a column the robot that it learns from. The number is how many times the collision checks of guided planning are needed " +
-    "without guidance (means): above 1 the experience saves. * is the best of a row; a dashed frame is a robot\u2019s own experience; \u2013 is not known. " +
+  byId("matrix-text").textContent = "A row is a robot that plans, a column the robot that it learns from. The number is how many times the processor time of the best guide with experience " +
+    "the best without any takes (uniform planning, or the retreat; means): above 1 the experience saves. * is the best of a row; a dashed frame is a robot\u2019s own experience; \u2013 is not known. " +
     "No query is helped by its own answer, in a robot\u2019s own cell neither: the path that once answered it is left out. Other paths of that robot stay, also to places nearby. Point at a cell, or step through them with Tab, for its counts.";
   byId("scale").append(...steps.map((step) => make("span", {style: shading(step)}, step[1])));
   byId("scale").setAttribute("aria-label", "Colours from orange, where the experience costs, over grey to dark blue, where it saves most.");
@@ -69,18 +72,17 @@
   byId("detail").append(make("p", {class: "note"}, "The counts of a cell appear here."));
 
   fillTable(byId("pairs"), [
-    ["target", "source", "worth", "guide", "queries", "left out", "checks without", "with", "solved without", "with"],
+    ["target", "source", "worth by time", "by checks", "without experience", "with", "queries", "left out", "time without", "with", "checks without", "with"],
     ...pairs.map((pair) => {
       const {rehearsal} = pair;
-      if (!rehearsal) return [pair.target_label, pair.source_label, ...Array(8).fill("\u2013")];
-      const none = costOf(pair, "none"), guided = costOf(pair, rehearsal.guide);
-      const solved = (cost) => (cost ? `${count(cost.solved)} of ${count(cost.plans)}` : "\u2013");
+      if (!rehearsal) return [pair.target_label, pair.source_label, ...Array(10).fill("\u2013")];
+      const without = costOf(pair, pair.without_experience), guided = costOf(pair, pair.with_experience);
       const checks = (cost) => (cost ? count(cost.mean_checks) : "\u2013");
-      return [pair.target_label, pair.source_label, fixed(pair.worth, 2), rehearsal.guide, count(rehearsal.queries), count(rehearsal.left_out),
-              checks(none), checks(guided), solved(none), solved(guided)];
+      return [pair.target_label, pair.source_label, fixed(pair.worth_by_time, 2), fixed(pair.worth_by_checks, 2), pair.without_experience || "\u2013",
+              pair.with_experience || "\u2013", count(rehearsal.queries), count(rehearsal.left_out), time(without), time(guided), checks(without), checks(guided)];
     })]);
-  byId("pairs-note").textContent = "Checks: collision checks, mean of all plans of a rehearsal; one that was not solved counts what it had spent. Guide: what served best of ways of the hand, " +
-    "retreat and mixture. A rehearsal is one draw of seeds over the queries that the source recorded.";
+  byId("pairs-note").textContent = "Time: processor time, checks: collision checks; means of all plans of a rehearsal; one that was not solved counts what it had spent. The guides are the " +
+    "fastest without experience (none, retreat) and with it (ways of the hand, mixture). By checks each side has the guide with the fewest. A rehearsal is one draw of seeds over the queries that the source recorded.";
   byId("remarks").append(...pairs.filter((pair) => pair.message).map((pair) =>
     make("li", {}, `${pair.target_label} from ${pair.source_label}: ${pair.message}`)));
   byId("footer").textContent = "Written by kinship robots compare from the rehearsals of the server. The page holds everything it needs and loads nothing.";

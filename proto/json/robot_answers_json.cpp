@@ -33,7 +33,11 @@ std::string to_json(const std::string& task, const std::vector<Transferability>&
     row["source"] = pair.source.hex();
     row["source_label"] = pair.source_label;
     const auto value = pair.rehearsal ? worth(*pair.rehearsal) : std::nullopt;
-    row["worth"] = value ? OrderedJson(*value) : OrderedJson(nullptr);
+    row["worth"] = value ? OrderedJson(value->value()) : OrderedJson(nullptr);
+    row["worth_by_time"] = value && value->by_time ? OrderedJson(*value->by_time) : nullptr;
+    row["worth_by_checks"] = value ? OrderedJson(value->by_checks) : nullptr;
+    row["without_experience"] = value ? OrderedJson(to_text(value->without)) : nullptr;
+    row["with_experience"] = value ? OrderedJson(to_text(value->with)) : nullptr;
     row["rehearsal"] = pair.rehearsal ? json_of(*pair.rehearsal) : OrderedJson(nullptr);
     row["message"] = pair.message;
     rows.push_back(std::move(row));

@@ -19,8 +19,8 @@ std::string to_json(const RobotCheck& check);
 
 std::string to_json(const ForwardAnswer& answer);
 
-/// `robots compare`: {"task": ..., "rows": [...]}, one row per pair; worth is null if it is not
-/// known.
+/// `robots compare`: {"task": ..., "rows": [...]}, one row per pair; worth is by time, by checks if
+/// no time is known, null without either.
 std::string to_json(const std::string& task, const std::vector<Transferability>& pairs);
 
 std::string to_json(const RobotLinks& links);

@@ -55,6 +55,7 @@ struct GuideCost {
   std::uint64_t solved = 0;  ///< plans solved within the limit of a rehearsal
   double mean_checks = 0;    ///< of all plans, including the checks of unsolved ones
   double median_checks = 0;
+  double mean_time_s = 0;  ///< processor time of all plans: guidance, tracks, search; 0: unknown
 
   bool operator==(const GuideCost&) const = default;
 };
@@ -62,9 +63,11 @@ struct GuideCost {
 template <>
 inline constexpr std::tuple kFieldsOf<GuideCost>{
     Field{"guide", &GuideCost::guide, {.max = static_cast<double>(Guide::All)}},
-    Field{"plans", &GuideCost::plans}, Field{"solved", &GuideCost::solved},
+    Field{"plans", &GuideCost::plans},
+    Field{"solved", &GuideCost::solved},
     Field{"mean_checks", &GuideCost::mean_checks, {.min = 0}},
-    Field{"median_checks", &GuideCost::median_checks, {.min = 0}}};
+    Field{"median_checks", &GuideCost::median_checks, {.min = 0}},
+    Field{"mean_time_s", &GuideCost::mean_time_s, {.min = 0}}};
 
 inline constexpr std::size_t kMaxGuideCosts = 16;
 

@@ -1,23 +1,39 @@
 #include "proto/types/transferability.hpp"
 
-#include <algorithm>
-
 namespace kinship {
 namespace {
 
-const GuideCost* cost_of(const Rehearsal& rehearsal, Guide guide) {
-  const auto cost = std::ranges::find(rehearsal.costs, guide, &GuideCost::guide);
-  return cost == rehearsal.costs.end() ? nullptr : &*cost;
+using Mean = double GuideCost::*;
+
+/// The cheapest guide with, or without, experience; null: none was planned with, or its cost is
+/// unknown.
+const GuideCost* cheapest(const Rehearsal& rehearsal, bool with_experience, Mean mean) {
+  const GuideCost* best = nullptr;
+  for (const GuideCost& cost : rehearsal.costs) {
+    if (needs_experience(cost.guide) != with_experience || cost.plans == 0)
+      continue;
+    if (cost.*mean <= 0)
+      return nullptr;
+    if (best == nullptr || cost.*mean < best->*mean)
+      best = &cost;
+  }
+  return best;
 }
 
 }  // namespace
 
-std::optional<double> worth(const Rehearsal& rehearsal) {
-  const GuideCost* const none = cost_of(rehearsal, Guide::None);
-  const GuideCost* const best = cost_of(rehearsal, rehearsal.guide);
-  if (none == nullptr || best == nullptr || none->plans == 0 || best->mean_checks <= 0)
+std::optional<Worth> worth(const Rehearsal& rehearsal) {
+  const GuideCost* without = cheapest(rehearsal, false, &GuideCost::mean_checks);
+  const GuideCost* with = cheapest(rehearsal, true, &GuideCost::mean_checks);
+  if (without == nullptr || with == nullptr)
     return std::nullopt;
-  return none->mean_checks / best->mean_checks;
+  Worth found{std::nullopt, without->mean_checks / with->mean_checks, without->guide, with->guide};
+  without = cheapest(rehearsal, false, &GuideCost::mean_time_s);
+  with = cheapest(rehearsal, true, &GuideCost::mean_time_s);
+  if (without != nullptr && with != nullptr)
+    found = {without->mean_time_s / with->mean_time_s, found.by_checks, without->guide,
+             with->guide};
+  return found;
 }
 
 }  // namespace kinship

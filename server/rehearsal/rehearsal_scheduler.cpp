@@ -7,6 +7,7 @@
 #include <future>
 #include <string>
 
+#include "proto/types/duration_text.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/stopped.hpp"
@@ -47,12 +48,13 @@ std::string seconds(double value) {
   return text;
 }
 
-/// "; mean checks none 1552, ways 361".
+/// "; mean time none 4.12 ms (1552 checks), ways 1.05 ms (361 checks)".
 std::string described(const std::vector<GuideCost>& costs) {
   std::string text;
   for (const GuideCost& cost : costs)
-    text += (text.empty() ? "; mean checks " : ", ") + std::string(to_text(cost.guide)) + " " +
-            std::to_string(std::llround(cost.mean_checks));
+    text += (text.empty() ? "; mean time " : ", ") + std::string(to_text(cost.guide)) + " " +
+            duration_text(cost.mean_time_s) + " (" +
+            std::to_string(std::llround(cost.mean_checks)) + " checks)";
   return text;
 }
 

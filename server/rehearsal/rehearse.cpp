@@ -10,6 +10,7 @@
 #include "proto/types/stopped.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/guided_sampler.hpp"
+#include "robots/planning/planning_budget.hpp"
 
 namespace kinship::rehearsal {
 namespace {
@@ -29,16 +30,24 @@ constexpr std::array kByEffort = {
     Guide::None,    Guide::Retreat,        Guide::Ways,        Guide::RetreatWays,
     Guide::Mixture, Guide::RetreatMixture, Guide::WaysMixture, Guide::RetreatWaysMixture};
 
-/// \param costs  by effort, at least one.
-Guide cheapest(const std::vector<GuideCost>& costs) {
-  constexpr double kAsGood = 1.03;
-  const double least = std::ranges::min(costs, {}, &GuideCost::mean_checks).mean_checks;
-  return std::ranges::find_if(
-             costs, [&](const GuideCost& cost) { return cost.mean_checks <= kAsGood * least; })
-      ->guide;
+std::ptrdiff_t effort_of(const GuideCost& cost) {
+  return std::ranges::find(kByEffort, cost.guide) - kByEffort.begin();
 }
 
 }  // namespace
+
+Guide cheapest(std::span<const GuideCost> costs) {
+  constexpr double kAsGood = 1.03;
+  const bool is_timed =
+      std::ranges::all_of(costs, [](const GuideCost& cost) { return cost.mean_time_s > 0; });
+  double GuideCost::*const mean = is_timed ? &GuideCost::mean_time_s : &GuideCost::mean_checks;
+  const double enough = kAsGood * std::ranges::min(costs, {}, mean).*mean;
+  const GuideCost* best = nullptr;
+  for (const GuideCost& cost : costs)
+    if (cost.*mean <= enough && (best == nullptr || effort_of(cost) < effort_of(*best)))
+      best = &cost;
+  return best->guide;
+}
 
 std::size_t half_of(const Uuid& path) { return path.bytes.back() % kHalves; }
 
@@ -61,9 +70,11 @@ bool Rehearsing::step() {
       pose_query(*subject_.robot, subject_.T_task_base, subject_.recorded.queries[next_]);
   is_usable_[next_] = posed.has_value();
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
-  for (Tried& tried : guides_)
-    if (posed && !tried.is_left)
+  for (std::size_t i = 0; posed && i < guides_.size(); ++i) {
+    Tried& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first finds cold caches
+    if (!tried.is_left)
       plan(*posed, seed, tried);
+  }
   ++next_;
   advance();
   return true;
@@ -87,6 +98,7 @@ void Rehearsing::advance() {
 }
 
 void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const {
+  const double begin_s = planning::thread_time_s();
   const std::optional<Mixture>& mixture = subject_.mixtures.at(half_of(*posed.query.without));
   const planning::GuidedSampler guided =
       planning::guided_sampler(subject_.robot->chain, posed.query, mixture ? &*mixture : nullptr,
@@ -104,8 +116,13 @@ void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const
                                    {is_free, *posed.constraint}, guided.sampler, options, generator)
           : planning::plan_birrt(posed.query.start, posed.query.goals, is_free, guided.sampler,
                                  options, generator);
+  tried.time_s += planning::thread_time_s() - begin_s;
   tried.checks.push_back(static_cast<double>(summary.collision_checks));
   tried.solved += summary.waypoints ? 1U : 0U;
+}
+
+double Rehearsing::mean_time_s(const Tried& tried) {
+  return tried.time_s / static_cast<double>(tried.checks.size());
 }
 
 void Rehearsing::end_round() {
@@ -114,10 +131,10 @@ void Rehearsing::end_round() {
   double best = std::numeric_limits<double>::infinity();
   for (const Tried& tried : guides_)
     if (tried.checks.size() >= kEnough && !tried.is_left)
-      best = std::min(best, mean(tried.checks));
+      best = std::min(best, mean_time_s(tried));
   for (Tried& tried : guides_)
     tried.is_left =
-        tried.is_left || (tried.checks.size() >= kEnough && mean(tried.checks) > kHopeless * best);
+        tried.is_left || (tried.checks.size() >= kEnough && mean_time_s(tried) > kHopeless * best);
 }
 
 Rehearsal Rehearsing::result() const {
@@ -129,7 +146,8 @@ Rehearsal Rehearsing::result() const {
                               .plans = tried.checks.size(),
                               .solved = tried.solved,
                               .mean_checks = mean(tried.checks),
-                              .median_checks = median(tried.checks)});
+                              .median_checks = median(tried.checks),
+                              .mean_time_s = mean_time_s(tried)});
   result.queries = static_cast<std::uint64_t>(std::ranges::count(is_usable_, true));
   result.left_out = is_usable_.size() - result.queries;
   if (result.queries == 0)

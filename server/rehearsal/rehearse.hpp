@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -34,6 +35,11 @@ struct Subject {
   std::array<std::optional<Mixture>, kHalves> mixtures = {};
 };
 
+/// The guide with the least mean time; of guides that take up to 3 % more, the one with the least
+/// preparation. Where no time is known, by checks.
+/// \param costs  at least one.
+Guide cheapest(std::span<const GuideCost> costs);
+
 struct RehearsalOptions {
   std::size_t rounds = 4;  ///< times that each query is planned with each guide, each with a seed
   std::uint64_t max_checks = 20'000;  ///< of one plan
@@ -41,8 +47,9 @@ struct RehearsalOptions {
 };
 
 /// Plans recorded queries with each guide in turn, one query per step, so that the caller may rest
-/// between steps. A guide of at least 20 plans whose mean cost at the end of a round exceeds 1.5
-/// times that of the best one is dropped. Equal subject, equal steps: equal costs.
+/// between steps. A guide of at least 20 plans whose mean time at the end of a round exceeds 1.5
+/// times that of the best one is dropped. Equal subject, equal steps: plans with equal checks;
+/// times are measured, and so is what follows from them: the guides dropped, and the one to use.
 class Rehearsing {
  public:
   explicit Rehearsing(Subject subject, const RehearsalOptions& options = {});
@@ -52,19 +59,20 @@ class Rehearsing {
 
   std::size_t rounds() const noexcept { return round_; }  ///< completed
 
-  /// The result so far: the guide with the fewest checks in the mean; of guides that cost up to 3 %
-  /// more, the one with the least preparation. Guide::All until each query was planned once.
+  /// The result so far, with the cheapest guide. Guide::All until each query was planned once.
   Rehearsal result() const;
 
  private:
   struct Tried {
     Guide guide;
     std::vector<double> checks;  // of each plan, in the order of steps
+    double time_s = 0;           // of all plans
     std::uint64_t solved = 0;
     bool is_left = false;
   };
 
   void plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const;
+  static double mean_time_s(const Tried& tried);
   bool is_done() const;
   void advance();
   void end_round();

@@ -340,6 +340,7 @@ Rehearsal every_rehearsal() {
     cost.plans = next.count();
     cost.mean_checks = next.real();
     cost.median_checks = next.real();
+    cost.mean_time_s = next.real();
     rehearsal.costs.push_back(cost);
   }
   rehearsal.message = next.text("message");

@@ -47,7 +47,12 @@ class StudyCell(unittest.TestCase):
             return log.rows
 
     def repeat_by_hand(self, name: str, target: str, source: str, resolution: float, problem_lines: str) -> None:
-        """Plans the cell, and the same robot uniformly, with the files of the study alone: every query has the same checks."""
+        """Plans the cell, and the same robot uniformly, with the files of the study alone: every query has the same checks.
+
+        With the guide that the study's rehearsal chose: another one may choose another guide, as it goes by measured time.
+        """
+        rows = self.results(name)
+        guide, = {row["guide"] for key, row in rows.items() if key[0] == target and key[1] == source}
         problems = self.folder / "problems.jsonl"
         problems.write_text(problem_lines)
         task = name.removesuffix("-quick")
@@ -62,8 +67,8 @@ class StudyCell(unittest.TestCase):
 
             by_hand = {"uniform": plan("--guidance", "none"),
                        source: plan("--task", task, "--guidance", "require", "--sources", source, "--share", "1", "--control-share", "0",
-                                    "--wait", "600", "--rehearsed")}
-        measured = {key: row["checks"] for key, row in self.results(name).items() if key[0] == target and key[1] in by_hand}
+                                    "--wait", "600", "--guide", guide)}
+        measured = {key: row["checks"] for key, row in rows.items() if key[0] == target and key[1] in by_hand}
         self.assertEqual(len(measured), 12)
         self.assertEqual({key: by_hand[key[1]][key[2]] for key in measured}, measured)
 

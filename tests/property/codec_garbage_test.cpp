@@ -33,7 +33,7 @@ class Vandal {
   void spoil(kinship_wire_TaskSpaceRegion& w) { one_of(w.T_task_region, w.T_region_end, w.bounds); }
   void spoil(kinship_wire_Rehearsal& w) { one_of(w.guide, w.processor_time_s, w.costs, w.message); }
   void spoil(kinship_wire_GuideCost& w) {
-    one_of(w.guide, w.solved, w.mean_checks, w.median_checks);
+    one_of(w.guide, w.solved, w.mean_checks, w.median_checks, w.mean_time_s);
   }
   void spoil(kinship_wire_RecallLibrary& w) {
     one_of(w.search_checks, w.anchors, w.queries, w.queries, w.paths, w.paths, w.modes, w.solves);

@@ -66,6 +66,7 @@ class Comparison:
                                  for first, second in planned)
         sides = [[pair[side] for pair in planned] for side in (0, 1)]
         self.uniform, self.guided = (_figures(side) for side in sides)
+        self.uses_experience = any(map(_uses_experience, sides[1]))
         self.checks_test, self.time_test = (wilcoxon(*(_ranked(side, what) for side in sides))
                                             for what in ("collision_checks", "planning_time_s"))
 
@@ -109,6 +110,11 @@ def _draws(result: Result) -> bool:
     return guidance.get("share", 0) > 0
 
 
+def _uses_experience(result: Result) -> bool:
+    guide = (result.get("guidance") or {}).get("guide", "none")
+    return any(part not in ("none", "retreat") for part in guide.split("+"))
+
+
 def _figures(results: Sequence[Result]) -> Figures:
     def mean(what: str) -> float:
         return sum(result[what] for result in results) / len(results)
@@ -116,6 +122,14 @@ def _figures(results: Sequence[Result]) -> Figures:
     return Figures(sum(result["solved"] for result in results), sum(map(_draws, results)), mean("collision_checks"),
                    statistics.median(_ranked(results, "collision_checks")), mean("planning_time_s"),
                    statistics.median(_ranked(results, "planning_time_s")))
+
+
+def worth(comparison: Comparison, also: Sequence[tuple[str, Comparison]], what: str) -> float:
+    """Of experience: a figure of the best without it (uniform, retreat alone) / that of the best with it; NaN if none was planned with it."""
+    each = [comparison] + [other for _, other in also]
+    without = [comparison.uniform] + [one.guided for one in each if not one.uses_experience]
+    used = [getattr(one.guided, what) for one in each if one.uses_experience]
+    return min(getattr(one, what) for one in without) / min(used) if used and min(used) > 0 else math.nan
 
 
 def document(comparison: Comparison, also: Sequence[tuple[str, Comparison]] = ()) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 import math
 from collections.abc import Callable, Sequence
 
-from .comparison import Comparison
+from .comparison import Comparison, worth
 
 Also = Sequence[tuple[str, Comparison]]  # what else was compared with uniform planning, by name
 _HEAD = ("", "uniform", "guided", "ratio", "p")
@@ -55,6 +55,14 @@ def also_rows(also: Also) -> list[tuple[str, ...]]:
              duration_text(each.guided.mean_time_s), ratio_text(each.ratio("mean_time_s"))) for name, each in also]
 
 
+def worth_text(comparison: Comparison, also: Also) -> str:
+    """Empty unless something without experience, such as the retreat, was compared too."""
+    if all(each.uses_experience for _, each in also):
+        return ""
+    by_checks, by_time = (ratio_text(worth(comparison, also, what)) for what in ("mean_checks", "mean_time_s"))
+    return f"Worth of experience, the best without it (uniform, the retreat) / the best with it: {by_checks} by checks, {by_time} by time."
+
+
 def notes(comparison: Comparison) -> list[str]:
     """What the figures mean, and what is to be known of this run."""
     uniform, guided, pairs = comparison.uniform, comparison.guided, comparison.pairs
@@ -96,4 +104,6 @@ def table(comparison: Comparison, also: Also) -> str:
     if also:
         lines += ["", "The same problems, means and the ratio of uniform planning to each:", "",
                   *(line(cells, (20, 9, 9, 9, 11, 9)) for cells in (_ALSO_HEAD, *also_rows(also)))]
+        if said := worth_text(comparison, also):
+            lines += ["", said]
     return "\n".join(lines) + "\n"

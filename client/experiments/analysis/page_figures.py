@@ -18,7 +18,8 @@ def page_figures(uniform: Sequence[Result], guided: Sequence[Result], compared: 
     guides = collections.Counter((result.get("guidance") or {}).get("guide", "none") for result in guided)
     figures: dict[str, Any] = {
         "comparison": document(compared), "table": {"rows": comparison_table.rows(compared), "notes": comparison_table.notes(compared)},
-        "also": comparison_table.also_rows(also), "guides": [{"guide": guide, "queries": count} for guide, count in sorted(guides.items(), key=_bits)],
+        "also": comparison_table.also_rows(also), "worth": comparison_table.worth_text(compared, also),
+        "guides": [{"guide": guide, "queries": count} for guide, count in sorted(guides.items(), key=_bits)],
         "cheaper_guided": _count_cheaper(uniform, guided), "typical": find_typical(uniform, guided)}
     for name, results in (("uniform", uniform), ("guided", guided)):
         planned = [result for result in results if not result.get("not_planned")]

@@ -25,8 +25,8 @@
                    mixture: "samples from the distribution"};
     const parts = (guide) => guide.split("+").map((part) => words[part] || "nothing");
     const all = total(data.guides.map((each) => each.queries));
-    return `Four things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what costs ` +
-      `this robot the fewest checks; here that was ` +
+    return `Four things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what takes ` +
+      `this robot the least time; here that was ` +
       data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${several(all, "query").replace(/ys$/, "ies")})`).join("; ") + ".";
   }
 
@@ -145,7 +145,7 @@
     byId("alone").hidden = false;
     byId("alone-text").textContent =
       `The same ${several(instances, "instance")} and seeds once more, not reported. Mixture and ways are made of what the other robots reported; ` +
-      `retreat backs the hand out of its goal and needs no experience. Ratio: uniform planning to it, above 1 it helps.`;
+      `retreat backs the hand out of its goal and needs no experience. Ratio: uniform planning to it, above 1 it helps. ${data.worth}`;
     fillTable(byId("alone-table"), [["guided by", "solved", "checks, mean", "ratio", "planning time, mean", "ratio"], ...data.also]);
   }
 

@@ -81,14 +81,42 @@ Transferability pair(std::uint8_t target, std::uint8_t source, std::optional<Reh
           label(source),    std::move(rehearsal), ""};
 }
 
-TEST(Worth, IsUniformToTheGuideThatIsTaken) {
-  EXPECT_DOUBLE_EQ(worth(rehearsal(900, 300)).value(), 3);
+TEST(Worth, IsTheBestWithoutExperienceToTheBestWithItByTimeAndByChecks) {
+  const Worth found = worth({.guide = Guide::Retreat,
+                             .costs = {{Guide::None, 50, 50, 900, 900, 0.009},
+                                       {Guide::Retreat, 50, 50, 400, 400, 0.004},
+                                       {Guide::RetreatWays, 50, 50, 200, 200, 0.005},
+                                       {Guide::Mixture, 50, 50, 250, 250, 0.008}}})
+                          .value();
+  EXPECT_DOUBLE_EQ(found.by_time.value(), 0.8) << "what the retreat saves is not the fleet's";
+  EXPECT_DOUBLE_EQ(found.by_checks, 2);
+  EXPECT_DOUBLE_EQ(found.value(), 0.8);
+  EXPECT_EQ(found.without, Guide::Retreat);
+  EXPECT_EQ(found.with, Guide::RetreatWays);
+  EXPECT_EQ(worth_text(found),
+            "0.80 by time, 2.00 by checks (best without experience retreat, with it retreat+ways)");
+}
+
+TEST(Worth, IsByChecksWhereATimeIsUnknown) {
+  const Worth found = worth(rehearsal(900, 300)).value();
+  EXPECT_FALSE(found.by_time);
+  EXPECT_DOUBLE_EQ(found.value(), 3);
+  EXPECT_EQ(worth_text(found), "3.00 by checks (best without experience none, with it ways)");
 }
 
 TEST(Worth, IsUnknownWhereNothingWasPlanned) {
   EXPECT_FALSE(worth(Rehearsal{}));
   EXPECT_FALSE(worth({.guide = Guide::Ways, .costs = {{Guide::Ways, 50, 50, 300, 300}}}));
+  EXPECT_FALSE(worth({.guide = Guide::None,
+                      .costs = {{Guide::None, 50, 50, 300, 300}, {Guide::Retreat, 50, 50, 9, 9}}}));
   EXPECT_FALSE(worth(rehearsal(900, 0)));
+}
+
+TEST(NeedsExperience, WhateverUsesMoreThanTheRetreat) {
+  EXPECT_FALSE(needs_experience(Guide::None));
+  EXPECT_FALSE(needs_experience(Guide::Retreat));
+  for (unsigned guide = 2; guide < 16; ++guide)
+    EXPECT_TRUE(needs_experience(static_cast<Guide>(guide))) << guide;
 }
 
 TEST(PrintWorths, IsAMatrixWithTheBestSourceOfEachTarget) {
@@ -248,19 +276,21 @@ Rehearsal rehearsed() {
           .is_complete = true,
           .queries = 100,
           .processor_time_s = 74.31,
-          .costs = {{Guide::None, 400, 396, 1552.4, 803},
-                    {Guide::Ways, 400, 400, 361, 154},
-                    {Guide::RetreatMixture, 100, 99, 3104.8, 1200}}};
+          .costs = {{Guide::None, 400, 396, 1552.4, 803, 0.00412},
+                    {Guide::Ways, 400, 400, 361, 154, 0.00206},
+                    {Guide::RetreatMixture, 100, 99, 3104.8, 1200, 0.00824}}};
 }
 
 TEST(PrintRehearsal, ComparesGuidesAndMarksTheOneToUse) {
   EXPECT_EQ(printed(rehearsed()),
             "rehearsed on 100 recorded queries, 74.3 s of processor time\n"
-            "GUIDE            PLANS  SOLVED  MEAN CHECKS  MEDIAN  UNIFORM /\n"
-            "                                             CHECKS     GUIDED\n"
-            "none               400     396         1552     803       1.00\n"
-            "ways               400     400          361     154       4.30  chosen\n"
-            "retreat+mixture    100      99         3105    1200       0.50\n");
+            "GUIDE            PLANS  SOLVED  MEAN      UNIFORM    MEAN  UNIFORM /\n"
+            "                                TIME     / GUIDED  CHECKS     GUIDED\n"
+            "none               400     396  4.12 ms      1.00    1552       1.00\n"
+            "ways               400     400  2.06 ms      2.00     361       4.30  chosen\n"
+            "retreat+mixture    100      99  8.24 ms      0.50    3105       0.50\n"
+            "worth of the experience: 2.00 by time, 4.30 by checks (best without experience none, "
+            "with it ways)\n");
 }
 
 TEST(PrintRehearsal, SaysHowManyQueriesWereLeftOutAndWhy) {
@@ -293,7 +323,7 @@ TEST(PrintRehearsal, ComparesWithNothingIfUniformSamplingWasNotTried) {
   Rehearsal rehearsal = rehearsed();
   rehearsal.costs.erase(rehearsal.costs.begin());
   rehearsal.costs[1].mean_checks = 0;
-  EXPECT_NE(printed(rehearsal).find("154  -          chosen\n"), std::string::npos)
+  EXPECT_NE(printed(rehearsal).find("361  -          chosen\n"), std::string::npos)
       << printed(rehearsal);
 }
 

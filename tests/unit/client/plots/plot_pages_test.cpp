@@ -58,17 +58,22 @@ TEST(PlotPages, ATaskTellsItsHistory) {
 }
 
 TEST(PlotPages, AMatrixHasTheRowsOfCompare) {
-  const Rehearsal rehearsal{
-      .guide = Guide::Ways,
-      .is_complete = true,
-      .queries = 5,
-      .costs = {{Guide::None, 5, 5, 900, 900}, {Guide::Ways, 5, 5, 300, 300}}};
+  const Rehearsal rehearsal{.guide = Guide::Ways,
+                            .is_complete = true,
+                            .queries = 5,
+                            .costs = {{Guide::None, 5, 5, 900, 900, 0.004},
+                                      {Guide::Retreat, 5, 5, 600, 600, 0.003},
+                                      {Guide::Ways, 5, 5, 300, 300, 0.002}}};
   const json data = data_of(page_of(
       std::string("shelf"),
       std::vector<Transferability>{{Digest{{1}}, Digest{{2}}, "arm1", "arm2", rehearsal, ""},
                                    {Digest{{1}}, Digest{{3}}, "arm1", "arm3", {}, "too late"}}));
   EXPECT_EQ(data["task"], "shelf");
-  EXPECT_EQ(data["rows"][0]["worth"], 3);
+  EXPECT_EQ(data["rows"][0]["worth"], 1.5);
+  EXPECT_EQ(data["rows"][0]["worth_by_time"], 1.5);
+  EXPECT_EQ(data["rows"][0]["worth_by_checks"], 2);
+  EXPECT_EQ(data["rows"][0]["without_experience"], "retreat");
+  EXPECT_EQ(data["rows"][0]["with_experience"], "ways");
   EXPECT_EQ(data["rows"][1]["worth"], nullptr);
   EXPECT_EQ(data["rows"][1]["message"], "too late");
 }

@@ -16,7 +16,8 @@ Rehearsal found() {
           .queries = 20,
           .left_out = 3,
           .processor_time_s = 4.5,
-          .costs = {{Guide::None, 20, 18, 1500.5, 900}, {Guide::RetreatWays, 20, 20, 400, 310}},
+          .costs = {{Guide::None, 20, 18, 1500.5, 900, 0.004},
+                    {Guide::RetreatWays, 20, 20, 400, 310, 0.001}},
           .message = "every query was planned"};
 }
 

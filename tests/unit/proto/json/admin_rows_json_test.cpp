@@ -57,13 +57,13 @@ TEST(AdminRowsJson, RehearsalOfAnExplanationIsReadBackAndMayBeMissing) {
                                     .queries = 100,
                                     .left_out = 3,
                                     .processor_time_s = 74.25,
-                                    .costs = {{Guide::None, 400, 380, 1552.5, 900}},
+                                    .costs = {{Guide::None, 400, 380, 1552.5, 900, 0.25}},
                                     .message = "why"};
   text = to_json(explanation);
   EXPECT_TRUE(text.ends_with(
       R"("rehearsal":{"guide":"retreat+ways","is_complete":true,"queries":100,"left_out":3,)"
       R"("processor_time_s":74.25,"costs":[{"guide":"none","plans":400,"solved":380,)"
-      R"("mean_checks":1552.5,"median_checks":900.0}],"message":"why"}})"))
+      R"("mean_checks":1552.5,"median_checks":900.0,"mean_time_s":0.25}],"message":"why"}})"))
       << text;
   EXPECT_EQ(row_from_json<Explanation>(text).value_or_throw().rehearsal, explanation.rehearsal);
   text.replace(text.find("retreat+ways"), 12, "luck");

@@ -16,7 +16,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(EXPERIMENTS))
 
 from analysis import page_figures, run_files  # noqa: E402: after the path
-from analysis.comparison import Comparison, document  # noqa: E402
+from analysis.comparison import Comparison, document, worth  # noqa: E402
 from analysis.comparison_table import duration_text, table  # noqa: E402
 from analysis.wilcoxon import MAX_EXACT_PAIRS, wilcoxon  # noqa: E402
 
@@ -106,8 +106,20 @@ than all that are solved.
         self.assertIn("  mixture alone             3/3    1 333    16.00     1.33 s    13.50\n", told)
         self.assertIn("  retreat alone             2/3   21 333     1.00     18.0 s     1.00\n", told)
 
+    def test_the_worth_of_experience_is_against_the_best_without_it(self):
+        retreat = [attempt(name, True, 1600, 1, guidance={"distribution_id": None, "share": 0.5, "guide": "retreat"}) for name in "abc"]
+        compared, alone = Comparison(UNIFORM, GUIDED), Comparison(UNIFORM, retreat)
+        self.assertEqual((compared.uses_experience, alone.uses_experience, alone.guided.with_guidance), (True, False, 3))
+        also = [("retreat alone", alone)]
+        self.assertAlmostEqual(worth(compared, also, "mean_checks"), 1600 / (4000 / 3))
+        self.assertAlmostEqual(worth(compared, also, "mean_time_s"), 1 / (4 / 3))
+        self.assertTrue(math.isnan(worth(alone, [], "mean_checks")))
+        said = "Worth of experience, the best without it (uniform, the retreat) / the best with it: 1.20 by checks, 0.75 by time."
+        self.assertTrue(table(compared, also).endswith(f"\n\n{said}\n"))
+        self.assertNotIn("Worth", table(compared, [("ways alone", compared)]))
+
     def test_what_is_to_be_known_of_the_run_is_said(self):
-        self.assertIn("Only 0 of the 3 guided attempts drew", table(Comparison(UNIFORM, UNIFORM), []))
+        self.assertIn("Only 0 of the 3 guided attempts had guided", table(Comparison(UNIFORM, UNIFORM), []))
         self.assertNotIn("proven", table(Comparison(UNIFORM, GUIDED), []))
         proven = [each | {"proven": each["solved"]} for each in UNIFORM]
         self.assertIn("Of 2 pairs of paths one is proven", table(Comparison(proven, GUIDED), []))
