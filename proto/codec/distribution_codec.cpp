@@ -140,7 +140,7 @@ std::optional<Error> validate(const Distribution& distribution) {
       .not_negative("fit_time_s", distribution.fit_time_s);
   if (distribution.T_task_base)
     rules.pose("T_task_base", *distribution.T_task_base);
-  check_members(distribution, kLastFieldsOfDistribution, rules);
+  check_members<kLastFieldsOfDistribution>(distribution, rules);
   for (const Source& source : distribution.sources)
     check_fields(source, rules, kOfSource);
   check_selection(distribution.selection, rules);

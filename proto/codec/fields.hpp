@@ -190,7 +190,10 @@ template <typename T, typename Wire>
 T read_value(const MemberName& name, const Wire& from, const FieldRules& rules, Reader& reader) {
   if constexpr (requires(T to) { read_part(from, reader, to); }) {
     T to;
-    read_part(from, reader, to);
+    if constexpr (kIsMap<T>)
+      reader.rules.at_most(name.text(), elements(from).size(), rules.limit);
+    if (!reader.rules.broken())
+      read_part(from, reader, to);
     return to;
   } else if constexpr (Described<T>) {
     return read_fields<T>(from, reader, " of " + name.text());

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -18,7 +20,7 @@ namespace kinship {
 struct FieldRules {
   double min = std::numeric_limits<double>::lowest();  ///< of a number
   double max = std::numeric_limits<double>::max();
-  std::size_t limit = 0;          ///< bytes of a text, elements of a list
+  std::size_t limit = 0;          ///< bytes of a text, elements of a list or map
   std::size_t element_limit = 0;  ///< bytes of each text of a list
   /// A further check of a text, defined elsewhere.
   std::optional<Error> (*check)(std::string_view text) = nullptr;
@@ -28,6 +30,10 @@ struct FieldRules {
   /// In a digest: left out if it has its default, else this word replaces it. Empty: its value is
   /// always included.
   std::string_view mark = {};
+
+  constexpr bool has_bounds() const {
+    return min > std::numeric_limits<double>::lowest() || max < std::numeric_limits<double>::max();
+  }
 };
 
 template <typename Value, typename Member>
@@ -65,6 +71,10 @@ inline constexpr bool kIsList = false;
 template <typename T>
 inline constexpr bool kIsList<std::vector<T>> = true;
 template <typename T>
+inline constexpr bool kIsMap = false;
+template <typename Key, typename T>
+inline constexpr bool kIsMap<std::map<Key, T>> = true;
+template <typename T>
 inline constexpr bool kIsDuration = false;
 template <typename Count, typename Unit>
 inline constexpr bool kIsDuration<std::chrono::duration<Count, Unit>> = true;
@@ -79,6 +89,17 @@ constexpr void for_each_field(const std::tuple<Fields...>& table, Visit visit) {
 template <Described Value, typename Visit>
 constexpr void for_each_field(Visit visit) {
   for_each_field(kFieldsOf<Value>, visit);
+}
+
+/// Whether each list of texts of a table limits the bytes of a text; else all texts are refused.
+template <typename... Fields>
+constexpr bool limits_listed_texts(const std::tuple<Fields...>& table) {
+  bool limited = true;
+  for_each_field(table, [&limited]<typename Of, typename T>(const Field<Of, T>& field) {
+    if constexpr (std::is_same_v<T, std::vector<std::string>>)
+      limited = limited && field.rules.element_limit > 0;
+  });
+  return limited;
 }
 
 /// The newest format that added a field of a table.

@@ -52,6 +52,19 @@ Rules& Rules::not_negative(std::string_view what, double value) {
   return *this;
 }
 
+Rules& Rules::number(std::string_view what, double value, const FieldRules& limits) {
+  constexpr FieldRules kNone;
+  if (limits.max < kNone.max)
+    return between(what, value, limits.min, limits.max);
+  if (limits.min == 0)
+    return not_negative(what, value);
+  finite(what, value);
+  if (value < limits.min)
+    breaks(ErrorCode::InvalidInput, std::string(what) + ": " + number_text(value) +
+                                        " is less than " + number_text(limits.min));
+  return *this;
+}
+
 Rules& Rules::at_most(std::string_view what, std::size_t value, std::size_t limit) {
   if (value > limit)
     breaks(ErrorCode::TooLarge,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,7 +22,9 @@ class Rules {
   Rules& not_empty(std::string_view what, std::string_view value);
   Rules& between(std::string_view what, double value, double lowest, double highest);
   Rules& finite(std::string_view what, double value);
-  Rules& not_negative(std::string_view what, double value);                     ///< and finite
+  Rules& not_negative(std::string_view what, double value);  ///< and finite
+  /// The limits of a number, which is finite.
+  Rules& number(std::string_view what, double value, const FieldRules& limits);
   Rules& at_most(std::string_view what, std::size_t value, std::size_t limit);  ///< else TooLarge
   Rules& pose(std::string_view what, const Eigen::Isometry3d& T);
   Rules& that(bool holds, std::string_view message);
@@ -42,10 +43,10 @@ void check_fields(const Value& value, Rules& rules, const std::string& of = "");
 
 /// Checks the limits of each field of a table, and of each element of a list.
 /// \param of  after its name in messages, e.g. " of a source".
-template <typename Value, typename Table>
-void check_members(const Value& value, const Table& fields, Rules& rules,
-                   const std::string& of = "") {
-  for_each_field(fields, [&]<typename Of, typename T>(const Field<Of, T>& field) {
+template <const auto& kTable, typename Value>
+void check_members(const Value& value, Rules& rules, const std::string& of = "") {
+  static_assert(limits_listed_texts(kTable), "a list of texts without element_limit");
+  for_each_field(kTable, [&]<typename Of, typename T>(const Field<Of, T>& field) {
     const auto what = [&] { return std::string(field.name) + of; };
     const FieldRules& limits = field.rules;
     if constexpr (std::is_same_v<T, std::string>) {
@@ -55,19 +56,14 @@ void check_members(const Value& value, const Table& fields, Rules& rules,
       if (!limits.is_clamped)
         rules.between(what(), static_cast<double>((value.*field.member).count()), limits.min,
                       limits.max);
-    } else if constexpr (std::is_integral_v<T>) {
-      if (limits.max < std::numeric_limits<double>::max())
-        rules.between(what(), static_cast<double>(value.*field.member), limits.min, limits.max);
     } else if constexpr (std::is_same_v<T, std::optional<Eigen::Isometry3d>>) {
       if (value.*field.member)
         rules.pose(what(), *(value.*field.member));
-    } else if constexpr (std::is_floating_point_v<T>) {
-      if (limits.max < std::numeric_limits<T>::max())
-        rules.between(what(), value.*field.member, limits.min, limits.max);
-      else if (limits.min == 0)
-        rules.not_negative(what(), value.*field.member);
-      else
-        rules.finite(what(), value.*field.member);
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      if (std::is_floating_point_v<T> || limits.has_bounds())
+        rules.number(what(), static_cast<double>(value.*field.member), limits);
+    } else if constexpr (kIsMap<T>) {
+      rules.at_most(what(), (value.*field.member).size(), limits.limit);
     } else if constexpr (kIsList<T>) {
       rules.at_most(what(), (value.*field.member).size(), limits.limit);
       for (const auto& element : value.*field.member)
@@ -82,7 +78,7 @@ void check_members(const Value& value, const Table& fields, Rules& rules,
 /// The same of all fields of a value.
 template <Described Value>
 void check_fields(const Value& value, Rules& rules, const std::string& of) {
-  check_members(value, kFieldsOf<Value>, rules, of);
+  check_members<kFieldsOf<Value>>(value, rules, of);
 }
 
 }  // namespace kinship

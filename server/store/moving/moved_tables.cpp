@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "server/store/sqlite/database/database.hpp"
+#include "server/store/values/record_columns.hpp"
 
 namespace kinship::store::moving {
 namespace {
@@ -116,34 +117,29 @@ MovedTable paths() {
       .has_quarantine = true};
 }
 
+std::vector<MovedColumn> columns_of_attempt() {
+  std::vector<MovedColumn> columns = {
+      {"id"},      {"task_id"}, {"robot_id"},      {"report_uuid", Blob}, {"body_sha256", Blob},
+      {"path_id"}, {"status"},  {"machine", Text}, {"T_task_base", Blob}, {"received_ms"},
+      {"scene_id"}};
+  for_each_field<PlanningRecord>([&]<typename Of, typename T>(const Field<Of, T>& field) {
+    using Value = ColumnValue<T>;
+    constexpr CellType kType = std::is_same_v<Value, std::int64_t>       ? Integer
+                               : std::is_same_v<Value, double>           ? Real
+                               : std::is_same_v<Value, std::string_view> ? Text
+                                                                         : Blob;
+    columns.push_back({std::string(column_of(field.name)), kType});
+  });
+  return columns;
+}
+
 /// One that is quarantined in SQLite stands for nothing: its UUID may come again, as if it were
 /// new.
 MovedTable attempts() {
   const std::string readable = "NOT " + in_quarantine("attempt");
   return {.name = "attempt",
           .reading = Reading::ByPair,
-          .columns = {{"id"},
-                      {"task_id"},
-                      {"robot_id"},
-                      {"report_uuid", Blob},
-                      {"body_sha256", Blob},
-                      {"path_id"},
-                      {"status"},
-                      {"machine", Text},
-                      {"T_task_base", Blob},
-                      {"outcome"},
-                      {"planner", Text},
-                      {"planner_options", Text},
-                      {"planning_time_s", Real},
-                      {"collision_checks"},
-                      {"projections"},
-                      {"time_limit_s", Real},
-                      {"sampling_mode"},
-                      {"share", Real},
-                      {"distribution_digest", Blob},
-                      {"distribution_revision"},
-                      {"received_ms"},
-                      {"scene_id"}},
+          .columns = columns_of_attempt(),
           .sqlite_condition = readable,
           .sqlite_light =
               "SELECT id, status, coalesce(path_id, 0) FROM attempt"

@@ -5,50 +5,27 @@
 #include <optional>
 #include <string_view>
 
-#include "proto/types/attempt.hpp"
 #include "proto/types/audit.hpp"
 #include "proto/types/summaries.hpp"
 #include "server/store/values/columns.hpp"
+#include "server/store/values/record_columns.hpp"
 
 /// The columns that listings select, as SQL, and the summaries made from them.
 namespace kinship::store {
 
-inline constexpr std::string_view kRecordColumns =
-    "attempt.outcome, attempt.planner, attempt.planner_options, attempt.planning_time_s,"
-    " attempt.collision_checks, attempt.projections, attempt.time_limit_s, attempt.sampling_mode,"
-    " attempt.share, attempt.distribution_digest, attempt.distribution_revision ";
-
-/// \param first_column  of kRecordColumns.
-template <Columns Row>
-PlanningRecord read_record(const Row& row, int first_column) {
-  int column = first_column;
-  PlanningRecord record;
-  record.outcome = outcome_of(row.column_integer(column++));
-  record.planner = row.column_text(column++);
-  record.planner_options = row.column_text(column++);
-  record.planning_time_s = row.column_real(column++);
-  record.collision_checks = count_of(row, column++);
-  record.projections = count_of(row, column++);
-  record.time_limit_s = row.column_real(column++);
-  record.sampling_mode = mode_of(row.column_integer(column++));
-  record.share = row.column_real(column++);
-  record.distribution_id = optional_id_of<Digest>(row, column++);
-  record.distribution_revision = count_of(row, column);
-  return record;
-}
-
 /// How SQL tells a dropped path from others, without reading its waypoints.
 inline constexpr std::string_view kIsDropped = "length(path.waypoints) = 1";
 
-/// Before kIsDropped and kRecordColumns.
+/// Before kIsDropped and record_columns().
 inline constexpr std::string_view kPathSummaryColumns =
     "path.retired_ms, path.report_uuid, robot.digest, robot.label, task.name,"
     " path.waypoint_count, path.length, attempt.machine, attempt.received_ms, path.T_task_base, ";
 
-/// \param row  of kPathSummaryColumns, kIsDropped and kRecordColumns.
+inline constexpr int kRecordOfPathSummary = 11;
+
+/// \param row  of kPathSummaryColumns, kIsDropped and record_columns().
 template <Columns Row>
 PathSummary read_path_summary(const Row& row) {
-  constexpr int kFirstOfRecord = 11;
   PathSummary summary;
   summary.retired_ms = row.column_integer(0);  // NULL: 0
   summary.report_uuid = id_of<Uuid>(row.column_blob(1));
@@ -61,7 +38,7 @@ PathSummary read_path_summary(const Row& row) {
   summary.received_ms = row.column_integer(8);
   summary.T_task_base = pose_from_blob(row.column_blob(9));
   summary.dropped = row.column_integer(10) != 0;
-  summary.record = read_record(row, kFirstOfRecord);
+  summary.record = read_record(row, kRecordOfPathSummary);
   return summary;
 }
 

@@ -16,7 +16,7 @@ constexpr std::string_view kArrivedColumns =
     " robot.digest, attempt.machine, task.name, attempt.T_task_base, robot.label,"
     " attempt.received_ms, path.id, path.retired_ms IS NULL AND path.damaged_ms IS NULL,"
     " 8 * path.dof * path.waypoint_count, attempt.scene_id, ";
-constexpr int kFirstOfRecord = 14, kFirstBehindRecord = 25;
+constexpr int kFirstOfRecord = 14, kFirstBehindRecord = kFirstOfRecord + kRecordColumns;
 
 constexpr std::string_view kNames =
     "JOIN robot ON robot.id = attempt.robot_id JOIN task ON task.id = attempt.task_id ";
@@ -119,7 +119,7 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFil
   const std::string page = next_arrivals(connection, filter, parameters);
   std::vector<ArrivedAttempt> arrived;
   for (const store::Row& row : connection.query_with(
-           std::string(kArrivedColumns) + std::string(kRecordColumns) + "FROM (" + page +
+           std::string(kArrivedColumns) + record_columns("attempt.") + "FROM (" + page +
                std::string(kAttemptOfPage) + std::string(kNames) + std::string(kPathOfAttempt) +
                "ORDER BY attempt.arrived_in, attempt.id",
            parameters))
@@ -129,7 +129,7 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFil
 
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, std::span<const Uuid> reports) {
   const Rows rows =
-      connection.query(std::string(kArrivedColumns) + std::string(kRecordColumns) +
+      connection.query(std::string(kArrivedColumns) + record_columns("attempt.") +
                            ", attempt.body_sha256," + std::string(kReportIsRetired) +
                            ", (SELECT size FROM scene WHERE scene.id = attempt.scene_id"
                            " AND scene.damaged_ms IS NULL) FROM attempt " +

@@ -2,10 +2,13 @@
 
 #include <deque>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/values/codes.hpp"
 #include "server/store/values/path_content.hpp"
+#include "server/store/values/record_columns.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -54,25 +57,6 @@ constexpr std::string_view kWritePaths =
     " task_id, robot_id, report_uuid, content, length, T_task_base, dof, waypoint_count, encoding,"
     " crc, waypoints, received_ms, retired_ms, scene)"
     " LEFT JOIN scene ON scene.content_sha256 = new.scene";
-
-constexpr std::string_view kWriteAttempts =
-    "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status, machine,"
-    " T_task_base, outcome, planner, planner_options, planning_time_s, collision_checks,"
-    " projections, time_limit_s, sampling_mode, share, distribution_digest, distribution_revision,"
-    " received_ms, scene_id)"
-    " SELECT new.report_uuid, new.body, new.task_id, new.robot_id, new.path_id, new.status,"
-    " new.machine, new.T_task_base, new.outcome, new.planner, new.planner_options,"
-    " new.planning_time_s, new.collision_checks, new.projections, new.time_limit_s, "
-    "new.sampling_mode,"
-    " new.share, new.distribution_digest, new.distribution_revision,"
-    " coalesce(new.received_ms, $1), scene.id"
-    " FROM unnest($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18,"
-    " $19, $20, $21, $22) WITH ORDINALITY AS new (report_uuid, body, task_id, robot_id, path_id,"
-    " status, machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
-    " collision_checks, projections, time_limit_s, sampling_mode, share, distribution_digest,"
-    " distribution_revision, scene, received_ms, place)"
-    " LEFT JOIN scene ON scene.content_sha256 = new.scene"
-    " ORDER BY new.place ON CONFLICT (report_uuid) DO NOTHING";
 
 constexpr std::string_view kRestore =
     "UPDATE attempt SET path_id = new.path_id, status = new.status"
@@ -193,7 +177,33 @@ class PathColumns {
   OptionalBlobs placements_, scenes_;
 };
 
-/// The columns of kWriteAttempts.
+/// Writes attempts from the parameters of AttemptColumns.
+std::string insertion_of_attempts() {
+  constexpr int kFirst = 2, kBeforeRecord = 10;
+  std::string places;
+  for (int place = kFirst; place < kFirst + kBeforeRecord + kRecordColumns; ++place)
+    places += (place == kFirst ? "$" : ", $") + std::to_string(place);
+  return "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
+         " machine, T_task_base, received_ms, scene_id, " +
+         record_columns() +
+         ") SELECT new.report_uuid, new.body, new.task_id, new.robot_id, new.path_id, new.status,"
+         " new.machine, new.T_task_base, coalesce(new.received_ms, $1), scene.id, " +
+         record_columns("new.") + "FROM unnest(" + places +
+         ") WITH ORDINALITY AS new (report_uuid, body, task_id, robot_id, path_id, status, machine,"
+         " T_task_base, received_ms, scene, " +
+         record_columns() +
+         ", place) LEFT JOIN scene ON scene.content_sha256 = new.scene"
+         " ORDER BY new.place ON CONFLICT (report_uuid) DO NOTHING";
+}
+
+/// The columns of records, one list each.
+template <typename Value>
+using ColumnList =
+    std::vector<std::conditional_t<std::is_same_v<Value, std::string_view>, std::string, Value>>;
+template <typename... Of, typename... T>
+std::tuple<ColumnList<ColumnValue<T>>...> lists_of(const std::tuple<Field<Of, T>...>& fields);
+using RecordLists = decltype(lists_of(kFieldsOf<PlanningRecord>));
+
 class AttemptColumns {
  public:
   void add(const NewAttempt& added) {
@@ -206,41 +216,33 @@ class AttemptColumns {
     statuses_.push_back(static_cast<std::int64_t>(added.status));
     machines_.push_back(attempt.machine);
     placements_.push_back(poses_.add(attempt.T_task_base));
-    scenes_.push_back(scene_of(*added.from));
     received_.push_back(added.from->received_ms);
-    add(attempt.record);
+    scenes_.push_back(scene_of(*added.from));
+    add(attempt.record, std::make_index_sequence<kRecordColumns>());
   }
 
   Parameters parameters(std::int64_t received_ms) const {
-    return Parameters(received_ms, uuids_, bodies_, tasks_, robots_, paths_, statuses_, machines_,
-                      placements_, outcomes_, planners_, options_, times_, checks_, projections_,
-                      limits_, arms_, shares_, distributions_, revisions_, scenes_, received_);
+    Parameters all(received_ms, uuids_, bodies_, tasks_, robots_, paths_, statuses_, machines_,
+                   placements_, received_, scenes_);
+    std::apply([&all](const auto&... lists) { (all.add(lists), ...); }, records_);
+    return all;
   }
 
  private:
-  void add(const PlanningRecord& record) {
-    outcomes_.push_back(code_of(record.outcome));
-    planners_.push_back(record.planner);
-    options_.push_back(record.planner_options);
-    times_.push_back(record.planning_time_s);
-    checks_.push_back(static_cast<std::int64_t>(record.collision_checks));
-    projections_.push_back(static_cast<std::int64_t>(record.projections));
-    limits_.push_back(record.time_limit_s);
-    arms_.push_back(code_of(record.sampling_mode));
-    shares_.push_back(record.share);
-    distributions_.push_back(record.distribution_id
-                                 ? std::optional(Bytes(record.distribution_id->bytes))
-                                 : std::nullopt);
-    revisions_.push_back(static_cast<std::int64_t>(record.distribution_revision));
+  template <std::size_t... I>
+  void add(const PlanningRecord& record, std::index_sequence<I...> /*fields*/) {
+    (std::get<I>(records_).emplace_back(
+         column_value(record.*std::get<I>(kFieldsOf<PlanningRecord>).member)),
+     ...);
   }
 
   PoseBlobs poses_;
-  Integers tasks_, robots_, statuses_, outcomes_, checks_, projections_, arms_, revisions_;
+  Integers tasks_, robots_, statuses_;
   OptionalIntegers paths_, received_;
-  std::vector<double> times_, limits_, shares_;
-  std::vector<std::string> machines_, planners_, options_;
+  std::vector<std::string> machines_;
   Blobs uuids_, bodies_;
-  OptionalBlobs placements_, distributions_, scenes_;
+  OptionalBlobs placements_, scenes_;
+  RecordLists records_;
 };
 
 Parameters restored_in_columns(const BatchChanges& changes) {
@@ -326,11 +328,12 @@ std::vector<Request> requests_of(const BatchChanges& changes, std::int64_t now_m
 }  // namespace
 
 void write_changes(Connection& connection, const BatchChanges& changes, std::int64_t now_ms) {
+  static const std::string write_attempts = insertion_of_attempts();
   std::vector<Request> requests = requests_of(changes, now_ms);
   AttemptColumns columns;
   for (const NewAttempt& attempt : changes.attempts)
     columns.add(attempt);
-  requests.push_back({kWriteAttempts, columns.parameters(now_ms)});
+  requests.push_back({write_attempts, columns.parameters(now_ms)});
   const std::vector<Rows> rows = connection.query_all(requests);
   if (rows.back().changed() != std::ssize(changes.attempts))
     throw PostgresError("40001", "another server wrote one of these reports meanwhile");

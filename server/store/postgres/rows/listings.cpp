@@ -68,14 +68,14 @@ constexpr std::string_view kBytes =
 
 Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
                                 std::string_view cursor, std::size_t limit) {
-  constexpr int kId = 22;  // behind the record
+  constexpr int kId = kRecordOfPathSummary + kRecordColumns;
   const std::int64_t rows = rows_of_page(limit);
   std::vector<Parameter> parameters = {Parameter(parse_falling_cursor(cursor)),
                                        Parameter(rows + 1)};
   const std::string page = newest_paths(connection, filter, parameters);
   return read_page<PathSummary>(
       connection.query_with("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
-                                ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
+                                ", " + record_columns("attempt.") + ", path.id FROM (" + page +
                                 ") AS page CROSS JOIN LATERAL (SELECT * FROM path AS found"
                                 " WHERE found.id = page.id OFFSET 0) AS path "
                                 "JOIN robot ON robot.id = path.robot_id "

@@ -2,11 +2,13 @@
 
 #include <sqlite3.h>
 
+#include <functional>
 #include <map>
 #include <string>
 
 #include "proto/types/sha256.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
+#include "server/store/sqlite/database/row_checksums.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
@@ -66,6 +68,17 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
                            ", but records migrations up to " + std::to_string(expected));
 }
 
+/// Rows of tables that got columns are intact with them, if they were intact before. A migration
+/// that takes away a column of a checked table fails here.
+void renew_checksums(Database& database,
+                     const std::map<std::string, CheckedTable, std::less<>>& before) {
+  for (const auto& [name, table] : read_checked_tables(database.connection()))
+    if (const auto old = before.find(name);
+        old != before.end() && old->second.columns != table.columns)
+      database.execute("UPDATE " + name + " SET row_crc32c = " + table.checksum("") +
+                       " WHERE row_crc32c = " + old->second.checksum(""));
+}
+
 /// Without foreign keys while it lasts, which a table that is written anew would trip over: each
 /// migration leaves them as they were, which `kinshipd check` compares.
 /// \param is_noted  in the audit log.
@@ -73,7 +86,9 @@ void apply(Database& database, const std::filesystem::path& file, const Migratio
            bool is_noted) {
   database.execute("PRAGMA foreign_keys = OFF");
   Transaction transaction(database, Transaction::Kind::Write);
+  const auto tables = read_checked_tables(database.connection());
   database.execute(std::string(migration.text));
+  renew_checksums(database, tables);
   const Digest digest = text_digest(migration);
   Statement(database.connection(), "INSERT INTO schema_migration VALUES (?, ?, ?, ?, ?)")
       .bind_all(migration.version, migration.name, Bytes(digest.bytes), now_ms(),

@@ -6,37 +6,41 @@
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/columns.hpp"
+#include "server/store/values/record_columns.hpp"
 #include "server/store/values/robot_columns.hpp"
-#include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
+namespace {
+
+constexpr int kBeforeRecord = 10;  // columns of an attempt that are written
+
+std::string insertion() {
+  std::string places = "?";
+  for (int place = 1; place < kBeforeRecord + kRecordColumns; ++place)
+    places += ", ?";
+  return "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
+         " machine, T_task_base, received_ms, scene_id, " +
+         record_columns() + ") VALUES (" + places + ")";
+}
+
+}  // namespace
 
 std::int64_t insert_attempt(Database& database, const NewAttempt& added,
                             std::optional<std::int64_t> scene_id, std::int64_t now_ms) {
+  static const std::string insert = insertion();
   const Attempt& attempt = added.from->attempt;
-  const PlanningRecord& record = attempt.record;
   const auto T_task_base = optional_pose_blob(attempt.T_task_base);
-  std::optional<Bytes> distribution;
-  if (record.distribution_id)
-    distribution = Bytes(record.distribution_id->bytes);
-  database
-      .cached(
-          "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
-          " machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
-          " collision_checks, projections, time_limit_s, sampling_mode, share, distribution_digest,"
-          " distribution_revision, received_ms, scene_id) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(added.from->body.bytes), added.key.task_id,
-                 added.key.robot_id, added.path_id, static_cast<std::int64_t>(added.status),
-                 std::string_view(attempt.machine), blob_or_null(T_task_base),
-                 code_of(record.outcome), std::string_view(record.planner),
-                 std::string_view(record.planner_options), record.planning_time_s,
-                 static_cast<std::int64_t>(record.collision_checks),
-                 static_cast<std::int64_t>(record.projections), record.time_limit_s,
-                 code_of(record.sampling_mode), record.share, distribution,
-                 static_cast<std::int64_t>(record.distribution_revision),
-                 added.from->received_ms.value_or(now_ms), scene_id)
-      .run();
+  const auto statement = database.cached(insert);
+  statement->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(added.from->body.bytes),
+                      added.key.task_id, added.key.robot_id, added.path_id,
+                      static_cast<std::int64_t>(added.status), std::string_view(attempt.machine),
+                      blob_or_null(T_task_base), added.from->received_ms.value_or(now_ms),
+                      scene_id);
+  int place = kBeforeRecord;
+  for_each_field<PlanningRecord>([&](const auto& field) {
+    statement->bind(++place, column_value(attempt.record.*field.member));
+  });
+  statement->run();
   return database.last_insert_id();
 }
 
@@ -62,8 +66,7 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
   const auto query = database.cached(
       "SELECT report_uuid, robot_id, task_id, machine, T_task_base, path_id, scene_id, "
       "received_ms, " +
-      std::string(kRecordColumns) + "FROM attempt WHERE id = ? AND " +
-      database.is_intact("attempt"));
+      record_columns() + "FROM attempt WHERE id = ? AND " + database.is_intact("attempt"));
   if (!query->bind(1, id).step())
     throw damaged_row("attempt " + std::to_string(id));
   row.attempt.report_uuid = id_of<Uuid>(query->column_blob(0));

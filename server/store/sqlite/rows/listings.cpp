@@ -71,7 +71,7 @@ std::string are_intact(Database& database, std::initializer_list<std::string_vie
 std::optional<PathSummary> select_path_summary(Database& database, std::int64_t id) try {
   const auto query =
       database.cached("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
-                      ", " + std::string(kRecordColumns) +
+                      ", " + record_columns("attempt.") +
                       "FROM path CROSS JOIN robot ON robot.id = path.robot_id "
                       "CROSS JOIN task ON task.id = path.task_id "
                       "CROSS JOIN attempt ON attempt.id = (SELECT max(id) FROM attempt AS newest "

@@ -28,7 +28,7 @@ TEST(RegisterCodec, NamesTheRuleThatADescriptionBreaks) {
   EXPECT_EQ(complaint(bad), "urdf: is not UTF-8");
   bad = robot();
   bad.urdf.assign(1'000'001, ' ');
-  EXPECT_EQ(complaint(bad), "urdf (bytes): 1000001 exceeds 1000000");
+  EXPECT_EQ(complaint(bad), "urdf: 1000001 bytes exceed 1000000");
   bad = robot();
   bad.tip_link = "";
   EXPECT_EQ(complaint(bad), "tip_link: is empty");
@@ -50,6 +50,19 @@ TEST(RegisterCodec, MissingTextReadsAsEmptyAndIsRefused) {
   auto message = encode({}, robot()).value_or_throw();
   message.wire.base_link = nullptr;
   EXPECT_EQ(decode(message.wire).error().message, "base_link: is empty");
+}
+
+TEST(RegisterCodec, MoreHeldJointsThanMayBeAreRefused) {
+  RobotDescription description = robot();
+  description.held_joints.clear();
+  for (std::size_t i = 0; i < kMaxHeldJoints; ++i)
+    description.held_joints["joint_" + std::to_string(i)] = 0;
+  auto message = encode({}, description).value_or_throw();
+  EXPECT_TRUE(decode(message.wire));
+  message.wire.held_joints._length = 65;  // counted before any is read
+  EXPECT_EQ(decode(message.wire).error().message, "held_joints: 65 exceeds 64");
+  description.held_joints["one more"] = 0;
+  EXPECT_EQ(complaint(description), "held_joints: 65 exceeds 64");
 }
 
 TEST(RegisterCodec, JointHeldTwiceIsRefused) {

@@ -105,6 +105,20 @@ TEST_F(Migrations, KeepACopyOfAnOlderStore) {
   EXPECT_EQ(copy.integer("SELECT count(*) FROM task"), 1);
 }
 
+TEST_F(Migrations, ThatAddAColumnLeaveRowsIntactOrDamagedAsTheyWere) {
+  run(std::array{first_});
+  {
+    Database database(file_, Access::ReadWrite);
+    database.keep_checksums();
+    database.execute("INSERT INTO task (id, name) VALUES (1, 'kept'), (2, 'damaged')");
+  }
+  Database(file_, Access::ReadWrite).execute("UPDATE task SET name = 'changed' WHERE id = 2");
+  run(std::array{first_, Migration{2, "0002_wider",
+                                   "ALTER TABLE task ADD COLUMN note TEXT NOT NULL DEFAULT '';"}});
+  Database migrated(file_, Access::ReadOnly);
+  EXPECT_EQ(migrated.integer("SELECT sum(id) FROM task WHERE " + migrated.is_intact("task")), 1);
+}
+
 TEST_F(Migrations, OfACopyKeepNoCopyOfIt) {
   run(std::array{first_});
   open_migrated(file_, std::array{first_, kSecond}, Keep::Nothing);

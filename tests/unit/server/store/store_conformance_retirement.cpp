@@ -82,6 +82,24 @@ TEST_P(StoreConformance, AResetOfManyPathsMissesNone) {
   EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
 }
 
+TEST_P(StoreConformance, AStepOfAResetRetires500PathsOfAllRobotsTogether) {
+  constexpr std::uint64_t kPathsOfEach = 300;
+  std::vector<Attempt> attempts;
+  for (std::uint64_t i = 0; i < kPathsOfEach; ++i) {
+    attempts.push_back(solved(i));
+    attempts.push_back(test::make_attempt(iiwa_.digest, "shelf", kPathsOfEach + i));
+  }
+  test::report(*store_, std::move(attempts));
+  std::stop_source stop;
+  stop.request_stop();
+  const Result<Retirement> stopped = store_->reset_task("shelf", stop.get_token());
+  ASSERT_FALSE(stopped);
+  EXPECT_NE(stopped.error().message.find("after 500 paths"), std::string::npos)
+      << stopped.error().message;
+  EXPECT_EQ(store_->status().paths, 2 * kPathsOfEach - 500);
+  EXPECT_EQ(store_->reset_task("shelf")->paths, 2 * kPathsOfEach - 500);
+}
+
 TEST_P(StoreConformance, ListsRetiredPathsInTheirPlace) {
   for (std::uint64_t i = 1; i <= 6; ++i)
     report(solved(i));

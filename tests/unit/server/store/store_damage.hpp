@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <array>
 #include <cstdint>
@@ -85,6 +86,24 @@ class StoreDamage : public testing::Test {
     stream.seekp(offset);
     stream.put(static_cast<char>(byte ^ bit));
     ASSERT_TRUE(stream.good());
+  }
+  /// Of the closed store: the entries of an index lead from each of rows 1 and 2 to the other one.
+  void swap_entries(const std::string& table, const std::string& index,
+                    const std::string& columns) const {
+    sqlite3* other = nullptr;
+    ASSERT_EQ(sqlite3_open(file_.c_str(), &other), SQLITE_OK);
+    const auto page = [](const std::string& owner) {
+      return "(SELECT rootpage FROM sqlite_master WHERE name = '" + owner + "')";
+    };
+    const std::string sql =
+        "PRAGMA writable_schema = ON; CREATE TABLE twin AS SELECT 3 - id AS twin_id, " + columns +
+        " FROM " + table + "; CREATE TABLE swapped (id INTEGER PRIMARY KEY, " + columns +
+        "); INSERT INTO swapped SELECT * FROM twin; CREATE INDEX swapped_entries ON swapped (" +
+        columns + "); UPDATE sqlite_master SET rootpage = " + page("swapped_entries") +
+        " WHERE name = '" + index + "'";
+    EXPECT_EQ(sqlite3_exec(other, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(other);
+    sqlite3_close(other);
   }
   /// Where a leaf of a table has the id of its last row: its last byte. The last row is the one
   /// whose entry ends the array of cells; its id follows the size of its content, both as varints.

@@ -5,7 +5,10 @@
 #include <condition_variable>
 #include <iostream>
 #include <mutex>
+#include <set>
 #include <thread>
+
+#include "server/store/tables/distributions.hpp"
 
 /// Damage in one place of a store, and what becomes of it and of everything else.
 namespace kinship::store::store_damage_test {
@@ -65,6 +68,19 @@ TEST_F(StoreDamage, ARetiredPathStaysRetiredWhateverIsDamaged) {
   EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Duplicate);
   EXPECT_EQ(paths().size(), 2U);
   EXPECT_EQ(store_->retire_path(attempt(2).report_uuid)->paths, 0U);
+}
+
+TEST_F(StoreDamage, WithAReplacementTheReportsOfThePathThatItReplacedAreRetired) {
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  edit(kFlipWaypoints);
+  open();
+  Attempt again = attempt(9);
+  again.path = attempt(2).path;
+  EXPECT_EQ(report(again).status, ReceiptStatus::Stored);
+  EXPECT_EQ(store_->retire_path(again.report_uuid)->paths, 1U);
+  const std::vector<Uuid> retired = store_->list_retirements("", 10).rows;
+  EXPECT_EQ(std::set<Uuid>(retired.begin(), retired.end()),
+            (std::set<Uuid>{attempt(2).report_uuid, again.report_uuid}));
 }
 
 TEST_F(StoreDamage, AResetTakesDamagedPathsToo) {
@@ -200,6 +216,22 @@ TEST_F(StoreDamage, AnIndexThatDoesNotFitItsRowsIsMadeAnewAtTheStart) {
   EXPECT_EQ(store_->status().attempts, 20U);
   store_.reset();
   EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+TEST_F(StoreDamage, AnIndexEntryThatLeadsToAnotherDistributionGivesNone) {
+  const Distribution first = test::make_distribution(robot_.digest, "shelf", 1);
+  const Distribution second = test::make_distribution(robot_.digest, "shelf", 2);
+  store_->put_distribution(first);
+  store_->put_distribution(second);
+  store_.reset();
+  swap_entries("distribution", "distribution_by_digest", "digest, revision");
+  Database database(file_, Access::ReadOnly);
+  for (const Digest& id : {first.id, second.id}) {
+    EXPECT_TRUE(read_distribution(database, id == first.id ? 1 : 2).distribution);
+    const DistributionRead found = select_distribution(database, id);
+    EXPECT_FALSE(found.distribution) << "of another id";
+    EXPECT_TRUE(found.damaged);
+  }
 }
 
 /// Reports that find their place in a damaged page of an index.
