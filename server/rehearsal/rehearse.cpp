@@ -8,9 +8,11 @@
 
 #include "proto/types/split_mix.hpp"
 #include "proto/types/stopped.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/guided_sampler.hpp"
 #include "robots/planning/planning_budget.hpp"
+#include "robots/recall/recall.hpp"
 
 namespace kinship::rehearsal {
 namespace {
@@ -25,13 +27,15 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// In the order of their preparation before the first sample: the mixture costs most.
+/// In the order of their preparation before the first sample: the mixture costs most. To recall
+/// costs less than the next one.
 constexpr std::array kByEffort = {
     Guide::None,    Guide::Retreat,        Guide::Ways,        Guide::RetreatWays,
     Guide::Mixture, Guide::RetreatMixture, Guide::WaysMixture, Guide::RetreatWaysMixture};
 
 std::ptrdiff_t effort_of(const GuideCost& cost) {
-  return std::ranges::find(kByEffort, cost.guide) - kByEffort.begin();
+  const auto at = std::ranges::find(kByEffort, without_recall(cost.guide)) - kByEffort.begin();
+  return 2 * at + (has_recall(cost.guide) ? 1 : 0);
 }
 
 }  // namespace
@@ -60,7 +64,7 @@ Rehearsing::Rehearsing(Subject subject, const RehearsalOptions& options)
   const bool are_ways = !subject_.experience->experience().paths.empty();
   for (const Guide guide : kByEffort)
     if ((are_mixtures || !has_mixture(guide)) && (are_ways || !has_ways(guide)))
-      guides_.push_back({guide, {}, 0, false});
+      guides_.push_back({guide, {}, {}, false});
 }
 
 bool Rehearsing::step() {
@@ -70,10 +74,18 @@ bool Rehearsing::step() {
       pose_query(*subject_.robot, subject_.T_task_base, subject_.recorded.queries[next_]);
   is_usable_[next_] = posed.has_value();
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
+  const std::optional<Cost> recalled = posed ? recall(*posed) : std::nullopt;
   for (std::size_t i = 0; posed && i < guides_.size(); ++i) {
-    Tried& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first finds cold caches
-    if (!tried.is_left)
-      plan(*posed, seed, tried);
+    TriedGuide& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first: cold caches
+    if (tried.is_left)
+      continue;
+    const Cost planned = plan(*posed, seed, tried.guide);
+    tried.alone.add(planned);
+    if (recalled)
+      tried.after_recall.add(recalled->is_solved
+                                 ? *recalled
+                                 : Cost{recalled->checks + planned.checks,
+                                        recalled->time_s + planned.time_s, planned.is_solved});
   }
   ++next_;
   advance();
@@ -97,12 +109,37 @@ void Rehearsing::advance() {
   next_ = find(0);
 }
 
-void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const {
+void Rehearsing::Tried::add(const Cost& cost) {
+  checks.push_back(cost.checks);
+  time_s += cost.time_s;
+  solved += cost.is_solved ? 1U : 0U;
+}
+
+/// \return nothing if there is nothing to recall, as under a constraint.
+std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed) const {
+  if (!subject_.recall || posed.constraint)
+    return std::nullopt;
+  const planning::TrackQuery& planned = posed.query;
+  recall::Query query{planned.T_task_base, planned.bounds, planned.start, {}};
+  query.T_base_goal = kinematics::T_base_transfer(subject_.robot->chain, planned.goals.col(0));
+  query.T_task_anchors =
+      recall::find_anchors(subject_.recall->library().anchors, posed.surroundings.scene.objects);
+  query.without = planned.without;
+  const planning::IsFree is_free =
+      planning::free_in(*posed.world, [this] { throw_if_stopped(options_.stop); });
+  const double begin_s = planning::thread_time_s();
+  const recall::RecallSummary summary =
+      recall::recall(*subject_.recall, query, is_free, {.step = subject_.recorded.steps.step});
+  return Cost{static_cast<double>(summary.collision_checks), planning::thread_time_s() - begin_s,
+              summary.waypoints.has_value()};
+}
+
+Rehearsing::Cost Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Guide guide) const {
   const double begin_s = planning::thread_time_s();
   const std::optional<Mixture>& mixture = subject_.mixtures.at(half_of(*posed.query.without));
   const planning::GuidedSampler guided =
       planning::guided_sampler(subject_.robot->chain, posed.query, mixture ? &*mixture : nullptr,
-                               subject_.experience, {.guide = tried.guide});
+                               subject_.experience, {.guide = guide});
   const planning::IsFree is_free =
       planning::free_in(*posed.world, [this] { throw_if_stopped(options_.stop); });
   planning::BirrtOptions options;
@@ -116,38 +153,38 @@ void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const
                                    {is_free, *posed.constraint}, guided.sampler, options, generator)
           : planning::plan_birrt(posed.query.start, posed.query.goals, is_free, guided.sampler,
                                  options, generator);
-  tried.time_s += planning::thread_time_s() - begin_s;
-  tried.checks.push_back(static_cast<double>(summary.collision_checks));
-  tried.solved += summary.waypoints ? 1U : 0U;
-}
-
-double Rehearsing::mean_time_s(const Tried& tried) {
-  return tried.time_s / static_cast<double>(tried.checks.size());
+  return {static_cast<double>(summary.collision_checks), planning::thread_time_s() - begin_s,
+          summary.waypoints.has_value()};
 }
 
 void Rehearsing::end_round() {
   constexpr std::size_t kEnough = 20;
   constexpr double kHopeless = 1.5;
   double best = std::numeric_limits<double>::infinity();
-  for (const Tried& tried : guides_)
-    if (tried.checks.size() >= kEnough && !tried.is_left)
-      best = std::min(best, mean_time_s(tried));
-  for (Tried& tried : guides_)
-    tried.is_left =
-        tried.is_left || (tried.checks.size() >= kEnough && mean_time_s(tried) > kHopeless * best);
+  for (const TriedGuide& tried : guides_)
+    if (tried.alone.checks.size() >= kEnough && !tried.is_left)
+      best = std::min(best, tried.alone.mean_time_s());
+  for (TriedGuide& tried : guides_)
+    tried.is_left = tried.is_left || (tried.alone.checks.size() >= kEnough &&
+                                      tried.alone.mean_time_s() > kHopeless * best);
 }
 
 Rehearsal Rehearsing::result() const {
   Rehearsal result;
   result.is_complete = is_done();
-  for (const Tried& tried : guides_)
+  const auto add = [&result](Guide guide, const Tried& tried) {
     if (!tried.checks.empty())
-      result.costs.push_back({.guide = tried.guide,
+      result.costs.push_back({.guide = guide,
                               .plans = tried.checks.size(),
                               .solved = tried.solved,
                               .mean_checks = mean(tried.checks),
                               .median_checks = median(tried.checks),
-                              .mean_time_s = mean_time_s(tried)});
+                              .mean_time_s = tried.mean_time_s()});
+  };
+  for (const TriedGuide& tried : guides_) {
+    add(tried.guide, tried.alone);
+    add(with_recall(tried.guide), tried.after_recall);
+  }
   result.queries = static_cast<std::uint64_t>(std::ranges::count(is_usable_, true));
   result.left_out = is_usable_.size() - result.queries;
   if (result.queries == 0)

@@ -47,7 +47,8 @@ struct RehearsalOptions {
 };
 
 /// Plans recorded queries with each guide in turn, one query per step, so that the caller may rest
-/// between steps. A guide of at least 20 plans whose mean time at the end of a round exceeds 1.5
+/// between steps. Each guide also counts as one that first recalls a path and plans only where that
+/// fails. A guide of at least 20 plans whose mean time at the end of a round exceeds 1.5
 /// times that of the best one is dropped. Equal subject, equal steps: plans with equal checks;
 /// times are measured, and so is what follows from them: the guides dropped, and the one to use.
 class Rehearsing {
@@ -63,23 +64,34 @@ class Rehearsing {
   Rehearsal result() const;
 
  private:
+  /// Of one plan, or of trying to recall one.
+  struct Cost {
+    double checks = 0, time_s = 0;
+    bool is_solved = false;
+  };
   struct Tried {
-    Guide guide;
     std::vector<double> checks;  // of each plan, in the order of steps
     double time_s = 0;           // of all plans
     std::uint64_t solved = 0;
+
+    void add(const Cost& cost);
+    double mean_time_s() const { return time_s / static_cast<double>(checks.size()); }
+  };
+  struct TriedGuide {
+    Guide guide;
+    Tried alone, after_recall;  // the latter without plans if nothing can be recalled
     bool is_left = false;
   };
 
-  void plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const;
-  static double mean_time_s(const Tried& tried);
+  Cost plan(PosedQuery& posed, std::uint64_t seed, Guide guide) const;
+  std::optional<Cost> recall(PosedQuery& posed) const;
   bool is_done() const;
   void advance();
   void end_round();
 
   const Subject subject_;
   const RehearsalOptions options_;
-  std::vector<Tried> guides_;
+  std::vector<TriedGuide> guides_;
   std::vector<bool> is_usable_;  // of the queries; all until they were posed once
   std::size_t next_ = 0, round_ = 0;
 };
