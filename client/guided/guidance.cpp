@@ -240,10 +240,13 @@ QueryGuidance GuidanceCache::choose(const Problem& problem) const {
   if (!known->second.guidance)
     return {.why_not = known->second.message};
   return {.guidance = &*known->second.guidance,
-          .sampling_mode = sampling_->choose(sampling_mode_seed(problem))};
+          .sampling_mode = sampling_->choose(sampling_mode_seed(problem)),
+          .recall_trust = std::min(1.0, (recalled_ + 1) / (recall_expected_ + 1))};
 }
 
 void GuidanceCache::add(const PlannedProblem& planned) {
+  recall_expected_ += planned.recall_expected;
+  recalled_ += planned.result.found_by == FoundBy::Recalled ? 1 : 0;
   if (sampling_)
     sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks);
 }

@@ -150,7 +150,14 @@ class Planning {
         recorder_(recorder),
         generator_(problem.seed) {}
 
-  void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
+  void run(const PlannerChoice& planner, const QueryGuidance& query, PlannedProblem& planned) {
+    const double begin_s = planning::thread_time_s();
+    plan(planner, query, planned);
+    planned.result.processor_time_s = planning::thread_time_s() - begin_s;
+  }
+
+ private:
+  void plan(const PlannerChoice& planner, const QueryGuidance& query, PlannedProblem& planned) {
     if (!find_start(planned.result))
       return;
     planned.enclosed = world_.find_enclosed(start_);
@@ -160,7 +167,7 @@ class Planning {
     Eigen::MatrixXd goals;
     if (!problem_.T_task_goal && (goals = find_goals(planned.result)).cols() == 0)
       return;
-    if (guidance != nullptr && recall(*guidance, goals, planned))
+    if (query.guidance != nullptr && recall(query, goals, planned))
       return;
     if (problem_.T_task_goal && (goals = find_goals(planned.result)).cols() == 0)
       return;
@@ -174,7 +181,7 @@ class Planning {
     options.recorder = recorder_;
     const double begin_s = planning::thread_time_s();
     const auto sampler = make_query_sampler(robot_.chain, {T_task_base_, bounds_, start_, goals},
-                                            guidance, settings_, planned.result);
+                                            query.guidance, settings_, planned.result);
     planned.result.planner = planner_text(planner, sampler);
     planned.result.not_planned.reset();
     planning::PlanSummary summary = search(planner, start_, goals, sampler, options);
@@ -191,10 +198,10 @@ class Planning {
     planned.result.reason = explain(summary.reason, summary.planner_message);
   }
 
- private:
   /// Tries whole stored paths, which needs no goal configurations of a pose.
   /// \return whether one solves the problem.
-  bool recall(const Guidance& guidance, const Eigen::MatrixXd& goals, PlannedProblem& planned) {
+  bool recall(const QueryGuidance& from, const Eigen::MatrixXd& goals, PlannedProblem& planned) {
+    const Guidance& guidance = *from.guidance;
     ProblemResult& result = planned.result;
     if (!guidance.recall || !has_recall(guidance.guide) || constraint_ ||
         result.sampling_mode != SamplingMode::Guided)
@@ -206,7 +213,9 @@ class Planning {
     query.T_task_anchors =
         recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
     recall::RecallSummary summary =
-        recall::recall(*guidance.recall, query, is_free_, {.step = settings_.resolution});
+        recall::recall(*guidance.recall, query, is_free_,
+                       {.step = settings_.resolution, .trust = from.recall_trust});
+    planned.recall_expected = summary.expected;
     result.guide = guidance.guide;
     result.collision_checks = summary.collision_checks;
     result.recall_tries = summary.tries;
@@ -476,7 +485,7 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& given,
     planned.attempted = true;
     planned.planner = name_of(*planner);
     planned.result.planner = planned.planner;
-    planning.run(*planner, query.guidance, planned);
+    planning.run(*planner, query, planned);
   } catch (const Interrupted&) {
     planned.interrupted = true;
   } catch (const std::exception& exception) {  // of one problem: the others are planned

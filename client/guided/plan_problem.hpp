@@ -38,6 +38,7 @@ struct PlannedProblem {
   std::string planner;  ///< its name alone; further remarks are in the result
   Outcome outcome = Outcome::Failed;
   std::vector<std::string> moved;  ///< sentences on starts and goals moved onto a limit
+  double recall_expected = 0;      ///< chance that the recalled paths tried would do, 0 to 1
   bool attempted = false;    ///< false if the problem does not fit the robot: nothing was planned
   bool interrupted = false;  ///< `stop` ended it; the other members are then meaningless
   /// Bodies within a closed mesh at the start, which no check notices.

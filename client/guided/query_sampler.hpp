@@ -34,6 +34,7 @@ struct QueryGuidance {
   const Guidance* guidance = nullptr;  ///< null: there is none
   SamplingMode sampling_mode =
       SamplingMode::Uniform;  ///< Guided uses it; Control and Uniform plan without
+  double recall_trust = 1;    ///< of the chances that the library tells, 0 to 1
   std::string why_not = {};   ///< for people: why there is none
 };
 

@@ -250,6 +250,9 @@ void bind_outcome(py::class_<Plan>& plan) {
                              "Free where they were checked but not in between: planned again.")
       .def_property_readonly("projections", result(&ProblemResult::projections),
                              "Onto a constraint.")
+      .def_property_readonly("processor_time_s", result(&ProblemResult::processor_time_s),
+                             "CPU time of the thread for all of it: start, goals, guidance, "
+                             "search, shortening, proof.")
       .def_property_readonly("planning_time_s", result(&ProblemResult::planning_time_s),
                              "Of this thread, without goals and shortening.")
       .def_property_readonly("planner", result(&ProblemResult::planner), "What planned it.");

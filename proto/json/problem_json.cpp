@@ -78,6 +78,7 @@ constexpr std::tuple kEffort{
         "least_clearance_m", &ProblemResult::least_clearance_m, {.min = 0, .may_be_missing = true}},
     Field{"refuted_edges", &ProblemResult::refuted_edges, {.may_be_missing = true}},
     Field{"planning_time_s", &ProblemResult::planning_time_s, {.min = 0}},
+    Field{"processor_time_s", &ProblemResult::processor_time_s, {.min = 0, .may_be_missing = true}},
     Field{"time_limit_s", &ProblemResult::time_limit_s, {.min = 0}}};
 
 /// If there is a distribution, or the query was guided or control.

@@ -48,6 +48,8 @@ struct ProblemResult {
   /// Edges that were free at the tested configurations but collide in between: planned again.
   std::uint64_t refuted_edges = 0;
   double planning_time_s = 0;  ///< without goal configurations and shortcutting
+  /// CPU time of the thread for all of it: start, goals, guidance, search, shortening, proof.
+  double processor_time_s = 0;
   double time_limit_s = 0;
   std::optional<Eigen::VectorXd> start = {};   ///< dof: where planning began; missing: it did not
   std::optional<NotPlanned> not_planned = {};  ///< why no search was begun; missing: a search was
