@@ -4,6 +4,7 @@
 
 #include <future>
 
+#include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/locked_table.hpp"
 #include "tests/support/postgres_programs.hpp"
@@ -336,10 +337,14 @@ TEST_F(PostgresStoreTest, RefusesWhatItDoesNotKnow) {
     }
     return std::string();
   };
-  sql("INSERT INTO schema_migration VALUES (2, 'x', decode(repeat('00', 32), 'hex'), 1, '15')");
-  EXPECT_NE(refusal().find("it has schema 2; this binary knows up to 1"), std::string::npos)
+  const std::size_t count = postgres::embedded_migrations().size();
+  const std::string known = std::to_string(count), newer = std::to_string(count + 1);
+  sql("INSERT INTO schema_migration VALUES (" + newer +
+      ", 'x', decode(repeat('00', 32), 'hex'), 1, '15')");
+  EXPECT_NE(refusal().find("it has schema " + newer + "; this binary knows up to " + known),
+            std::string::npos)
       << refusal();
-  sql("DELETE FROM schema_migration WHERE version = 2");
+  sql("DELETE FROM schema_migration WHERE version = " + newer);
   sql("UPDATE schema_migration SET sha256 = decode(repeat('00', 32), 'hex')");
   EXPECT_NE(refusal().find("another text of migration 1"), std::string::npos) << refusal();
 }
