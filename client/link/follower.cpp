@@ -22,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using DistributionPointer = std::shared_ptr<const Distribution>;
 using ExperiencePointer = std::shared_ptr<const TaskExperience>;
+using LibraryPointer = std::shared_ptr<const RecallLibrary>;
 
 constexpr std::chrono::seconds kLease = 60s;
 constexpr milliseconds kServerTime = 10s;  // for the server to make it; then it says "pending"
@@ -110,6 +111,11 @@ class Follower::Implementation {
     return experience_;
   }
 
+  LibraryPointer recall() const {
+    const std::lock_guard lock(newest_mutex_);
+    return recall_;
+  }
+
   State state() const {
     const std::lock_guard lock(mutex_);
     return state_;
@@ -172,6 +178,8 @@ class Follower::Implementation {
       const Result<FetchReply> reply = ask();
       if (reply && reply->experience)
         hold(*reply->experience);
+      if (reply && reply->recall)
+        hold(*reply->recall);
       Step step = judge(reply);
       std::unique_lock lock(mutex_);
       is_asking_ = false;
@@ -201,6 +209,14 @@ class Follower::Implementation {
         experience.paths.empty() ? nullptr : std::make_shared<const TaskExperience>(experience);
     const std::lock_guard lock(newest_mutex_);
     experience_.swap(held);  // the earlier one is freed outside of the lock
+  }
+
+  void hold(const RecallLibrary& library) {
+    request_.known_recall = library.revision;
+    LibraryPointer held =
+        library.paths.empty() ? nullptr : std::make_shared<const RecallLibrary>(library);
+    const std::lock_guard lock(newest_mutex_);
+    recall_.swap(held);  // the earlier one is freed outside of the lock
   }
 
   Step judge(const Result<FetchReply>& reply) {
@@ -251,12 +267,13 @@ class Follower::Implementation {
 
   const dds::OwningProcess process_;
   const std::shared_ptr<const dds::Participant> participant_;
-  FetchRequest request_;  // only its knowledge of the experience changes
+  FetchRequest request_;  // only its knowledge of experience and library changes
   const FollowOptions options_;
   milliseconds pause_{0};            // of the thread alone
-  mutable std::mutex newest_mutex_;  // guards the two; taken last, held to copy one
+  mutable std::mutex newest_mutex_;  // guards the three; taken last, held to copy one
   DistributionPointer newest_;       // shared with all callers
   ExperiencePointer experience_;     // the same
+  LibraryPointer recall_;            // the same
   mutable std::mutex mutex_;         // guards what follows
   mutable std::condition_variable changed_;
   State state_;
@@ -284,6 +301,8 @@ std::shared_ptr<const Distribution> Follower::newest() const { return implementa
 std::shared_ptr<const TaskExperience> Follower::experience() const {
   return implementation_->experience();
 }
+
+std::shared_ptr<const RecallLibrary> Follower::recall() const { return implementation_->recall(); }
 
 Follower::State Follower::state() const { return implementation_->state(); }
 

@@ -60,6 +60,9 @@ class Follower {
   /// Copies a pointer like newest().
   std::shared_ptr<const TaskExperience> experience() const;
 
+  /// The latest library of paths to recall, likewise; null as long as none came.
+  std::shared_ptr<const RecallLibrary> recall() const;
+
   State state() const;
 
   /// Waits until newest() is another revision, or of another store epoch, than `held`, or the

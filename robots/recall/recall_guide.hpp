@@ -28,7 +28,7 @@ struct Query {
   Eigen::MatrixXd goals;    ///< dof x n; n = 0: any configuration at the pose
   Eigen::Isometry3d T_base_goal = Eigen::Isometry3d::Identity();  ///< if there are no goals
   /// Of RecallLibrary::anchors in this scene; nothing: it is not there.
-  std::vector<std::optional<Eigen::Isometry3d>> T_task_anchors;
+  std::vector<std::optional<Eigen::Isometry3d>> T_task_anchors = {};
   /// A recorded query whose own solution is left out, as it is planned again.
   std::optional<Uuid> without = {};
 };

@@ -105,6 +105,8 @@ ProblemResult every_problem_result() {
   result.track_share = 0.25;
   result.experience_revision = 12;
   result.tracks_followed = 3;
+  result.recall_tries = 5;
+  result.processor_time_s = 0.125;
   result.guide = Guide::RetreatWays;
   result.found_by = FoundBy::Track;
   result.reason = next.text("reason");

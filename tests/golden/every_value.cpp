@@ -363,8 +363,10 @@ RecallLibrary every_library() {
                                .T_task_anchors = {next.pose(), next.pose()}});
   for (const std::uint32_t query : {1U, 0U, 1U})
     library.paths.push_back({query, next.matrix(kDof, kRecallWaypoints)});
-  library.modes = {{3, kGoalFrame}, {1, kFirstAnchor + 1}};
+  library.modes = {{2, kGoalFrame}, {1, kFirstAnchor + 1}};
   library.solves = {0b1010'0110, 0b0101};
+  library.reaches = {0b1110'0111, 0b1101};
+  library.try_checks = next.real();
   return library;
 }
 

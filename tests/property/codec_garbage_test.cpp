@@ -36,7 +36,8 @@ class Vandal {
     one_of(w.guide, w.solved, w.mean_checks, w.median_checks, w.mean_time_s);
   }
   void spoil(kinship_wire_RecallLibrary& w) {
-    one_of(w.search_checks, w.anchors, w.queries, w.queries, w.paths, w.paths, w.modes, w.solves);
+    one_of(w.search_checks, w.try_checks, w.anchors, w.queries, w.queries, w.paths, w.paths,
+           w.modes, w.solves, w.reaches);
   }
   void spoil(kinship_wire_RecallQuery& w) {
     one_of(w.T_task_base, w.start, w.goal, w.T_task_anchors);

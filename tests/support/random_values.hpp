@@ -225,6 +225,7 @@ class RandomValues {
     RecallLibrary library;
     library.revision = 1 + count() / 2;
     library.search_checks = 1000 * share();
+    library.try_checks = 100 * share();
     for (int i = below(3); i > 0; --i)
       library.anchors.push_back(name(100));
     for (int i = 1 + below(5); i > 0; --i) {
@@ -245,10 +246,11 @@ class RandomValues {
     for (int i = 1 + below(4); i > 0; --i)
       library.modes.push_back({static_cast<std::uint32_t>(below(kMaxWarpBlends)),
                                static_cast<std::uint32_t>(below(frames))});
-    library.solves.resize(
-        (library.queries.size() * library.paths.size() * library.modes.size() + 7) / 8);
-    for (std::uint8_t& bits : library.solves)
-      bits = static_cast<std::uint8_t>(below(256));
+    for (auto* const bits : {&library.solves, &library.reaches}) {
+      bits->resize((library.queries.size() * library.paths.size() * library.modes.size() + 7) / 8);
+      for (std::uint8_t& byte : *bits)
+        byte = static_cast<std::uint8_t>(below(256));
+    }
     return library;
   }
 

@@ -91,6 +91,36 @@ TEST_F(FollowerTest, FetchesWhatIsAnnouncedAndKeepsWhatItGaveOut) {
   EXPECT_EQ(first->revision, 7U);
 }
 
+TEST_F(FollowerTest, HoldsPathsToRecallAndAsksOnlyForOthers) {
+  FetchReply reply = ready();
+  reply.recall = values_.recall_library(3);
+  FollowServer server(domain_.number(), reply);
+  const auto follower = client().follow(request());
+  const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
+  ASSERT_TRUE(first);
+  const auto held = follower->recall();
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->revision, reply.recall->revision);
+  EXPECT_EQ(held->paths.size(), reply.recall->paths.size());
+  EXPECT_EQ(server.last_request().known_recall, 0U);
+
+  distribution_.revision = 8;
+  server.set_reply(ready());  // without it, as nothing changed
+  server.announce(distribution_);
+  const auto second = follower->wait_for_newer(first, Clock::now() + kEnough);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(server.last_request().known_recall, held->revision);
+  EXPECT_EQ(follower->recall(), held);
+
+  distribution_.revision = 9;
+  reply = ready();
+  reply.recall = values_.recall_library(3);
+  server.set_reply(reply);
+  server.announce(distribution_);
+  ASSERT_TRUE(follower->wait_for_newer(second, Clock::now() + kEnough));
+  EXPECT_EQ(follower->recall()->revision, reply.recall->revision);
+}
+
 TEST_F(FollowerTest, ALowerRevisionOfAnotherStoreEpochIsNews) {
   FollowServer server(domain_.number(), ready());
   const auto follower = client().follow(request());

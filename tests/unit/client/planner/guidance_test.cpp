@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tests/support/random_values.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::guided::guidance_test {
@@ -214,6 +215,60 @@ TEST(GuidanceCache, AGuideThatNeedsNoExperienceAsksNoServerAndKeepsItsEvidence) 
   GuidanceCache none(nullptr, alone);
   none.ask(placement(0));
   EXPECT_EQ(none.choose(problem_at(0)).sampling_mode, SamplingMode::Uniform);
+}
+
+GuidanceOptions wanted_of_the_arm() {
+  GuidanceOptions arms = wanted();
+  arms.chain = test::planar_robot().chain;
+  arms.dof = arms.chain->dof();
+  return arms;
+}
+
+TEST(GuidanceCache, PathsToRecallAreSentOnceAndServeAllPlacements) {
+  kinship::test::RandomValues values(5);
+  const RecallLibrary library = values.recall_library(wanted_of_the_arm().dof);
+  std::vector<std::uint64_t> known;
+  GuidanceCache cache(
+      [&](const FetchRequest& request) {
+        known.push_back(request.known_recall);
+        FetchReply reply = status_only(FetchStatus::NoExperience);
+        if (request.known_recall != library.revision)
+          reply.recall = library;
+        return Result<FetchReply>(reply);
+      },
+      wanted_of_the_arm());
+  for (const double x : {0.0, 1.0}) {
+    const GuidanceAnswer& answer = cache.ask(placement(x)).first;
+    ASSERT_TRUE(answer.guidance) << answer.message;
+    ASSERT_TRUE(answer.guidance->recall);
+    EXPECT_EQ(answer.guidance->recall->library().revision, library.revision);
+  }
+  EXPECT_EQ(known, (std::vector<std::uint64_t>{0, library.revision}));
+}
+
+TEST(GuidanceCache, PathsOfAnotherNumberOfJointsAreNotTaken) {
+  kinship::test::RandomValues values(5);
+  FetchReply reply = status_only(FetchStatus::NoExperience);
+  reply.recall = values.recall_library(wanted_of_the_arm().dof + 1);
+  EXPECT_FALSE(answer_to(reply, wanted_of_the_arm()).guidance);
+}
+
+TEST(GuidanceCache, PathsThatDoNotDoWhatTheyPromiseAreTrustedLess) {
+  GuidanceCache cache([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wanted());
+  cache.ask(placement(0));
+  EXPECT_EQ(cache.choose(problem_at(0)).recall_trust, 1);
+  PlannedProblem planned;
+  planned.recall_expected = 0.9;
+  planned.result.found_by = FoundBy::Search;
+  for (int i = 0; i < 20; ++i)
+    cache.add(planned);
+  const double doubted = cache.choose(problem_at(0)).recall_trust;
+  EXPECT_LT(doubted, 0.2);
+  planned.result.found_by = FoundBy::Recalled;
+  for (int i = 0; i < 200; ++i)
+    cache.add(planned);
+  EXPECT_GT(cache.choose(problem_at(0)).recall_trust, 0.8);
+  EXPECT_LE(cache.choose(problem_at(0)).recall_trust, 1);
 }
 
 /// Guided queries at one placement that cost ten times as much as control ones.

@@ -8,6 +8,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/path_vertices.hpp"
+#include "robots/recall/clear_path.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::guided::plan_problem_by_experience_test {
@@ -109,6 +110,106 @@ TEST(PlanProblemByExperience, WhereTheStraightLineIsFreeNoTrackIsFollowed) {
   EXPECT_EQ(guided.found_by, FoundBy::StraightLine);
   EXPECT_EQ(guided.tracks_followed, 0U);
   EXPECT_EQ(guided.collision_checks, planned(open).result.collision_checks);
+}
+
+/// Guidance by one whole path that once answered the problem.
+Guidance recalling(const Problem& problem, const Eigen::MatrixXd& waypoints) {
+  RecallLibrary library;
+  library.revision = 5;
+  library.search_checks = 1e6;
+  library.try_checks = 10;
+  RecallQuery& query = library.queries.emplace_back();
+  query.report = Uuid::random();
+  query.T_task_base = placement_of(problem);
+  query.start = waypoints.col(0);
+  query.goal = waypoints.rightCols<1>();
+  library.paths.push_back({0, recall::equal_parts(waypoints)});
+  library.modes = {{0, kTaskFrame}};
+  library.solves = library.reaches = {0};
+  EXPECT_FALSE(validate(library));
+  Guidance guidance;
+  guidance.recall = std::make_shared<recall::RecallGuide>(planar_robot().chain, library);
+  guidance.guided_fraction = 1;
+  guidance.guide = Guide::Recall;
+  return guidance;
+}
+
+/// A path around the wall with room for the places between its 32 waypoints.
+Eigen::MatrixXd roomy_path(const Problem& problem) {
+  PlanSettings roomy;
+  roomy.clearance_m = 0.02;
+  return planned(problem, roomy).result.waypoints.value();
+}
+
+TEST(PlanProblemByExperience, AWholePathIsRecalledWithoutASearch) {
+  const Problem problem = wall_problem();
+  const Guidance guidance = recalling(problem, roomy_path(problem));
+  Problem again = problem;
+  again.start[0] += 0.03;
+  again.goal_configurations(1, 0) += 0.03;
+  const PlannedProblem recalled = planned(again, {}, {&guidance, SamplingMode::Guided});
+  const ProblemResult& result = recalled.result;
+  ASSERT_TRUE(result.solved) << result.reason;
+  EXPECT_EQ(recalled.outcome, Outcome::Solved);
+  EXPECT_EQ(result.found_by, FoundBy::Recalled);
+  EXPECT_EQ(result.recall_tries, 1U);
+  EXPECT_EQ(result.guide, Guide::Recall);
+  EXPECT_EQ(result.tracks_followed, 0U);
+  EXPECT_FALSE(result.not_planned);
+  EXPECT_TRUE(result.proven);
+  EXPECT_EQ(result.waypoints->col(0), again.start);
+  EXPECT_EQ(result.waypoints->rightCols<1>(), again.goal_configurations);
+  EXPECT_TRUE(is_free_along(*result.waypoints, again));
+  EXPECT_LT(result.collision_checks, planned(again).result.collision_checks / 2);
+  const ProblemResult read = json::problem_result_from_json(json::to_json(result)).value_or_throw();
+  EXPECT_EQ(read.recall_tries, 1U);
+  EXPECT_EQ(read.found_by, FoundBy::Recalled);
+}
+
+TEST(PlanProblemByExperience, AGoalPoseIsReachedByARecalledPath) {
+  Problem problem = wall_problem();
+  const Guidance guidance = recalling(problem, roomy_path(problem));
+  problem.T_task_goal =
+      kinematics::T_base_transfer(planar_robot().chain, problem.goal_configurations);
+  problem.goal_configurations.resize(4, 0);
+  const ProblemResult result = planned(problem, {}, {&guidance, SamplingMode::Guided}).result;
+  ASSERT_TRUE(result.solved) << result.reason;
+  EXPECT_EQ(result.found_by, FoundBy::Recalled);
+  EXPECT_EQ(result.goal_checks, 0U) << "its goal configurations are not needed";
+  EXPECT_TRUE(kinematics::T_base_transfer(planar_robot().chain, result.waypoints->rightCols<1>())
+                  .isApprox(*problem.T_task_goal, 1e-5));
+}
+
+TEST(PlanProblemByExperience, WhereNoRecalledPathIsFreeASearchFollows) {
+  const Problem problem = wall_problem();
+  Eigen::MatrixXd through_the_wall(4, 2);
+  through_the_wall << problem.start, problem.goal_configurations;
+  const Guidance guidance = recalling(problem, through_the_wall);
+  const PlannedProblem searched = planned(problem, {}, {&guidance, SamplingMode::Guided});
+  const ProblemResult& result = searched.result;
+  ASSERT_TRUE(result.solved) << result.reason;
+  EXPECT_EQ(result.found_by, FoundBy::Search);
+  EXPECT_EQ(result.recall_tries, 1U);
+  EXPECT_GT(searched.recall_expected, 0);
+  EXPECT_TRUE(is_free_along(*result.waypoints, problem));
+  const ProblemResult uniform = planned(problem).result;
+  EXPECT_EQ(*result.waypoints, *uniform.waypoints) << "the same search";
+  EXPECT_GT(result.collision_checks, uniform.collision_checks) << "and what the try cost";
+}
+
+TEST(PlanProblemByExperience, NothingIsRecalledForControlWithoutTheGuideOrWithoutTrust) {
+  const Problem problem = wall_problem();
+  Guidance guidance = recalling(problem, roomy_path(problem));
+  const auto tries = [&](const QueryGuidance& query) {
+    const ProblemResult result = planned(problem, {}, query).result;
+    EXPECT_TRUE(result.solved);
+    EXPECT_NE(result.found_by, FoundBy::Recalled);
+    return result.recall_tries;
+  };
+  EXPECT_EQ(tries({&guidance, SamplingMode::Control}), 0U);
+  EXPECT_EQ(tries({&guidance, SamplingMode::Guided, 0}), 0U);
+  guidance.guide = Guide::RetreatWaysMixture;
+  EXPECT_EQ(tries({&guidance, SamplingMode::Guided}), 0U);
 }
 
 }  // namespace

@@ -43,9 +43,11 @@ void expect_same(const RecallLibrary& read, const RecallLibrary& written) {
   constexpr double kPoseTolerance = 1e-12;
   EXPECT_EQ(read.revision, written.revision);
   EXPECT_EQ(read.search_checks, written.search_checks);
+  EXPECT_EQ(read.try_checks, written.try_checks);
   EXPECT_EQ(read.anchors, written.anchors);
   EXPECT_EQ(read.modes, written.modes);
   EXPECT_EQ(read.solves, written.solves);
+  EXPECT_EQ(read.reaches, written.reaches);
   ASSERT_EQ(read.queries.size(), written.queries.size());
   for (std::size_t i = 0; i < read.queries.size(); ++i) {
     const RecallQuery &one = read.queries[i], &other = written.queries[i];
@@ -97,8 +99,12 @@ TEST(RecallCodec, ALibraryThatBreaksARuleIsNeitherSentNorRead) {
   bad.revision = 0;
   EXPECT_EQ(encode({}, reply_with(bad)).error().message, "recall: revision 0");
   EXPECT_EQ(fault_after([](auto& wire) { wire.revision = 0; }), "recall: revision 0");
-  EXPECT_EQ(fault_after([](auto& wire) { wire.modes._buffer[0].blend = 4; }),
-            "recall: mode 0: blend: 4 is not between 0 and 3");
+  EXPECT_EQ(fault_after([](auto& wire) { wire.modes._buffer[0].blend = 3; }),
+            "recall: mode 0: blend: 3 is not between 0 and 2");
+  EXPECT_EQ(fault_after([](auto& wire) { wire.try_checks = -1; }),
+            "recall: try_checks: -1 is negative");
+  EXPECT_EQ(fault_after([](auto& wire) { wire.reaches._length = 0; }).find("recall: reaches: 0"),
+            0U);
   EXPECT_EQ(fault_after([](auto& wire) {
               wire.queries._buffer[0].T_task_base[6] = 3;
             }).find("recall: T_task_base: "),
@@ -120,6 +126,8 @@ TEST(RecallCodec, CountsAreLookedAtBeforeAnythingIsRead) {
             "recall: modes: 17 exceeds 16");
   EXPECT_EQ(fault_after([](auto& wire) { wire.solves._length = 262'145; }),
             "recall: solves: 262145 exceeds 262144");
+  EXPECT_EQ(fault_after([](auto& wire) { wire.reaches._length = 262'145; }),
+            "recall: reaches: 262145 exceeds 262144");
   EXPECT_EQ(fault_after([](auto& wire) { wire.queries._buffer[0].start._length = 33; }),
             "recall: start: 33 exceeds 32");
   EXPECT_EQ(fault_after([](auto& wire) { wire.queries._buffer[0].T_task_anchors._length = 13; }),
@@ -153,6 +161,7 @@ TEST(RecallCodec, ALibraryThatFillsASampleIsRefused) {
   largest.paths.assign(kMaxRecallPaths, path);
   largest.solves.resize((largest.queries.size() * largest.paths.size() * largest.modes.size() + 7) /
                         8);
+  largest.reaches = largest.solves;
   EXPECT_FALSE(validate(largest));
   EXPECT_EQ(encode({}, reply_with(largest)).error().code, ErrorCode::TooLarge);
 }

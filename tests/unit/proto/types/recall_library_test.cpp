@@ -19,6 +19,7 @@ RecallLibrary library_of_three_paths() {
   RecallLibrary library;
   library.revision = 7;
   library.search_checks = 900;
+  library.try_checks = 9;
   library.anchors = {"shelf", "table"};
   for (int i = 0; i < 2; ++i)
     library.queries.push_back({.report = Uuid::random(),
@@ -27,8 +28,9 @@ RecallLibrary library_of_three_paths() {
                                .T_task_anchors = {values.pose(), values.pose()}});
   for (const std::uint32_t query : {0U, 1U, 1U})
     library.paths.push_back({query, values.matrix(3, kRecallWaypoints)});
-  library.modes = {{0, kTaskFrame}, {3, kFirstAnchor + 1}};
+  library.modes = {{0, kTaskFrame}, {2, kFirstAnchor + 1}};
   library.solves = {0b0010'0001, 0b1000};
+  library.reaches = {0b0010'0011, 0b1010};
   return library;
 }
 
@@ -49,7 +51,7 @@ TEST(RecallLibrary, BitsLieQueryByQueryAndPathByPath) {
     for (std::size_t path = 0; path < 3; ++path)
       for (std::size_t mode = 0; mode < 2; ++mode) {
         EXPECT_EQ(library.bit(query, path, mode), 6 * query + 2 * path + mode);
-        if (library.is_solved(query, path, mode))
+        if (bit_of(library.solves, library.bit(query, path, mode)))
           solved.push_back(library.bit(query, path, mode));
       }
   EXPECT_EQ(solved, (std::vector<std::size_t>{0, 5, 11}));
@@ -66,6 +68,8 @@ const std::vector<Case> kCases = {
     {[](auto& library) { library.search_checks = -1; }, "recall: search_checks: -1 is negative"},
     {[](auto& library) { library.search_checks = kNan; },
      "recall: search_checks: nan is not finite"},
+    {[](auto& library) { library.try_checks = -2; }, "recall: try_checks: -2 is negative"},
+    {[](auto& library) { library.try_checks = kNan; }, "recall: try_checks: nan is not finite"},
     {[](auto& library) { library.anchors.resize(3, "box"); }, "recall: anchors: 3 exceeds 2"},
     {[](auto& library) { library.anchors[1] = ""; }, "recall: anchor: is empty"},
     {[](auto& library) { library.anchors[1] = std::string(129, 'a'); },
@@ -73,12 +77,14 @@ const std::vector<Case> kCases = {
     {[](auto& library) { library.queries.resize(257); }, "recall: queries: 257 exceeds 256"},
     {[](auto& library) { library.paths.resize(513); }, "recall: paths: 513 exceeds 512"},
     {[](auto& library) { library.modes.resize(17); }, "recall: modes: 17 exceeds 16"},
-    {[](auto& library) { library.modes[1].blend = 4; },
-     "recall: mode 1: blend: 4 is not between 0 and 3"},
+    {[](auto& library) { library.modes[1].blend = 3; },
+     "recall: mode 1: blend: 3 is not between 0 and 2"},
     {[](auto& library) { library.modes[0].frame = 4; },
      "recall: mode 0: frame: 4 is not between 0 and 3"},
     {[](auto& library) { library.solves.pop_back(); }, "recall: solves: 1 bytes are not 2"},
     {[](auto& library) { library.solves.push_back(0); }, "recall: solves: 3 bytes are not 2"},
+    {[](auto& library) { library.reaches.clear(); }, "recall: reaches: 0 bytes are not 2"},
+    {[](auto& library) { library.reaches.push_back(0); }, "recall: reaches: 3 bytes are not 2"},
     {[](auto& library) { library.queries[0].start.resize(0); },
      "recall: query 0: dof: 0 is not between 1 and 32"},
     {[](auto& library) { library.queries[0].start = Eigen::VectorXd::Zero(33); },

@@ -24,20 +24,23 @@ class RehearsalTest : public testing::Test {
       registry_.register_robot(test::model_description(robot), 1);
   }
 
-  static RecordedScene post() {
+  /// \param T_task_base  in front of which it stands.
+  static RecordedScene post(const Eigen::Isometry3d& T_task_base = Eigen::Isometry3d::Identity()) {
     RecordedScene scene;
-    scene.objects.push_back({"post", BoxShape{{0.08, 0.08, 1.2}},
-                             Eigen::Isometry3d(Eigen::Translation3d(0.62, 0, 0.6))});
+    scene.objects.push_back(
+        {"post", BoxShape{{0.08, 0.08, 1.2}}, T_task_base * Eigen::Translation3d(0.62, 0, 0.6)});
     return scene;
   }
   /// \return the reports, in their order.
-  std::vector<Attempt> report_sweeps(std::size_t count,
-                                     const std::optional<RecordedScene>& scene = post()) {
+  std::vector<Attempt> report_sweeps(
+      std::size_t count, const std::optional<RecordedScene>& scene = post(),
+      const std::optional<Eigen::Isometry3d>& T_task_base = std::nullopt) {
     std::vector<Attempt> attempts;
     for (std::size_t i = 0; i < count; ++i) {
       attempts.push_back(test::panda_attempt(panda_, "sweep", next_seed_++));
       attempts.back().record.planner_options = "step=0.1 overshoot=1 max_checks=100000";
       attempts.back().scene = scene;
+      attempts.back().T_task_base = T_task_base;
     }
     std::promise<void> done;
     store_->commit_reports(attempts, [&](const std::vector<Receipt>&) { done.set_value(); });
@@ -45,10 +48,12 @@ class RehearsalTest : public testing::Test {
     return attempts;
   }
 
-  fitting::DistributionKey key_of(const Digest& robot) const {
+  fitting::DistributionKey key_of(
+      const Digest& robot,
+      const std::optional<Eigen::Isometry3d>& T_task_base = std::nullopt) const {
     fitting::DistributionKey key{.task = "sweep",
                                  .robot = robot,
-                                 .T_task_base = std::nullopt,
+                                 .T_task_base = T_task_base,
                                  .profile = *find_profile("default"),
                                  .sources = {},
                                  .since_ms = 0};

@@ -50,7 +50,7 @@ TEST_F(RehearsalSchedulers, WhoWaitsGetsACompleteRehearsal) {
     ASSERT_TRUE(known);
     EXPECT_TRUE(known->is_complete);
     EXPECT_EQ(known->queries + known->left_out, 4U);
-    EXPECT_EQ(known->costs.size(), 8U) << known->message;
+    EXPECT_EQ(known->costs.size(), 16U) << "each guide, also after recall: " << known->message;
     EXPECT_GT(known->processor_time_s, 0);
     EXPECT_EQ(experience_index.find(identify(key_of(robot))), known);
   }

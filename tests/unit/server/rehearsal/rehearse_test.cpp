@@ -42,9 +42,9 @@ TEST_F(Rehearse, AQueryIsWhereThePathBeganAndEnded) {
       query.T_task_goal.isApprox(kinematics::T_base_transfer(chain, waypoints.rightCols(1)), 1e-9));
   ASSERT_TRUE(query.scene);
   EXPECT_EQ(query.scene->objects.front().name, "post");
-  ASSERT_TRUE(query.start) << "its own";
-  EXPECT_EQ(*query.start, waypoints.col(0));
-  EXPECT_FALSE(queries_for(ur10e_).queries.front().start) << "another arm's";
+  ASSERT_TRUE(query.own);
+  EXPECT_EQ(query.own->waypoints, waypoints);
+  EXPECT_FALSE(queries_for(ur10e_).queries.front().own) << "another arm's";
   EXPECT_EQ(found.steps.step, 0.1);
   EXPECT_EQ(found.steps.overshoot, 1);
 }
@@ -70,6 +70,24 @@ TEST_F(Rehearse, AnotherArmBeginsWithItsHandWhereThePathBegan) {
     EXPECT_TRUE(kinematics::T_base_transfer(chain, goal).isApprox(query.T_task_goal, 1e-4));
   EXPECT_FALSE(posed->world->collides(posed->query.start));
   EXPECT_EQ(posed->query.without, query.path) << "its answer is not followed";
+}
+
+TEST_F(Rehearse, ItsOwnQueriesStandWhereTheyStood) {
+  const Eigen::Isometry3d then(Eigen::Translation3d(2, 1, 0) *
+                               Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+  const Eigen::Isometry3d today = then * Eigen::Translation3d(0.02, 0, 0);
+  const std::vector<Attempt> attempts = report_sweeps(1, post(then), then);
+  const RecordedQuery own = queries_for(panda_).queries.front();
+  ASSERT_TRUE(own.own);
+  EXPECT_TRUE(own.own->T_task_base.isApprox(then, 1e-9));
+  const auto posed = pose_query(*robot(panda_), today, own);
+  ASSERT_TRUE(posed);
+  EXPECT_TRUE(posed->query.T_task_base.isApprox(then, 1e-9));
+  EXPECT_TRUE(posed->surroundings.T_task_base.isApprox(then, 1e-9));
+  EXPECT_EQ(posed->query.start, attempts.front().path->waypoints().col(0));
+  const auto others = pose_query(*robot(ur10e_), today, queries_for(ur10e_).queries.front());
+  ASSERT_TRUE(others);
+  EXPECT_TRUE(others->query.T_task_base.isApprox(today, 1e-9)) << "another arm stands elsewhere";
 }
 
 TEST_F(Rehearse, WhatARobotCannotReachIsLeftOut) {

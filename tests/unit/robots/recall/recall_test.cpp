@@ -1,0 +1,170 @@
+#include "robots/recall/recall.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robots/collision/edge_prover.hpp"
+#include "robots/inverse/descent.hpp"
+#include "robots/planning/path_vertices.hpp"
+#include "tests/unit/robots/recall/shelf_cell.hpp"
+
+namespace kinship::recall::recall_test {
+namespace {
+
+using test_support::asked;
+using test_support::kStep;
+using test_support::made_shelf;
+using test_support::MadeShelf;
+
+constexpr RecallOptions kOptions{.step = kStep};
+
+/// A query that was not recorded, and its world.
+struct Fresh {
+  Fresh(const MadeShelf& made, PosedQuery its, bool is_pose)
+      : posed(std::move(its)),
+        query(asked(made.cell, made.library, posed, is_pose)),
+        world(made.cell.solids, posed.surroundings) {}
+
+  PosedQuery posed;
+  Query query;
+  collision::CollisionWorld world;
+};
+
+class Recalls : public testing::TestWithParam<bool> {
+ protected:
+  /// A library that is tried as long as it has a candidate.
+  static RecallLibrary patient() {
+    RecallLibrary library = made_shelf().library;
+    library.search_checks = 1e6;
+    return library;
+  }
+  std::vector<Fresh> fresh() const {
+    std::vector<Fresh> found;
+    for (PosedQuery& posed : made_shelf().cell.queries(100, 8))
+      found.emplace_back(made_shelf(), std::move(posed), GetParam());
+    return found;
+  }
+  /// From the start to a goal, or to the goal's pose.
+  void expect_ends(const Query& query, const Eigen::MatrixXd& path) const {
+    EXPECT_EQ(path.col(0), query.start);
+    const Eigen::VectorXd last = path.rightCols<1>();
+    if (GetParam())
+      EXPECT_TRUE(inverse::reaches(made_shelf().cell.chain, query.T_base_goal, last));
+    else
+      EXPECT_EQ((query.goals.colwise() - last).colwise().norm().minCoeff(), 0);
+    EXPECT_TRUE(((path.colwise() - query.bounds.row(0).transpose().eval()).array() >= 0).all());
+    EXPECT_TRUE(((path.colwise() - query.bounds.row(1).transpose().eval()).array() <= 0).all());
+  }
+
+  const RecallGuide guide_{made_shelf().cell.chain, patient()};
+};
+
+TEST_P(Recalls, WhatTheyReturnIsAWholeFreePath) {
+  int solved = 0;
+  for (Fresh& each : fresh()) {
+    const planning::IsFree is_free = planning::free_in(each.world);
+    const std::uint64_t before = each.world.checks();
+    const RecallSummary found = recall(guide_, each.query, is_free, kOptions);
+    EXPECT_EQ(found.collision_checks, each.world.checks() - before);
+    EXPECT_GE(found.expected, 0);
+    EXPECT_LE(found.expected, 1);
+    if (!found.waypoints)
+      continue;
+    ++solved;
+    expect_ends(each.query, *found.waypoints);
+    const Eigen::Index last = found.waypoints->cols() - 1;
+    for (const auto& q : found.waypoints->colwise())
+      EXPECT_FALSE(each.world.collides(q));
+    EXPECT_LE((found.waypoints->rightCols(last) - found.waypoints->leftCols(last))
+                  .colwise()
+                  .norm()
+                  .maxCoeff(),
+              kStep + 1e-9);
+  }
+  EXPECT_GT(solved, 0) << "else nothing was compared";
+}
+
+TEST_P(Recalls, EqualArgumentsGiveEqualAnswers) {
+  for (Fresh& each : fresh()) {
+    const planning::IsFree is_free = planning::free_in(each.world);
+    const RecallSummary one = recall(guide_, each.query, is_free, kOptions);
+    const RecallSummary other = recall(guide_, each.query, is_free, kOptions);
+    EXPECT_EQ(one.waypoints, other.waypoints);
+    EXPECT_EQ(one.collision_checks, other.collision_checks);
+    EXPECT_EQ(one.tries, other.tries);
+  }
+}
+
+TEST_P(Recalls, WithAProverThePathIsProven) {
+  int solved = 0;
+  for (Fresh& each : fresh()) {
+    constexpr collision::EdgeProofOptions kProof{.clearance_m = 1e-3};
+    collision::EdgeProver prover(each.world);
+    const planning::IsFree is_free = planning::proven_in(prover, kProof);
+    const RecallSummary found = recall(guide_, each.query, is_free, kOptions);
+    if (!found.waypoints)
+      continue;
+    ++solved;
+    expect_ends(each.query, *found.waypoints);
+    collision::CollisionWorld again(made_shelf().cell.solids, each.posed.surroundings);
+    collision::EdgeProver other(again);
+    EXPECT_TRUE(planning::proven_in(other, kProof).way_is_free(*found.waypoints));
+    EXPECT_GT(found.least_clearance_m, 0);
+  }
+  EXPECT_GT(solved, 0) << "else nothing was proven";
+}
+
+TEST_P(Recalls, ALineThatIsRefutedIsNotReturned) {
+  for (Fresh& each : fresh()) {
+    const planning::IsFree nothing_proven =
+        planning::free_in(each.world).with_edges([](const auto& from, const auto&) {
+          return planning::IsFree::Lines(static_cast<std::size_t>(from.cols()));
+        });
+    EXPECT_FALSE(recall(guide_, each.query, nothing_proven, kOptions).waypoints);
+  }
+}
+
+TEST_P(Recalls, AStartThatCollidesCostsOneCheck) {
+  for (Fresh& each : fresh()) {
+    const planning::IsFree is_free([&](const Eigen::VectorXd& q) { return q != each.query.start; });
+    const RecallSummary found = recall(guide_, each.query, is_free, kOptions);
+    EXPECT_FALSE(found.waypoints);
+    EXPECT_LE(found.collision_checks, 1U);
+    EXPECT_EQ(found.tries, 0U);
+    EXPECT_EQ(found.expected, 0);
+  }
+}
+
+TEST_P(Recalls, WhereNothingIsFreeTriesEnd) {
+  RecallLibrary library = made_shelf().library;
+  library.search_checks = 1000;
+  library.try_checks = 10;
+  const RecallGuide guide(made_shelf().cell.chain, library);
+  for (Fresh& each : fresh()) {
+    const planning::IsFree is_free([&](const Eigen::VectorXd& q) { return q == each.query.start; });
+    RecallOptions options = kOptions;
+    options.most_spent = 0.1;
+    const RecallSummary found = recall(guide, each.query, is_free, options);
+    EXPECT_FALSE(found.waypoints);
+    EXPECT_LE(found.tries, 11U) << "of ten checks each, a tenth of a search";
+    options.trust = 0;
+    EXPECT_EQ(recall(guide, each.query, is_free, options).collision_checks, 0U);
+  }
+}
+
+TEST_P(Recalls, NoneIsMadeAlongAWallThatAllRunInto) {
+  for (Fresh& each : fresh()) {
+    each.posed.surroundings.scene.objects.push_back(
+        {"door", BoxShape{{0.02, 0.7, 0.5}},
+         each.posed.surroundings.scene.objects[0].T_task_object *
+             Eigen::Translation3d(-0.16, 0, 0.18)});
+    collision::CollisionWorld closed(made_shelf().cell.solids, each.posed.surroundings);
+    EXPECT_FALSE(recall(guide_, each.query, planning::free_in(closed), kOptions).waypoints);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ToGoalsAndToAPose, Recalls, testing::Bool());
+
+}  // namespace
+}  // namespace kinship::recall::recall_test

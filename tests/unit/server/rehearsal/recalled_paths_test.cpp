@@ -1,0 +1,197 @@
+// Libraries of paths to recall: made by rehearsals, judged by them, sent with their replies.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "server/rehearsal/recall_queries.hpp"
+#include "server/rehearsal/rehearsal_reply.hpp"
+#include "server/rehearsal/rehearsal_scheduler.hpp"
+#include "tests/unit/server/rehearsal/rehearsal_fixture.hpp"
+
+namespace kinship::rehearsal {
+namespace {
+
+using namespace std::chrono_literals;
+
+class RecalledPaths : public RehearsalTest {
+ protected:
+  static RehearsalSchedulerOptions quick() {
+    RehearsalSchedulerOptions options;
+    options.plan = {.rounds = 1, .max_checks = 2000};
+    options.max_queries = 5;
+    return options;
+  }
+  /// Where the sweeps were, or beside that.
+  RehearsalKey key_at(const Digest& robot, double x = 0) const {
+    const Eigen::Isometry3d T_task_base(Eigen::Translation3d(x, 0, 0));
+    return {key_of(robot, x == 0 ? std::nullopt : std::optional(T_task_base)),
+            kDefaultExperienceBytes};
+  }
+  SharedRehearsal wait(RehearsalScheduler& rehearsals, const RehearsalKey& key) const {
+    std::promise<SharedRehearsal> known;
+    rehearsals.wait(key, clock_.now() + 300s,
+                    [&known](const SharedRehearsal& found) { known.set_value(found); });
+    return known.get_future().get();
+  }
+  std::vector<recall::PosedQuery> posed(const Digest& digest) {
+    return recall_queries(*robot(digest), Eigen::Isometry3d::Identity(),
+                          queries_for(digest).queries);
+  }
+  RecallLibrary library_of(const Digest& digest) {
+    const runtime::Robot& known = *robot(digest);
+    recall::LibraryMaker maker(known.chain, {known.chain, known.shapes}, posed(digest),
+                               {.step = 0.1});
+    while (maker.step()) {
+    }
+    return maker.take().value();
+  }
+
+  catalog::ExperienceIndex experience_{*store_, registry_};
+  const RehearsalScheduler::Parts parts_{*store_, registry_, clock_, experience_};
+};
+
+TEST_F(RecalledPaths, AreMadeOfQueriesWithASceneAndWithoutAConstraint) {
+  report_sweeps(2);
+  report_sweeps(1, std::nullopt);
+  RecordedScene level = post();
+  level.constraint = TaskSpaceRegion();
+  report_sweeps(1, level);
+  EXPECT_EQ(queries_for(panda_).queries.size(), 4U);
+  EXPECT_EQ(posed(panda_).size(), 2U);
+}
+
+TEST_F(RecalledPaths, OwnAnswersAreTakenAndAnothersQueriesPlanned) {
+  const std::vector<Attempt> attempts = report_sweeps(3);
+  const std::vector<recall::PosedQuery> own = posed(panda_);
+  ASSERT_EQ(own.size(), 3U);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_EQ(own[i].report, attempts[i].report_uuid);
+    ASSERT_TRUE(own[i].solution);
+    EXPECT_EQ(*own[i].solution, attempts[i].path->waypoints());
+    EXPECT_EQ(own[i].surroundings.scene.objects.front().name, "post");
+  }
+  const std::vector<recall::PosedQuery> anothers = posed(ur10e_);
+  ASSERT_FALSE(anothers.empty());
+  for (const recall::PosedQuery& query : anothers)
+    EXPECT_FALSE(query.solution);
+  for (const RecallQuery& query : library_of(ur10e_).queries)
+    EXPECT_TRUE(query.is_synthetic);
+  for (const RecallQuery& query : library_of(panda_).queries)
+    EXPECT_FALSE(query.is_synthetic);
+}
+
+TEST_F(RecalledPaths, CostsOfGuidesAfterThemStandBesideThoseWithout) {
+  report_sweeps(4);
+  Subject subject;
+  subject.robot = robot(panda_);
+  subject.recorded = queries_for(panda_);
+  subject.experience =
+      std::make_shared<const planning::ExperienceGuide>(subject.robot->chain, TaskExperience{});
+  subject.recall =
+      std::make_shared<const recall::RecallGuide>(subject.robot->chain, library_of(panda_));
+  Rehearsing rehearsing(subject, {.rounds = 1, .max_checks = 5000});
+  while (rehearsing.step()) {
+  }
+  const Rehearsal result = rehearsing.result();
+  std::vector<Guide> guides;
+  for (const GuideCost& cost : result.costs) {
+    guides.push_back(cost.guide);
+    EXPECT_EQ(cost.plans, 4U);
+    EXPECT_GT(cost.mean_time_s, 0);
+  }
+  EXPECT_EQ(guides,
+            (std::vector{Guide::None, Guide::Retreat, Guide::Recall, Guide::RecallRetreat}));
+  const auto cost_of = [&](Guide guide) {
+    return *std::ranges::find(result.costs, guide, &GuideCost::guide);
+  };
+  for (const Guide guide : {Guide::None, Guide::Retreat})
+    EXPECT_GE(cost_of(with_recall(guide)).solved, cost_of(guide).solved)
+        << "what is not recalled is planned";
+}
+
+TEST_F(RecalledPaths, AreKnownOnceRehearsed) {
+  report_sweeps(5);
+  RehearsalScheduler rehearsals(parts_, quick());
+  const RehearsalKey key = key_at(panda_);
+  EXPECT_FALSE(rehearsals.library(key));
+  EXPECT_EQ(rehearsals.totals().queued, 0U) << "to ask for it begins nothing";
+  ASSERT_TRUE(wait(rehearsals, key));
+  const SharedLibrary library = rehearsals.library(key);
+  ASSERT_TRUE(library);
+  EXPECT_FALSE(validate(*library));
+  EXPECT_EQ(library->queries.size(), 5U);
+  EXPECT_FALSE(rehearsals.library(key_at(ur10e_))) << "they are one robot's";
+}
+
+TEST_F(RecalledPaths, AnotherPlacementIsServedByTheNearestRehearsedOne) {
+  report_sweeps(5);
+  RehearsalScheduler rehearsals(parts_, quick());
+  const RehearsalKey first = key_at(panda_), near = key_at(panda_, 1), far = key_at(panda_, 2);
+  const SharedRehearsal known = wait(rehearsals, first);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(rehearsals.library(near), rehearsals.library(first)) << "also before it is asked for";
+  EXPECT_EQ(wait(rehearsals, near), known);
+  EXPECT_EQ(rehearsals.totals().queued, 0U) << "one request is no reason for a rehearsal";
+  EXPECT_EQ(rehearsals.totals().done, 1U);
+
+  EXPECT_EQ(rehearsals.ask(near), known);
+  EXPECT_EQ(rehearsals.totals().queued, 1U) << "the second one is";
+
+  EXPECT_FALSE(rehearsals.library(far));
+  EXPECT_FALSE(rehearsals.ask(far)) << "two metres are too far";
+  EXPECT_EQ(rehearsals.ask(key_at(ur10e_)), nullptr) << "another robot's are of no use";
+}
+
+TEST_F(RecalledPaths, TheSecondRequestRehearsesAPlacementForItself) {
+  report_sweeps(3);
+  RehearsalSchedulerOptions options = quick();
+  options.processor_fraction = 1;
+  RehearsalScheduler rehearsals(parts_, options);
+  const RehearsalKey first = key_at(panda_), near = key_at(panda_, 0.5);
+  wait(rehearsals, first);
+  wait(rehearsals, near);
+  rehearsals.ask(near);
+  while (rehearsals.totals().queued > 0)
+    std::this_thread::yield();
+  EXPECT_EQ(rehearsals.totals().done, 2U);
+  EXPECT_NE(rehearsals.ask(near), rehearsals.ask(first));
+}
+
+TEST_F(RecalledPaths, AReplyCarriesThemUntilTheClientHasThem) {
+  report_sweeps(5);
+  RehearsalScheduler rehearsals(parts_, quick());
+  FetchRequest request;
+  request.task = "sweep";
+  request.robot = panda_;
+  request.profile = "default,components=2";
+  request.deadline = 300s;
+  request.experience_bytes = kDefaultExperienceBytes;
+  request.rehearsed = true;
+  const auto reply_to = [&](FetchStatus status) {
+    std::promise<FetchReply> promise;
+    FetchReply reply;
+    reply.status = status;
+    with_rehearsal(rehearsals, request, clock_.now(),
+                   [&](const FetchReply& sent) { promise.set_value(sent); })(reply);
+    return promise.get_future().get();
+  };
+  const FetchReply first = reply_to(FetchStatus::Pending);
+  ASSERT_TRUE(first.recall);
+  EXPECT_FALSE(validate(*first.recall));
+  EXPECT_TRUE(reply_to(FetchStatus::Ready).recall) << "it is not known to be held";
+  EXPECT_FALSE(reply_to(FetchStatus::Busy).recall);
+  request.known_recall = first.recall->revision;
+  const FetchReply second = reply_to(FetchStatus::Ready);
+  EXPECT_FALSE(second.recall);
+  EXPECT_TRUE(second.rehearsal);
+  request.known_recall = first.recall->revision + 1;
+  EXPECT_TRUE(reply_to(FetchStatus::Ready).recall) << "another one is held";
+}
+
+}  // namespace
+}  // namespace kinship::rehearsal
