@@ -190,6 +190,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     request.known_experience = known.ways ? known.ways->experience().revision : 0;
     request.known_recall = known.recall ? known.recall->library().revision : 0;
     request.rehearsed = wanted.rehearsed;
+    request.start.assign(wanted.start.begin(), wanted.start.end());
   }
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {

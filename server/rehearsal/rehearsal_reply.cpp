@@ -42,7 +42,10 @@ catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchReq
       fitting::make_key(request, rehearsals.geometry_revision(request.robot));
   if (!distribution)
     return done;  // it will be refused
-  const Addition addition(rehearsals, {*distribution, request.experience_bytes},
+  const auto& start = request.start;
+  const Addition addition(rehearsals,
+                          {*distribution, request.experience_bytes,
+                           Eigen::Map<const Eigen::VectorXd>(start.data(), std::ssize(start))},
                           request.known_recall);
   return [&rehearsals, addition, deadline = now + request.deadline, waits = request.rehearsed,
           done = std::move(done)](const FetchReply& reply) {

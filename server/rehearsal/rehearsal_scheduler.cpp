@@ -257,6 +257,7 @@ Result<Subject> RehearsalScheduler::subject_of(const RehearsalKey& key) {
                                               subject.robot->label +
                                               "': " + subject.robot->geometry};
   subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  subject.start = key.start;
   subject.recorded =
       read_queries(parts_.store, parts_.robots, key.distribution, options_.max_queries, stop);
   std::promise<catalog::SharedChoice> chosen;
@@ -335,7 +336,8 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
   options.before = [stop = stop_source_.get_token()] { throw_if_stopped(stop); };
   recall::LibraryMaker maker(
       subject.robot->chain, {subject.robot->chain, subject.robot->shapes},
-      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries), options);
+      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries, subject.start),
+      options);
   double rested_s = planning::thread_time_s();
   while (maker.step()) {
     const double now_s = planning::thread_time_s();
