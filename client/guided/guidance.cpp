@@ -199,8 +199,10 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
   }
   if (wanted.chain && reply->experience && !reply->experience->paths.empty())
     known.ways = std::make_shared<planning::ExperienceGuide>(*wanted.chain, *reply->experience);
-  if (wanted.chain && reply->recall && is_for(*reply->recall, wanted.dof))
-    known.recall = std::make_shared<recall::RecallGuide>(*wanted.chain, *reply->recall);
+  if (wanted.chain && reply->recall)
+    known.recall = is_for(*reply->recall, wanted.dof)
+                       ? std::make_shared<recall::RecallGuide>(*wanted.chain, *reply->recall)
+                       : nullptr;
   const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
                          validate(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known.ways && !known.recall)

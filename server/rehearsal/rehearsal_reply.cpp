@@ -25,6 +25,8 @@ class Addition {
     const SharedLibrary library = rehearsals_.library(key_);
     if (library && library->revision != known_recall_)
       reply.recall = *library;
+    else if (!library && known_recall_ != 0)
+      reply.recall = RecallLibrary{.revision = 1};  // what the client holds is no longer good
     done(reply);
   }
 

@@ -186,7 +186,10 @@ void RehearsalScheduler::forget(std::string_view task) {
   const std::lock_guard lock(mutex_);
   versions_.lost(task);
   for (auto& [id, entry] : entries_)
-    entry.is_lost = entry.is_lost || entry.key.distribution.task == task;
+    if (entry.key.distribution.task == task) {
+      entry.is_lost = true;
+      entry.library.reset();
+    }
 }
 
 SharedRehearsal RehearsalScheduler::find(const Digest& distribution) const {
