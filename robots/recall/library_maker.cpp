@@ -1,9 +1,9 @@
 #include "robots/recall/library_maker.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
+#include <limits>
 #include <numeric>
+#include <random>
 #include <span>
 #include <utility>
 
@@ -15,6 +15,7 @@
 #include "robots/planning/guided_sampler.hpp"
 #include "robots/planning/path_vertices.hpp"
 #include "robots/planning/planning_budget.hpp"
+#include "robots/planning/shortcut.hpp"
 #include "robots/recall/anchors.hpp"
 #include "robots/recall/clear_path.hpp"
 #include "robots/recall/recall.hpp"
@@ -25,6 +26,7 @@ namespace {
 constexpr std::size_t kProbed = 16;    // queries by which modes are chosen
 constexpr double kWorthKeeping = 0.6;  // of the best mode's success
 constexpr std::size_t kMostModes = 4;
+constexpr std::uint64_t kPlans = 3;   // uniform ones of a query, of which the shortest is kept
 constexpr double kAnotherGoal = 0.1;  // joint units, from the goal reached
 
 std::vector<std::uint8_t> no_bits(const RecallLibrary& library) {
@@ -136,22 +138,51 @@ planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, const planning
       options, generator);
 }
 
+/// The shortest answer once each is shortened a little: a way around is long however it is
+/// polished.
+Eigen::MatrixXd LibraryMaker::shortest(const std::vector<Eigen::MatrixXd>& answers,
+                                       const planning::IsFree& is_free) const {
+  constexpr std::uint64_t kChecks = 500;
+  Eigen::MatrixXd best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::MatrixXd& answer : answers) {
+    std::mt19937_64 generator(answers.size());
+    Eigen::MatrixXd shorter = planning::shortcut(planning::densified(answer, options_.step),
+                                                 is_free, {options_.step, kChecks}, generator)
+                                  .waypoints;
+    const double length = planning::path_length(shorter);
+    if (length < least) {
+      least = length;
+      best = std::move(shorter);
+    }
+  }
+  return best;
+}
+
 /// Solves a query and keeps its paths with clearance.
 void LibraryMaker::solve(std::size_t query) {
   const PosedQuery& posed = queries_[query];
   World world(*this, posed.surroundings);
   const std::uint64_t seed = split_mixed((query + 1) * kSplitMixStep);
-  planning::PlanSummary found = plan(posed, world.is_free, posed.goals, Guide::None, seed);
+  const planning::PlanSummary found = plan(posed, world.is_free, posed.goals, Guide::None, seed);
   const planning::PlanSummary backed =
       plan(posed, world.is_free, posed.goals, Guide::Retreat, seed);
   planned_s_ += found.planning_time_s;
   uniform_checks_ += static_cast<double>(found.collision_checks);
   retreat_checks_ += static_cast<double>(backed.collision_checks);
-  if (!found.waypoints)
-    found.waypoints = backed.waypoints;
-  if (!posed.solution && !found.waypoints)
+  std::vector<Eigen::MatrixXd> answers;
+  if (posed.solution)
+    answers.push_back(*posed.solution);
+  for (const planning::PlanSummary* each : {&found, &backed})
+    if (each->waypoints)
+      answers.push_back(*each->waypoints);
+  for (std::uint64_t again = 1; again < kPlans; ++again)
+    if (auto other = plan(posed, world.is_free, posed.goals, Guide::None, seed + again);
+        other.waypoints)
+      answers.push_back(*std::move(other.waypoints));
+  if (answers.empty())
     return;
-  const Eigen::MatrixXd& raw = posed.solution ? *posed.solution : *found.waypoints;
+  const Eigen::MatrixXd raw = shortest(answers, world.is_free);
   RecallQuery solved;
   solved.report = posed.report;
   solved.is_synthetic = !posed.solution.has_value();

@@ -65,6 +65,8 @@ class LibraryMaker {
   planning::PlanSummary plan(const PosedQuery& posed, const planning::IsFree& is_free,
                              const Eigen::MatrixXd& goals, Guide guide, std::uint64_t seed) const;
   void solve(std::size_t query);
+  Eigen::MatrixXd shortest(const std::vector<Eigen::MatrixXd>& answers,
+                           const planning::IsFree& is_free) const;
   void add_clear_paths(const PosedQuery& posed, const Eigen::MatrixXd& raw,
                        std::span<const double> clearances_m);
   void begin_probe();
