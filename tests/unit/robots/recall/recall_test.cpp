@@ -105,6 +105,16 @@ TEST_P(Recalls, EachConfigurationOfThePathWasAsked) {
   EXPECT_GT(solved, 0) << "else nothing was returned";
 }
 
+TEST_P(Recalls, AGoalThatCollidesIsNotReached) {
+  for (Fresh& each : fresh()) {
+    const planning::IsFree is_free([&](const Eigen::VectorXd& q) {
+      return GetParam() ? !inverse::reaches(made_shelf().cell.chain, each.query.T_base_goal, q)
+                        : (each.query.goals.colwise() - q).colwise().norm().minCoeff() > 0;
+    });
+    EXPECT_FALSE(recall(guide_, each.query, is_free, kOptions).waypoints);
+  }
+}
+
 TEST_P(Recalls, EqualArgumentsGiveEqualAnswers) {
   for (Fresh& each : fresh()) {
     const planning::IsFree is_free = planning::free_in(each.world);
