@@ -190,6 +190,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     request.known_experience = known.ways ? known.ways->experience().revision : 0;
     request.known_recall = known.recall ? known.recall->library().revision : 0;
     request.rehearsed = wanted.rehearsed;
+    request.start.assign(wanted.start.begin(), wanted.start.end());
   }
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {
@@ -198,8 +199,10 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
   }
   if (wanted.chain && reply->experience && !reply->experience->paths.empty())
     known.ways = std::make_shared<planning::ExperienceGuide>(*wanted.chain, *reply->experience);
-  if (wanted.chain && reply->recall && is_for(*reply->recall, wanted.dof))
-    known.recall = std::make_shared<recall::RecallGuide>(*wanted.chain, *reply->recall);
+  if (wanted.chain && reply->recall)
+    known.recall = is_for(*reply->recall, wanted.dof)
+                       ? std::make_shared<recall::RecallGuide>(*wanted.chain, *reply->recall)
+                       : nullptr;
   const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
                          validate(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known.ways && !known.recall)

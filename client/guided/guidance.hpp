@@ -30,6 +30,7 @@ struct GuidanceOptions {
   std::optional<kinematics::Chain> chain;
   std::string profile = "default";
   Selection selection;
+  Eigen::VectorXd start;  ///< FetchRequest::start; empty: not told
   SamplingModeOptions sampling;
   std::optional<Guide> guide;             ///< missing: the one found by rehearsal, else all
   bool rehearsed = false;                 ///< wait for a rehearsal, as for a distribution

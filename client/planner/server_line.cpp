@@ -132,6 +132,9 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
     why_unguided_ = trouble->message;
     return why_not(*trouble);
   }
+  for (const ProblemLine& line : lines)
+    if (line.problem && wanted.start.size() == 0)
+      wanted.start = line.problem->start;
   guidance_ = std::make_unique<guided::GuidanceCache>(
       [this](const FetchRequest& request) {
         return wait_for<FetchReply>([&] { return client_->fetch(request); });

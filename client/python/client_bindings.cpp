@@ -88,6 +88,7 @@ struct GuidanceWish {
   std::string guide;
   std::optional<double> share, control_share;
   bool is_rehearsed = false;
+  std::optional<Array> start;
 };
 
 std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Robot& robot,
@@ -104,6 +105,8 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
     wanted.guide = parse_word<Guide>(wish.guide).value_or_throw();
   wanted.rehearsed = wish.is_rehearsed;
   wanted.wait = to_milliseconds(wish.deadline, "deadline");
+  if (wish.start)
+    wanted.start = read_configurations(*wish.start, robot.chain().dof(), "start").columns.col(0);
   FetchStatus status = FetchStatus::Ready;
   const auto fetch = [&](const FetchRequest& asked) -> Result<FetchReply> {
     FetchReply reply =
@@ -351,17 +354,18 @@ void bind_guidance(ClientClass& client) {
          double deadline, const std::optional<Array>& T_task_base, const std::string& profile,
          const std::vector<RobotName>& sources, const std::string& weighting, std::int64_t since_ms,
          const std::string& guide, std::optional<double> share, std::optional<double> control_share,
-         bool rehearsed) {
+         bool rehearsed, const std::optional<Array>& start) {
         const FetchRequest request =
             request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
         return guidance_of(self, *robot, request,
-                           {deadline, guide, share, control_share, rehearsed});
+                           {deadline, guide, share, control_share, rehearsed, start});
       },
       py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("deadline") = 30.0,
       py::arg("T_task_base") = py::none(), py::arg("profile") = "default",
       py::arg("sources") = std::vector<RobotName>(), py::arg("weighting") = "",
       py::arg("since_ms") = 0, py::arg("guide") = "", py::arg("share") = py::none(),
       py::arg("control_share") = py::none(), py::arg("rehearsed") = false,
+      py::arg("start") = py::none(),
       R"(What kinship-plan would guide the robot with: distribution, stored ways, advice.
 
 As fetch() for what it shares with it; plan() takes what it returns. Raises as fetch().
@@ -370,7 +374,8 @@ robot          a Robot: its chain follows the stored ways
 guide          what of them is used, e.g. 'retreat+ways'; empty: what the server found best
 share          of guided samples, 0 to 1; by default what the server advises
 control_share  of queries planned uniformly to compare; by default as the evidence says
-rehearsed      True: waits until the server knows which guide is best)");
+rehearsed      True: waits until the server knows which guide is best
+start          where the robot's queries usually begin: what others recorded is planned from there)");
 }
 
 }  // namespace

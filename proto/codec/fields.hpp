@@ -64,6 +64,10 @@ template <>
 struct WireMember<std::vector<std::string>> {
   using Type = dds_sequence_string;
 };
+template <>
+struct WireMember<std::vector<double>> {
+  using Type = dds_sequence_double;
+};
 
 /// Offset of a member after `end` bytes of others, as C lays out structures.
 template <typename Type>

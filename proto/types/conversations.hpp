@@ -129,6 +129,9 @@ struct FetchRequest {
   /// The reply waits, until the deadline at most, for a complete rehearsal. Needs experience_bytes.
   bool rehearsed = false;
   std::uint64_t known_recall = 0;  ///< revision of the library that the client has: not sent again
+  /// Where queries of the robot usually begin, joint units: what other robots recorded is planned
+  /// from there. Empty: the server looks for a start.
+  std::vector<double> start = {};
 };
 
 template <>
@@ -144,7 +147,8 @@ inline constexpr std::tuple kFieldsOf<FetchRequest>{
     Field{"experience_bytes", &FetchRequest::experience_bytes, between(0, kMaxExperienceBytes)},
     Field{"known_experience", &FetchRequest::known_experience},
     Field{"rehearsed", &FetchRequest::rehearsed},
-    Field{"known_recall", &FetchRequest::known_recall}};
+    Field{"known_recall", &FetchRequest::known_recall},
+    Field{"start", &FetchRequest::start, {.limit = kMaxDof}}};
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
 

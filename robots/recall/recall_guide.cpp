@@ -20,6 +20,7 @@ constexpr double kYawWeight = 0.3;  // of a turn of the whole arm, which changes
 constexpr int kBins = 16;
 constexpr std::size_t kMostRanked = 64;  // paths in a mode, for one goal
 constexpr double kLeastAlike = 0.02;
+constexpr double kFarStart = 2;  // joint units: no path starts so near as to tell what it is worth
 
 Eigen::Isometry3d inverse_of(const Eigen::Isometry3d& T) { return T.inverse(Eigen::Isometry); }
 
@@ -93,7 +94,7 @@ RecallGuide::Ends RecallGuide::ends_of(const Eigen::VectorXd& start,
   return ends;
 }
 
-double RecallGuide::distance(Metric metric, const Ends& a, const Ends& b) const {
+RecallGuide::Distances RecallGuide::distances(Metric metric, const Ends& a, const Ends& b) const {
   double of_starts = 0, of_configurations = 0;  // squared
   for (Eigen::Index i = 0; i < a.start.size(); ++i) {
     const double turns = warper_.turns(i, a.start[i], b.start[i]);
@@ -103,13 +104,13 @@ double RecallGuide::distance(Metric metric, const Ends& a, const Ends& b) const 
     of_configurations += weight * goal * goal;
   }
   if (metric == Metric::Configurations)
-    return std::sqrt(of_starts + of_configurations);
+    return {std::sqrt(of_starts), std::sqrt(of_configurations)};
   const double of_goals =
       (planning::pose_distance_m(a.T_facing_goal, b.T_facing_goal) +
        planning::pose_distance_m(a.T_frame_goal, b.T_frame_goal)) /
           (2 * kRadian_m) +
       kYawWeight * std::abs(std::remainder(a.azimuth - b.azimuth, planning::kTurn));
-  return std::sqrt(of_starts + of_goals * of_goals);
+  return {std::sqrt(of_starts), of_goals};
 }
 
 /// How often each mode worked, by distance.
@@ -131,7 +132,7 @@ void RecallGuide::learn(Metric metric) {
     for (std::size_t path = 0; path < paths_.size(); ++path) {
       if (library_.paths[path].query == query)
         continue;
-      pairs.push_back({distance(metric, path_ends_[path], ends_[query]), query, path});
+      pairs.push_back({distances(metric, path_ends_[path], ends_[query]).together(), query, path});
       least = std::min(least, pairs.back().distance);
     }
     nearest.push_back(least);
@@ -239,26 +240,31 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
       query.start, goal >= 0 ? kinematics::T_base_transfer(chain, q) : query.T_base_goal, q,
       guide_.T_base_frame(query.T_task_base, query.T_task_anchors));
   const double near = guide_.learned_.at(static_cast<std::size_t>(metric_)).near;
+  std::vector<RecallGuide::Distances> distances;
+  double least_start = std::numeric_limits<double>::infinity();
+  for (const RecallGuide::Ends& recorded : guide_.ends_) {
+    distances.push_back(guide_.distances(metric_, recorded, ends));
+    least_start = std::min(least_start, distances.back().start);
+  }
   Group group;
-  std::vector<double> distances(library.queries.size());
+  group.trust = trust_ / (1 + least_start / kFarStart);
   for (std::size_t i = 0; i < library.queries.size(); ++i) {
-    distances[i] = guide_.distance(metric_, guide_.ends_[i], ends);
-    if (query.without == library.queries[i].report)
-      continue;
-    const double weight = std::exp(-distances[i] * distances[i] / (near * near));
-    if (weight > kLeastAlike)
+    const double distance = distances[i].together(least_start) / near;
+    const double weight = std::exp(-distance * distance);
+    if (query.without != library.queries[i].report && weight > kLeastAlike)
       group.alike.push_back({i, weight});
   }
   std::vector<Candidate> candidates;
   for (std::size_t path = 0; path < library.paths.size(); ++path) {
     if (query.without == library.queries[library.paths[path].query].report)
       continue;
-    const double distance = metric_ == RecallGuide::Metric::Poses
-                                ? distances[library.paths[path].query]
-                                : guide_.distance(metric_, guide_.path_ends_[path], ends);
+    const RecallGuide::Distances from =
+        metric_ == RecallGuide::Metric::Poses
+            ? distances[library.paths[path].query]
+            : guide_.distances(metric_, guide_.path_ends_[path], ends);
     for (std::size_t mode = 0; mode < library.modes.size(); ++mode)
       if (guide_.is_usable(query, mode))
-        candidates.push_back({path, mode, goal, distance});
+        candidates.push_back({path, mode, goal, from.together(least_start)});
   }
   const std::size_t kept = std::min(kMostRanked, candidates.size());
   std::ranges::partial_sort(candidates, candidates.begin() + static_cast<std::ptrdiff_t>(kept), {},
@@ -283,7 +289,7 @@ void Ranking::rank(Group& group) const {
         weights += weight;
         worked += works[query] * weight;
       }
-    ranked.chance = trust_ * worked / weights;
+    ranked.chance = group.trust * worked / weights;
   }
 }
 

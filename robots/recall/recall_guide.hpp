@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -88,7 +89,12 @@ class RecallGuide {
       const std::vector<std::optional<Eigen::Isometry3d>>& T_task_anchors) const;
   Ends ends_of(const Eigen::VectorXd& start, const Eigen::Isometry3d& T_base_goal,
                const Eigen::VectorXd& goal, const Eigen::Isometry3d& T_base_frame) const;
-  double distance(Metric metric, const Ends& a, const Ends& b) const;
+  /// Distance of the starts, and of the goals, joint units or the like.
+  struct Distances {
+    double start = 0, goal = 0;
+    double together(double least_start = 0) const { return std::hypot(start - least_start, goal); }
+  };
+  Distances distances(Metric metric, const Ends& a, const Ends& b) const;
   void learn(Metric metric);
   double chance_at(Metric metric, std::size_t mode, double distance) const;
   /// Of each query, whether a path in a mode solves it.
@@ -136,6 +142,7 @@ class Ranking {
   };
   /// The candidates for one goal.
   struct Group {
+    double trust = 1;                                   // of its chances
     std::vector<std::pair<std::size_t, double>> alike;  // recorded queries, and how much
     std::vector<Ranked> ranked;
   };

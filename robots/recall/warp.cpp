@@ -10,9 +10,10 @@
 namespace kinship::recall {
 namespace {
 
-constexpr int kSteps = 2;            // of inverse kinematics, per waypoint
-constexpr double kGoalZone = 0.15;   // last part of a path, where the hand moves with the goal
-constexpr double kSameStart = 1e-9;  // joint units
+constexpr int kSteps = 2;              // of inverse kinematics, per waypoint
+constexpr double kGoalZone = 0.15;     // last part of a path, where the hand moves with the goal
+constexpr double kUnrelatedStart = 1;  // joint units: the hand's way from there tells nothing
+constexpr double kSameStart = 1e-9;    // joint units
 
 /// Between two poses: a at 0, b at 1. Rotations by normalised linear interpolation.
 Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double weight) {
@@ -80,6 +81,7 @@ Warp::Warp(const Warper& warper, const WarpedPath& path, WarpTarget target, cons
   by_start_ = target_.start - path.waypoints.col(0) - turns_;
   by_goal_ = target_.goal - path.waypoints.rightCols<1>() - turns_;
   is_same_start_ = by_start_.norm() < kSameStart;
+  is_far_start_ = by_start_.norm() > kUnrelatedStart;
   moved_.col(0) = target_.start;
   moved_.rightCols<1>() = target_.goal;
 }
@@ -94,7 +96,7 @@ std::optional<Eigen::Isometry3d> Warp::move(Eigen::Index waypoint) {
   if (const Eigen::Index yaw = warper_.yaw_joint(); yaw >= 0)
     q[yaw] += (over - turned) * by_goal_[yaw];  // the arm faces where the furniture is
   q = q.cwiseMax(target_.bounds.row(0).transpose()).cwiseMin(target_.bounds.row(1).transpose());
-  if (is_same_start_ && over <= 0)
+  if ((is_same_start_ && over <= 0) || (is_far_start_ && over < 1))
     return std::nullopt;
   const Eigen::Isometry3d& hand = path_.T_base_transfer[static_cast<std::size_t>(waypoint)];
   Eigen::Isometry3d there = T_goal_ * hand;

@@ -100,7 +100,7 @@ class Warp {
   const std::optional<Eigen::Isometry3d> T_new_old_;
   Eigen::Isometry3d T_start_, T_goal_;  // motions of the ends, in the base link
   Eigen::VectorXd turns_, by_start_, by_goal_;
-  bool is_same_start_ = false;
+  bool is_same_start_ = false, is_far_start_ = false;
   Eigen::MatrixXd moved_;
 };
 

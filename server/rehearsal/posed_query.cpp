@@ -23,11 +23,16 @@ std::optional<Eigen::VectorXd> find_start(const runtime::Robot& robot,
   return found.configurations.col(nearest);
 }
 
+bool is_start(const kinematics::Chain& chain, const Eigen::VectorXd& q) {
+  return q.size() == chain.dof() && q.allFinite() && chain.within_limits(q);
+}
+
 }  // namespace
 
 std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
                                      const Eigen::Isometry3d& T_task_base_today,
-                                     const RecordedQuery& recorded) {
+                                     const RecordedQuery& recorded,
+                                     const Eigen::VectorXd& usual_start) {
   PosedQuery posed;
   const Eigen::Isometry3d T_task_base =
       recorded.own ? recorded.own->T_task_base : T_task_base_today;
@@ -42,7 +47,9 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
   const planning::IsFree is_free = planning::free_in(*posed.world);
   const std::optional<Eigen::VectorXd> start =
       recorded.own ? std::optional<Eigen::VectorXd>(recorded.own->waypoints.col(0))
-                   : find_start(robot, T_base_task * recorded.T_task_start, is_free);
+      : is_start(robot.chain, usual_start) && is_free(usual_start)
+          ? std::optional<Eigen::VectorXd>(usual_start)
+          : find_start(robot, T_base_task * recorded.T_task_start, is_free);
   if (!start || !is_free(*start))
     return std::nullopt;
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, *start);

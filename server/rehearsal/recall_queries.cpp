@@ -9,12 +9,13 @@ namespace kinship::rehearsal {
 
 std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                                                const Eigen::Isometry3d& T_task_base,
-                                               const std::vector<RecordedQuery>& recorded) {
+                                               const std::vector<RecordedQuery>& recorded,
+                                               const Eigen::VectorXd& usual_start) {
   std::vector<recall::PosedQuery> queries;
   for (const RecordedQuery& query : recorded) {
     if (!query.scene || query.scene->constraint)
       continue;
-    std::optional<PosedQuery> posed = pose_query(robot, T_task_base, query);
+    std::optional<PosedQuery> posed = pose_query(robot, T_task_base, query, usual_start);
     if (!posed)
       continue;
     recall::PosedQuery wanted{query.path,

@@ -12,8 +12,10 @@ namespace kinship::rehearsal {
 /// The recorded queries of which a library of paths to recall is made for a robot: those with a
 /// scene and without a constraint, that it can start and end.
 /// \param T_task_base  of the robot's base in the task frame, for what other robots recorded.
+/// \param usual_start  see pose_query.
 std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                                                const Eigen::Isometry3d& T_task_base,
-                                               const std::vector<RecordedQuery>& recorded);
+                                               const std::vector<RecordedQuery>& recorded,
+                                               const Eigen::VectorXd& usual_start);
 
 }  // namespace kinship::rehearsal

@@ -25,6 +25,8 @@ class Addition {
     const SharedLibrary library = rehearsals_.library(key_);
     if (library && library->revision != known_recall_)
       reply.recall = *library;
+    else if (!library && known_recall_ != 0)
+      reply.recall = RecallLibrary{.revision = 1};  // what the client holds is no longer good
     done(reply);
   }
 
@@ -42,7 +44,10 @@ catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchReq
       fitting::make_key(request, rehearsals.geometry_revision(request.robot));
   if (!distribution)
     return done;  // it will be refused
-  const Addition addition(rehearsals, {*distribution, request.experience_bytes},
+  const auto& start = request.start;
+  const Addition addition(rehearsals,
+                          {*distribution, request.experience_bytes,
+                           Eigen::Map<const Eigen::VectorXd>(start.data(), std::ssize(start))},
                           request.known_recall);
   return [&rehearsals, addition, deadline = now + request.deadline, waits = request.rehearsed,
           done = std::move(done)](const FetchReply& reply) {

@@ -186,7 +186,10 @@ void RehearsalScheduler::forget(std::string_view task) {
   const std::lock_guard lock(mutex_);
   versions_.lost(task);
   for (auto& [id, entry] : entries_)
-    entry.is_lost = entry.is_lost || entry.key.distribution.task == task;
+    if (entry.key.distribution.task == task) {
+      entry.is_lost = true;
+      entry.library.reset();
+    }
 }
 
 SharedRehearsal RehearsalScheduler::find(const Digest& distribution) const {
@@ -257,6 +260,7 @@ Result<Subject> RehearsalScheduler::subject_of(const RehearsalKey& key) {
                                               subject.robot->label +
                                               "': " + subject.robot->geometry};
   subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  subject.start = key.start;
   subject.recorded =
       read_queries(parts_.store, parts_.robots, key.distribution, options_.max_queries, stop);
   std::promise<catalog::SharedChoice> chosen;
@@ -335,7 +339,8 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
   options.before = [stop = stop_source_.get_token()] { throw_if_stopped(stop); };
   recall::LibraryMaker maker(
       subject.robot->chain, {subject.robot->chain, subject.robot->shapes},
-      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries), options);
+      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries, subject.start),
+      options);
   double rested_s = planning::thread_time_s();
   while (maker.step()) {
     const double now_s = planning::thread_time_s();

@@ -60,6 +60,7 @@ struct RehearsalTotals {
 struct RehearsalKey {
   fitting::DistributionKey distribution;
   std::uint32_t experience_bytes = 0;  ///< of the stored pose paths that the robot gets
+  Eigen::VectorXd start = {};          ///< FetchRequest::start, maybe empty
 };
 
 /// Finds the best guide for a robot and task before its first query, and makes its library of paths

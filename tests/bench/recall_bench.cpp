@@ -6,7 +6,7 @@
 //
 // own: the robot's own learning instances, solved uniformly. first day: the learning instances of
 // another robot (--from, else the next one of the study), of which it knows scene, and the hand at
-// start and goal.
+// start and goal. Where no path is free, the retreat plans.
 
 #include <algorithm>
 #include <iostream>
@@ -143,6 +143,22 @@ Uuid uuid_of(std::size_t index) {
 }
 
 /// \param records  problems, of this robot or another one that solved them
+/// A record of another robot as a server knows it: with the hand where it was at the start.
+bool start_as_told(const Robot& robot, const Robot& recorder, const Problem& told,
+                   Problem& problem) {
+  const Eigen::Isometry3d T_task_recorder =
+      told.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  const Eigen::Isometry3d T_task_start =
+      T_task_recorder * kinematics::T_base_transfer(recorder.planned.chain, told.start);
+  Item item(robot, problem, 0);
+  const auto found = planning::start_configuration(
+      robot.planned.chain, robot.planned.solver, item.T_task_base.inverse() * T_task_start,
+      Eigen::MatrixXd(robot.planned.chain.dof(), 0), item.is_free);
+  if (found.q)
+    problem.start = *found.q;
+  return found.q.has_value();
+}
+
 std::optional<RecallLibrary> make_library(const Robot& robot, const experiments::Study& study,
                                           const std::vector<Problem>& records, bool is_own) {
   std::vector<recall::PosedQuery> posed;
@@ -211,24 +227,24 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
   const auto ratio = [](const std::vector<double>& a, const std::vector<double>& b, double at) {
     return at < 0 ? Costs::mean(a) / Costs::mean(b) : percentile(a, at) / percentile(b, at);
   };
-  char line[600];
+  const double count = static_cast<double>(recalled.checks.size());
+  char note[400];
   std::snprintf(
-      line, sizeof line,
-      "%-34s U %6.0f ck %6.2f ms | retreat ck %5.2f t %5.2f | recall ck %5.2f t %5.2f med %5.2f "
-      "p95 %5.2f | hit %3.0f%% (exp %3.0f%%) tries %.1f hit %.3f ms len %.2f/%.2f solved %d/%d | "
-      "lib %.1f s F %.0f/%.0f q %zu p %zu m %zu a %zu",
-      name.c_str(), Costs::mean(uniform.checks), 1e3 * Costs::mean(uniform.time_s),
-      ratio(uniform.checks, retreat.checks, -1), ratio(uniform.time_s, retreat.time_s, -1),
-      ratio(uniform.checks, recalled.checks, -1), ratio(uniform.time_s, recalled.time_s, -1),
-      ratio(uniform.time_s, recalled.time_s, 0.5), ratio(uniform.time_s, recalled.time_s, 0.95),
-      100.0 * hits / static_cast<double>(recalled.checks.size()),
-      100.0 * expected / static_cast<double>(recalled.checks.size()),
-      static_cast<double>(tries) / static_cast<double>(recalled.checks.size()),
-      1e3 * hit_s / std::max(hits, 1), Costs::mean(uniform.lengths), Costs::mean(recalled.lengths),
-      recalled.solved, uniform.solved, made_s, library->search_checks, library->try_checks,
-      library->queries.size(), library->paths.size(), library->modes.size(),
-      library->anchors.size());
-  std::cerr << line << "\n";
+      note, sizeof note,
+      "uniform / recalled: mean %.2f, median %.2f, 95 %% %.2f, checks %.2f; retreat %.2f; "
+      "recalled %.0f %% (expected %.0f %%) in %.3f ms, %.1f tries; length %.2f of %.2f; "
+      "solved %d of %d; library of %zu paths for %zu queries, %zu modes, made in %.1f s",
+      ratio(uniform.time_s, recalled.time_s, -1), ratio(uniform.time_s, recalled.time_s, 0.5),
+      ratio(uniform.time_s, recalled.time_s, 0.95), ratio(uniform.checks, recalled.checks, -1),
+      ratio(uniform.time_s, retreat.time_s, -1), 100.0 * hits / count, 100.0 * expected / count,
+      1e3 * hit_s / std::max(hits, 1), static_cast<double>(tries) / count,
+      Costs::mean(recalled.lengths), Costs::mean(uniform.lengths), recalled.solved, uniform.solved,
+      library->paths.size(), library->queries.size(), library->modes.size(), made_s);
+  print({.name = name,
+         .value = 1e3 * Costs::mean(recalled.time_s),
+         .unit = "ms",
+         .reference = Reference{"uniform", 1e3 * Costs::mean(uniform.time_s)},
+         .note = note});
 }
 
 }  // namespace
@@ -280,8 +296,22 @@ int main(int argc, char** argv) {
       compare(*robots[i], *study, study->name + " " + model + " own",
               draw(i, experiments::InstanceSet::Learning, i, learning), tests, true);
       const std::size_t other = (i + 1) % robots.size();
-      compare(*robots[i], *study, study->name + " " + model + " first day",
-              draw(other, experiments::InstanceSet::Learning, i, learning), tests, false);
+      const auto told = draw(other, experiments::InstanceSet::Learning, other, learning);
+      std::vector<Problem> records;
+      for (const Problem& each : told) {
+        Problem record = tests.front();  // this robot where it stands
+        record.scene = each.scene;
+        record.T_task_goal = each.T_task_goal;
+        record.goal_configurations.resize(0, 0);
+        record.seed = each.seed;
+        if (!record.T_task_goal)
+          record.T_task_goal = each.T_task_base.value_or(Eigen::Isometry3d::Identity()) *
+                               kinematics::T_base_transfer(robots[other]->planned.chain,
+                                                           each.goal_configurations.col(0));
+        if (start_as_told(*robots[i], *robots[other], each, record))
+          records.push_back(std::move(record));
+      }
+      compare(*robots[i], *study, study->name + " " + model + " first day", records, tests, false);
     }
   }
 }

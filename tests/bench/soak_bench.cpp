@@ -3,6 +3,8 @@
 //
 //   soak_bench [--minutes N]
 
+#include <sys/wait.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>

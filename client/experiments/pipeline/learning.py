@@ -129,9 +129,9 @@ def running_kinshipd(options: RunOptions, store: pathlib.Path) -> Iterator[None]
 class Server:
     """The line to the run's kinshipd."""
 
-    def __init__(self, client: kinship.Client, fleet: Sequence[Member]) -> None:
-        self._client, self._fleet = client, fleet
-        for member in fleet:
+    def __init__(self, client: kinship.Client, study: Study) -> None:
+        self._client, self._study, self._fleet = client, study, study.fleet
+        for member in self._fleet:
             client.register(member.robot)
 
     def report(self, lines: Sequence[str]) -> None:
@@ -159,7 +159,7 @@ class Server:
         """guide: missing: what the server finds by rehearsal, which is waited for. None: there is not what the guide needs."""
         member = self._fleet[request.target]
         guidance = self._client.guidance(request.task, member.robot, **self._asked(request), guide=guide or "", share=share, control_share=0,
-                                         rehearsed=guide is None)
+                                         rehearsed=guide is None, start=self._study.usual_start(request.target))
         parts = guidance.guide.split("+")
         if ("mixture" in parts and guidance.distribution_id is None) or ("ways" in parts and not guidance.ways):
             return None

@@ -69,7 +69,7 @@ class StudyRun:
         sets = self.record()
         with running_kinshipd(self.options, self.folder / "store" / "experience.db"), \
                 kinship.Client(domain=self.options.domain, has_outbox=False, timeout=120) as client:
-            server = Server(client, self.study.fleet)
+            server = Server(client, self.study)
             for lines in sets:
                 server.report(lines)
             for task, count in shortened.items():

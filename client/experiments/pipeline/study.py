@@ -65,6 +65,12 @@ class Study:
             raise LookupError(f"no robot '{label}' in the study; there are {', '.join(labels)}")
         return labels.index(label)
 
+    def usual_start(self, robot: int) -> np.ndarray | None:
+        """That of a calibration instance; None if instances begin at poses."""
+        [instance] = self.instances(robot, "calibration", 1)
+        start = instance.problem.start
+        return None if start is None or len(start) == 0 else np.asarray(start)
+
     def plan_options(self, **changed: Any) -> dict[str, Any]:
         """Of kinship.plan, for every query. By steps, so that a check means the same to all planners; a query ends at its first path."""
         return {name: self.description[name] for name in ("resolution", "max_checks", "max_goals", "overshoot")} | {
