@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "robots/collision/collision_world.hpp"
@@ -96,33 +95,17 @@ TEST(LibraryMaker, APathThatSolvesAQueryIsFreeThere) {
   EXPECT_GT(solved, 0);
 }
 
-TEST(LibraryMaker, APathThatSolvesNoOtherQueryIsLeftOut) {
-  const MadeShelf& made = made_shelf();
-  const auto paths_without_use = [](const RecallLibrary& library) {
-    std::ptrdiff_t useless = 0;
-    for (std::size_t path = 0; path < library.paths.size(); ++path) {
-      bool is_useful = false;
-      for (std::size_t query = 0; query < library.queries.size(); ++query)
-        for (std::size_t mode = 0; mode < library.modes.size(); ++mode) {
-          const std::size_t bit = library.bit(query, path, mode);
-          is_useful = is_useful || bit_of(library.solves, bit) || bit_of(library.reaches, bit);
-        }
-      useless += is_useful ? 0 : 1;
-    }
-    return useless;
-  };
-  // Behind the robot: ways into a shelf do not lead there.
-  PosedQuery behind = made.recorded.front();
-  behind.report = test_support::report_of(99);
-  behind.start[0] = behind.start[0] + 2.6;
-  behind.goals = behind.start;
-  behind.goals(0, 0) = -2.6;
-  behind.goals(3, 0) += 0.4;
-  std::vector<PosedQuery> queries = made.recorded;
-  queries.push_back(behind);
-  const RecallLibrary library = made.cell.make(queries).value();
-  EXPECT_EQ(library.queries.size(), queries.size());
-  EXPECT_EQ(paths_without_use(library), 0);
+TEST(LibraryMaker, EachPathSolvesAnotherQuery) {
+  const RecallLibrary& library = made_shelf().library;
+  for (std::size_t path = 0; path < library.paths.size(); ++path) {
+    bool is_useful = false;
+    for (std::size_t query = 0; query < library.queries.size(); ++query)
+      for (std::size_t mode = 0; mode < library.modes.size(); ++mode) {
+        const std::size_t bit = library.bit(query, path, mode);
+        is_useful = is_useful || bit_of(library.solves, bit) || bit_of(library.reaches, bit);
+      }
+    EXPECT_TRUE(is_useful) << path;
+  }
 }
 
 TEST(LibraryMaker, TooFewQueriesLeaveNothingOut) {

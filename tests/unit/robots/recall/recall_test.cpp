@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <vector>
 
 #include "robots/collision/edge_prover.hpp"
 #include "robots/inverse/descent.hpp"
@@ -83,6 +84,35 @@ TEST_P(Recalls, WhatTheyReturnIsAWholeFreePath) {
               kStep + 1e-9);
   }
   EXPECT_GT(solved, 0) << "else nothing was compared";
+}
+
+TEST_P(Recalls, EachConfigurationOfThePathWasAsked) {
+  int solved = 0;
+  for (Fresh& each : fresh()) {
+    std::vector<Eigen::VectorXd> asked;
+    const planning::IsFree is_free([&](const Eigen::VectorXd& q) {
+      asked.push_back(q);
+      return !each.world.collides(q);
+    });
+    const RecallSummary found = recall(guide_, each.query, is_free, kOptions);
+    EXPECT_EQ(found.collision_checks, asked.size());
+    if (!found.waypoints)
+      continue;
+    ++solved;
+    for (const auto& q : found.waypoints->colwise())
+      EXPECT_TRUE(std::ranges::find(asked, Eigen::VectorXd(q)) != asked.end());
+  }
+  EXPECT_GT(solved, 0) << "else nothing was returned";
+}
+
+TEST_P(Recalls, AGoalThatCollidesIsNotReached) {
+  for (Fresh& each : fresh()) {
+    const planning::IsFree is_free([&](const Eigen::VectorXd& q) {
+      return GetParam() ? !inverse::reaches(made_shelf().cell.chain, each.query.T_base_goal, q)
+                        : (each.query.goals.colwise() - q).colwise().norm().minCoeff() > 0;
+    });
+    EXPECT_FALSE(recall(guide_, each.query, is_free, kOptions).waypoints);
+  }
 }
 
 TEST_P(Recalls, EqualArgumentsGiveEqualAnswers) {

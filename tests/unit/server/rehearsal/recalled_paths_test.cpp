@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <future>
-#include <thread>
+#include <string_view>
 
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "server/rehearsal/recall_queries.hpp"
@@ -149,17 +149,25 @@ TEST_F(RecalledPaths, AnotherPlacementIsServedByTheNearestRehearsedOne) {
 
 TEST_F(RecalledPaths, TheSecondRequestRehearsesAPlacementForItself) {
   report_sweeps(3);
+  std::promise<void> first_done, second_done;
   RehearsalSchedulerOptions options = quick();
   options.processor_fraction = 1;
+  options.log = [&, count = 0](std::string_view) mutable {
+    (count++ == 0 ? first_done : second_done).set_value();
+  };
   RehearsalScheduler rehearsals(parts_, options);
   const RehearsalKey first = key_at(panda_), near = key_at(panda_, 0.5);
-  wait(rehearsals, first);
-  wait(rehearsals, near);
+  const SharedRehearsal known = wait(rehearsals, first);
+  EXPECT_EQ(wait(rehearsals, near), known);
+  EXPECT_FALSE(rehearsals.find(identify(near.distribution))) << "it is another placement's";
   rehearsals.ask(near);
-  while (rehearsals.totals().queued > 0)
-    std::this_thread::yield();
+  ASSERT_GT(rehearsals.totals().queued + rehearsals.totals().done, 1U) << "it was begun";
+  second_done.get_future().wait();
+  rehearsals.stop();  // keeps what was said to be done
   EXPECT_EQ(rehearsals.totals().done, 2U);
-  EXPECT_NE(rehearsals.ask(near), rehearsals.ask(first));
+  const SharedRehearsal own = rehearsals.find(identify(near.distribution));
+  ASSERT_TRUE(own);
+  EXPECT_NE(own, known);
 }
 
 TEST_F(RecalledPaths, AReplyCarriesThemUntilTheClientHasThem) {
