@@ -82,10 +82,14 @@ LibraryMaker::LibraryMaker(const kinematics::Chain& chain, const collision::Robo
       queries_(std::move(queries)),
       options_(std::move(options)),
       no_experience_(std::make_shared<planning::ExperienceGuide>(chain, TaskExperience{})) {
+  constexpr std::size_t kMostBytes = 512 * 1024;  // of waypoints, in a message
+  const std::size_t bytes =
+      sizeof(float) * kRecallWaypoints * static_cast<std::size_t>(chain.dof());
+  max_paths_ = std::min(options_.max_paths, kMostBytes / bytes);
   const std::size_t clear = queries_.size() * options_.clearances_m.size();
-  if (!queries_.empty() && clear < options_.max_paths)
+  if (!queries_.empty() && clear < max_paths_)
     branches_ = std::min<std::size_t>(static_cast<std::size_t>(options_.branches),
-                                      (options_.max_paths - clear) / queries_.size());
+                                      (max_paths_ - clear) / queries_.size());
   advance();
 }
 
@@ -327,7 +331,7 @@ std::vector<std::size_t> LibraryMaker::best_first() const {
   std::vector<double> worth(library_.queries.size(), 1);
   std::vector<bool> is_taken(library_.paths.size());
   std::vector<std::size_t> order;
-  while (order.size() < std::min(options_.max_paths, library_.paths.size())) {
+  while (order.size() < std::min(max_paths_, library_.paths.size())) {
     double most = library_.queries.size() < kFewQueries ? -1 : 0;
     std::optional<std::size_t> best;
     for (std::size_t path = 0; path < solved.size(); ++path) {

@@ -88,7 +88,7 @@ class LibraryMaker {
   RecallLibrary library_;
   std::vector<std::size_t> posed_of_;  // of library_.queries: index into queries_
   std::optional<RecallGuide> guide_;
-  std::size_t branches_ = 0;  // of a query, at most
+  std::size_t max_paths_ = 0, branches_ = 0;  // of the library, of a query
   Phase phase_ = Phase::Solve;
   std::size_t next_ = 0;
   double uniform_checks_ = 0, retreat_checks_ = 0, planned_s_ = 0;

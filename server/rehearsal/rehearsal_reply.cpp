@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "server/catalog/experience_reply.hpp"
+
 namespace kinship::rehearsal {
 namespace {
 
@@ -23,7 +25,8 @@ class Addition {
     if (known)
       reply.rehearsal = *known;
     const SharedLibrary library = rehearsals_.library(key_);
-    if (library && library->revision != known_recall_)
+    if (library && library->revision != known_recall_ &&
+        recall_bytes(*library) <= catalog::room_for_experience(reply))
       reply.recall = *library;
     else if (!library && known_recall_ != 0)
       reply.recall = RecallLibrary{.revision = 1};  // what the client holds is no longer good
