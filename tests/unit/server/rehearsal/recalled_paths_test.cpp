@@ -40,7 +40,7 @@ class RecalledPaths : public RehearsalTest {
   }
   std::vector<recall::PosedQuery> posed(const Digest& digest) {
     return recall_queries(*robot(digest), Eigen::Isometry3d::Identity(),
-                          queries_for(digest).queries);
+                          queries_for(digest).queries, {});
   }
   RecallLibrary library_of(const Digest& digest) {
     const runtime::Robot& known = *robot(digest);

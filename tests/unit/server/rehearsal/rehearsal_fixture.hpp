@@ -9,6 +9,7 @@
 
 #include "server/catalog/experience_index.hpp"
 #include "server/rehearsal/rehearse.hpp"
+#include "server/runtime/clock.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/robots.hpp"
