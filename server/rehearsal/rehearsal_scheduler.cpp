@@ -168,7 +168,7 @@ void RehearsalScheduler::expire(TimePoint now) {
           std::stable_partition(entry.waiters.begin(), entry.waiters.end(),
                                 [&](const Waiter& waiter) { return waiter.deadline > now; });
       for (auto waiter = late; waiter != entry.waiters.end(); ++waiter)
-        answers.emplace_back(std::move(waiter->done), entry.known);
+        answers.emplace_back(std::move(waiter->done), known_to(entry));
       waiters_ -= static_cast<std::size_t>(entry.waiters.end() - late);
       entry.waiters.erase(late, entry.waiters.end());
     }
