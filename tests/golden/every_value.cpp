@@ -312,7 +312,7 @@ FetchRequest every_fetch_request() {
   request.known_experience = next.count();
   request.rehearsed = true;
   request.known_recall = next.count();
-  request.start = {next.number(), next.number()};
+  request.start = {next.real(), -next.real()};
   return request;
 }
 

@@ -92,6 +92,10 @@ TEST(RecallCodec, TheRevisionThatIsKnownComesBack) {
   written.task = "shelf_pick";
   written.known_recall = std::numeric_limits<std::uint64_t>::max();
   EXPECT_EQ(decode(encode({}, written)->wire)->known_recall, written.known_recall);
+  written.start = {0.5, -1.25};
+  EXPECT_EQ(decode(encode({}, written)->wire)->start, written.start);
+  written.start.resize(kMaxDof + 1);
+  EXPECT_EQ(encode({}, written).error().message, "start: 33 exceeds 32");
 }
 
 TEST(RecallCodec, ALibraryThatBreaksARuleIsNeitherSentNorRead) {
