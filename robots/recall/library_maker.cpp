@@ -174,15 +174,17 @@ void LibraryMaker::solve(std::size_t query) {
   planned_s_ += found.planning_time_s;
   uniform_checks_ += static_cast<double>(found.collision_checks);
   retreat_checks_ += static_cast<double>(backed.collision_checks);
+  // A query that the robot answered asked for the goal of that answer.
+  const Eigen::MatrixXd goals =
+      posed.solution ? Eigen::MatrixXd(posed.solution->rightCols<1>()) : posed.goals;
   std::vector<Eigen::MatrixXd> answers;
   if (posed.solution)
     answers.push_back(*posed.solution);
   for (const planning::PlanSummary* each : {&found, &backed})
-    if (each->waypoints)
+    if (!posed.solution && each->waypoints)
       answers.push_back(*each->waypoints);
   for (std::uint64_t again = 1; again < kPlans; ++again)
-    if (auto other = plan(posed, world.is_free, posed.goals, Guide::None, seed + again);
-        other.waypoints)
+    if (auto other = plan(posed, world.is_free, goals, Guide::None, seed + again); other.waypoints)
       answers.push_back(*std::move(other.waypoints));
   if (answers.empty())
     return;

@@ -207,7 +207,8 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
       to_json(result),
       R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
       R"("shortcut_checks":0,"projections":0,"proven":false,"least_clearance_m":null,"refuted_edges":0,)"
-      R"("planning_time_s":0.0,"time_limit_s":0.0,"start":null,"waypoints":null,"guidance":null,)"
+      R"("planning_time_s":0.0,"processor_time_s":0.0,"time_limit_s":0.0,"start":null,)"
+      R"("waypoints":null,"guidance":null,)"
       R"("found_by":"nothing","guidance_reason":"","planner":"","reason":"time limit",)"
       R"("not_planned":null})");
 }
@@ -218,8 +219,9 @@ TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
   result.sampling_mode = SamplingMode::Control;
   const std::string text = to_json(result);
   EXPECT_NE(
-      text.find(R"("revision":0,"share":0.0,"sampling_mode":"control","gate_fired":false,)"
-                R"("track_share":0.0,"experience_revision":0,"tracks_followed":0,"guide":"none"})"),
+      text.find(
+          R"("revision":0,"share":0.0,"sampling_mode":"control","gate_fired":false,)"
+          R"("track_share":0.0,"experience_revision":0,"tracks_followed":0,"recall_tries":0,"guide":"none"})"),
       std::string::npos)
       << text;
   EXPECT_EQ(problem_result_from_json(text)->sampling_mode, SamplingMode::Control);
