@@ -244,12 +244,11 @@ QueryGuidance GuidanceCache::choose(const Problem& problem) const {
     return {.why_not = known->second.message};
   return {.guidance = &*known->second.guidance,
           .sampling_mode = sampling_->choose(sampling_mode_seed(problem)),
-          .recall_trust = std::min(1.0, (recalled_ + 1) / (recall_expected_ + 1))};
+          .recall_trust = recall_trust_.value()};
 }
 
 void GuidanceCache::add(const PlannedProblem& planned) {
-  recall_expected_ += planned.recall_expected;
-  recalled_ += planned.result.found_by == FoundBy::Recalled ? 1 : 0;
+  recall_trust_.add(planned.recall_expected, planned.result.found_by == FoundBy::Recalled);
   if (sampling_)
     sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks);
 }

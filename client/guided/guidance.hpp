@@ -91,8 +91,7 @@ class GuidanceCache {
   std::map<Key, GuidanceAnswer> answers_;
   KnownExperience known_;                        // of all placements
   std::optional<SamplingModeChooser> sampling_;  // of all placements: same task, same robot
-  // Of the queries that tried recalled paths: how many these were to solve, and solved.
-  double recall_expected_ = 0, recalled_ = 0;
+  RecallTrust recall_trust_;
   bool server_missing_ = false;
 };
 

@@ -174,7 +174,8 @@ class Planning {
     planning::BirrtOptions options;
     options.step = settings_.resolution;
     options.overshoot = settings_.overshoot;
-    options.max_checks = settings_.max_checks;
+    options.max_checks =
+        settings_.max_checks - std::min(planned.result.collision_checks, settings_.max_checks);
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     end_ = std::chrono::steady_clock::now() + options.time_limit;
     options.track_check_fraction = settings_.tracks.check_fraction;
@@ -212,9 +213,10 @@ class Planning {
       query.T_base_goal = T_task_base_.inverse() * *problem_.T_task_goal;
     query.T_task_anchors =
         recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
-    recall::RecallSummary summary =
-        recall::recall(*guidance.recall, query, is_free_,
-                       {.step = settings_.resolution, .trust = from.recall_trust});
+    recall::RecallSummary summary = recall::recall(*guidance.recall, query, is_free_,
+                                                   {.step = settings_.resolution,
+                                                    .max_checks = settings_.max_checks,
+                                                    .trust = from.recall_trust});
     planned.recall_expected = summary.expected;
     result.guide = guidance.guide;
     result.collision_checks = summary.collision_checks;
@@ -224,7 +226,7 @@ class Planning {
       return false;
     result.solved = true;
     result.not_planned.reset();
-    result.found_by = FoundBy::Recalled;
+    result.found_by = summary.is_straight_line ? FoundBy::StraightLine : FoundBy::Recalled;
     result.proven = is_free_.proves_edges();
     if (result.proven && std::isfinite(summary.least_clearance_m))
       result.least_clearance_m = summary.least_clearance_m;

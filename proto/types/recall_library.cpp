@@ -43,7 +43,9 @@ void check_query(const RecallQuery& query, std::size_t index, const RecallLibrar
     rules
         .that(configuration->size() == dof, name + what + std::to_string(configuration->size()) +
                                                 " joints are not " + std::to_string(dof))
-        .that(configuration->allFinite(), name + what + "not finite");
+        .that(configuration->allFinite(), name + what + "not finite")
+        .that(!(configuration->size() > 0 && configuration->cwiseAbs().maxCoeff() > kMaxJointValue),
+              name + what + "a joint is beyond 10000");
   rules.pose(name + "T_task_base", query.T_task_base)
       .that(query.T_task_anchors.size() == library.anchors.size(),
             name + std::to_string(query.T_task_anchors.size()) + " poses of " +
@@ -66,7 +68,9 @@ void check_path(const RecallPath& path, std::size_t index, const RecallLibrary& 
             name + std::to_string(path.waypoints.rows()) + " x " +
                 std::to_string(path.waypoints.cols()) + " waypoints are not " +
                 std::to_string(dof) + " x " + std::to_string(kRecallWaypoints))
-      .that(path.waypoints.cast<float>().allFinite(), name + "not finite as float");
+      .that(path.waypoints.cast<float>().allFinite(), name + "not finite as float")
+      .that(!(path.waypoints.cwiseAbs().maxCoeff() > kMaxJointValue),
+            name + "a joint is beyond 10000");
 }
 
 }  // namespace
@@ -90,8 +94,8 @@ std::optional<Error> validate(const RecallLibrary& library) {
 std::size_t recall_bytes(const RecallLibrary& library) {
   constexpr std::size_t kFixed = 160, kAnchor = 16, kQuery = 168, kPath = 32, kMode = 8;
   constexpr std::size_t kNumbersOfPose = 7;
-  std::size_t bytes = kFixed + kMode * library.modes.size() + library.solves.size() +
-                      library.reaches.size();
+  std::size_t bytes =
+      kFixed + kMode * library.modes.size() + library.solves.size() + library.reaches.size();
   for (const std::string& anchor : library.anchors)
     bytes += kAnchor + anchor.size();
   for (const RecallQuery& query : library.queries)

@@ -50,6 +50,7 @@ std::optional<Eigen::MatrixXd> clear_path(const Eigen::MatrixXd& path,
   planning::BirrtOptions plan;
   plan.step = options.step;
   plan.max_checks = options.plan_checks;
+  plan.time_limit = kNoTimeLimit;
   const planning::PlanSummary found =
       planning::plan_birrt(dense.col(first), dense.col(last), is_clear,
                            planning::ConfigurationSampler(bounds), plan, generator);

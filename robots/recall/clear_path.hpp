@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -13,6 +14,9 @@ namespace kinship::recall {
 /// The obstacles of a scene, each larger by a distance on every side, m. The robot, and what it
 /// holds, stay as they are. Meshes and point clouds are left as they are.
 collision::Surroundings enlarged(collision::Surroundings surroundings, double by_m);
+
+/// Checks end plans of the server, not time: equal input, equal paths.
+inline constexpr std::chrono::hours kNoTimeLimit{24};
 
 struct ClearPathOptions {
   double step = 0.1;                    ///< between checked configurations, joint units

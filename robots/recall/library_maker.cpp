@@ -23,8 +23,9 @@
 namespace kinship::recall {
 namespace {
 
-constexpr std::size_t kProbed = 16;    // queries by which modes are chosen
-constexpr double kWorthKeeping = 0.6;  // of the best mode's success
+constexpr std::size_t kProbed = 16;     // queries by which modes are chosen
+constexpr double kWorthKeeping = 0.6;   // of the best mode's success
+constexpr double kUsualTryChecks = 40;  // where none was measured
 constexpr std::size_t kMostModes = 4;
 constexpr std::uint64_t kPlans = 3;   // uniform ones of a query, of which the shortest is kept
 constexpr double kAnotherGoal = 0.1;  // joint units, from the goal reached
@@ -97,6 +98,7 @@ LibraryMaker::LibraryMaker(const kinematics::Chain& chain, const collision::Robo
 void LibraryMaker::advance() {
   while (phase_ != Phase::Done && next_ >= parts_of_phase()) {
     next_ = 0;
+    spent_s_ = 0;
     if (phase_ == Phase::Solve)
       begin_probe();
     else if (phase_ == Phase::Probe)
@@ -116,6 +118,7 @@ std::size_t LibraryMaker::parts_of_phase() const {
 bool LibraryMaker::step() {
   if (phase_ == Phase::Done)
     return false;
+  const double begin_s = planning::thread_time_s();
   if (phase_ == Phase::Solve)
     solve(next_);
   else if (phase_ == Phase::Probe)
@@ -123,6 +126,9 @@ bool LibraryMaker::step() {
   else
     try_all(next_);
   ++next_;
+  spent_s_ += planning::thread_time_s() - begin_s;
+  if (spent_s_ > options_.max_phase_s)  // what is left of the phase is left out
+    next_ = parts_of_phase();
   advance();
   return true;
 }
@@ -133,6 +139,7 @@ planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, const planning
   planning::BirrtOptions options;
   options.step = options_.step;
   options.max_checks = options_.max_checks;
+  options.time_limit = kNoTimeLimit;
   std::mt19937_64 generator(seed);
   const planning::TrackQuery query{posed.surroundings.T_task_base, posed.bounds, posed.start,
                                    goals};
@@ -377,6 +384,7 @@ void LibraryMaker::finish() {
   if (!queries_.empty())
     kept.search_checks =
         std::min(uniform_checks_, 2 * retreat_checks_) / static_cast<double>(queries_.size());
+  kept.try_checks = kUsualTryChecks;
   if (failed_ > 0 && planned_s_ > 0)
     kept.try_checks = failed_s_ / static_cast<double>(failed_) * uniform_checks_ / planned_s_;
   kept.revision = revision_of(kept);

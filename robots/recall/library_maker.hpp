@@ -37,6 +37,7 @@ struct LibraryMakerOptions {
   int branches = 2;                      ///< other goals of a query that a path is planned to
   std::uint64_t max_checks = 20'000;     ///< of one plan
   std::size_t max_paths = 256;           ///< of the library
+  double max_phase_s = 60;               ///< processor time of each of three phases
   std::function<void()> before = [] {};  ///< called before each check; may throw to end the work
 };
 
@@ -90,6 +91,7 @@ class LibraryMaker {
   std::optional<RecallGuide> guide_;
   std::size_t max_paths_ = 0, branches_ = 0;  // of the library, of a query
   Phase phase_ = Phase::Solve;
+  double spent_s_ = 0;  // processor time of the phase
   std::size_t next_ = 0;
   double uniform_checks_ = 0, retreat_checks_ = 0, planned_s_ = 0;
   double failed_s_ = 0;  // of tries that failed

@@ -45,7 +45,7 @@ class Asked {
 /// Whether the lines of a path are free whose ends are: proven, or checked from coarse to fine.
 bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free, double step,
                     RecallSummary& summary) {
-  constexpr Eigen::Index kStride = 8;
+  constexpr std::size_t kStride = 8;
   if (is_free.proves_edges()) {
     double least_m = std::numeric_limits<double>::infinity();
     for (const auto& line :
@@ -59,10 +59,18 @@ bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free
     return true;
   }
   Eigen::MatrixXd dense = planning::densified(path, step);
+  std::vector<Eigen::Index> between;  // of the ends of lines
+  for (Eigen::Index line = 0, at = 0; line + 1 < path.cols(); ++line) {
+    const Eigen::Index parts =
+        planning::count_of_parts((path.col(line + 1) - path.col(line)).norm(), step);
+    for (Eigen::Index part = 1; part < parts; ++part)
+      between.push_back(at + part);
+    at += parts;
+  }
   Asked asked(is_free, summary.collision_checks);
-  for (Eigen::Index stride = kStride; stride >= 1; stride /= 2)
-    for (Eigen::Index i = stride; i < dense.cols() - 1; i += stride)
-      if ((stride == kStride || i % (2 * stride) != 0) && !asked.add(dense.col(i)))
+  for (std::size_t stride = kStride; stride >= 1; stride /= 2)
+    for (std::size_t i = stride - 1; i < between.size(); i += stride)
+      if ((stride == kStride || (i + 1) % (2 * stride) != 0) && !asked.add(dense.col(between[i])))
         return false;
   if (!asked.are_free())
     return false;
@@ -75,14 +83,17 @@ bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free
 bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
                    RecallSummary& summary) {
   const Eigen::MatrixXd& path = warp.waypoints();
+  if (!path.rightCols<1>().allFinite())
+    return false;
   Asked asked(is_free, summary.collision_checks);
   if (!asked.add(path.rightCols<1>()))
     return false;
   constexpr Eigen::Index kCoarse = 4;
   for (Eigen::Index stride = kCoarse; stride >= 1; stride /= kCoarse) {
-    warp.compute(stride, stride);
+    warp.compute(stride, stride == kCoarse ? path.cols() : kCoarse);
     for (Eigen::Index i = stride; i < path.cols() - 1; i += stride)
-      if ((stride == kCoarse || i % kCoarse != 0) && !asked.add(path.col(i)))
+      if ((stride == kCoarse || i % kCoarse != 0) &&
+          !(path.col(i).allFinite() && asked.add(path.col(i))))
         return false;
     if (!asked.are_free())
       return false;
@@ -96,6 +107,7 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
   Ranking ranking(guide, query, options.trust);
   const RecallLibrary& library = guide.library();
   const double most = options.most_spent * library.search_checks;
+  const double try_checks = std::max(library.try_checks, 1.0);
   double missed = 1;  // chance that no try works
   std::optional<Candidate> candidate = ranking.next(options.step);
   if (candidate) {
@@ -103,14 +115,19 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
     if (!is_free(query.start))
       return summary;
   }
-  for (; candidate && static_cast<double>(summary.tries) * library.try_checks <= most;
+  bool is_line_tried = false;
+  for (; candidate && static_cast<double>(summary.tries) * try_checks <= most &&
+         summary.collision_checks < options.max_checks;
        candidate = ranking.next(options.step)) {
+    ++summary.tries;
     if (auto warp = guide.warp(query, *candidate)) {
-      if (summary.tries++ == 0) {
+      if (!std::exchange(is_line_tried, true)) {
         Eigen::MatrixXd line(query.start.size(), 2);
         line << query.start, warp->waypoints().rightCols<1>();
         ++summary.collision_checks;
-        if (is_free(line.col(1)) && are_lines_free(line, is_free, options.step, summary))
+        summary.is_straight_line =
+            is_free(line.col(1)) && are_lines_free(line, is_free, options.step, summary);
+        if (summary.is_straight_line)
           break;
       }
       missed *= 1 - ranking.chance();

@@ -12,9 +12,10 @@ namespace kinship::recall {
 
 struct RecallOptions {
   double step = 0.1;  ///< between checked configurations, joint units
-  /// Largest part of RecallLibrary::search_checks that tries may cost, as checks.
+  /// Largest part of RecallLibrary::search_checks that tries may cost by RecallLibrary::try_checks.
   double most_spent = 0.3;
-  double trust = 1;  ///< factor of every candidate's chance, 0 to 1
+  std::uint64_t max_checks = 100'000;  ///< after which no other path is tried
+  double trust = 1;                    ///< factor of every candidate's chance, 0 to 1
 };
 
 struct RecallSummary {
@@ -23,6 +24,7 @@ struct RecallSummary {
   std::optional<Eigen::MatrixXd> waypoints;
   std::uint64_t collision_checks = 0;
   std::uint64_t tries = 0;
+  bool is_straight_line = false;  ///< the straight line to the first goal tried was free
   /// Of a proven path: see planning::IsFree::Lines, m.
   double least_clearance_m = std::numeric_limits<double>::infinity();
   double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1

@@ -57,8 +57,8 @@ RecallGuide::RecallGuide(const kinematics::Chain& chain, RecallLibrary library)
       throw std::invalid_argument("RecallGuide: the library has " +
                                   std::to_string(query.start.size()) + " joints, the robot " +
                                   std::to_string(chain.dof()));
-  for (const WarpMode& mode : library_.modes)
-    frame_ = std::max(frame_, mode.frame);
+  if (!library_.modes.empty())
+    frame_ = std::max(library_.modes.front().frame, kTaskFrame);  // of the best one
   for (const RecallQuery& query : library_.queries)
     ends_.push_back(ends_of(query.start, kinematics::T_base_transfer(chain, query.goal), query.goal,
                             T_base_frame(query.T_task_base, {query.T_task_anchors.begin(),

@@ -105,12 +105,12 @@ std::optional<Eigen::Isometry3d> Warp::move(Eigen::Index waypoint) {
   return over < 1 ? between(T_start_ * hand, there, over) : there;
 }
 
-void Warp::compute(Eigen::Index first, Eigen::Index stride) {
+void Warp::compute(Eigen::Index stride, Eigen::Index except) {
   std::array<Eigen::Index, kRecallWaypoints> waypoints;
   std::array<Eigen::Isometry3d, kRecallWaypoints> wanted;
   std::size_t count = 0;
-  for (Eigen::Index i = first; i < moved_.cols() - 1; i += stride)
-    if (const auto T = i > 0 ? move(i) : std::nullopt) {
+  for (Eigen::Index i = stride; i < moved_.cols() - 1; i += stride)
+    if (const auto T = i % except != 0 ? move(i) : std::nullopt) {
       waypoints.at(count) = i;
       wanted.at(count++) = *T;
     }

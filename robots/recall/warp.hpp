@@ -80,8 +80,9 @@ class Warp {
   Warp(const Warper& warper, const WarpedPath& path, WarpTarget target, const WarpBlend& blend,
        const std::optional<Eigen::Isometry3d>& T_new_old);
 
-  /// Computes waypoints first, first + stride, ... but for the ends, which are there.
-  void compute(Eigen::Index first, Eigen::Index stride);
+  /// Computes the waypoints at multiples of a stride that are no multiples of another one. The ends
+  /// are there.
+  void compute(Eigen::Index stride, Eigen::Index except);
 
   /// dof x kRecallWaypoints: the ends, and what was computed.
   const Eigen::MatrixXd& waypoints() const noexcept { return moved_; }

@@ -3,9 +3,25 @@
 #include <optional>
 #include <utility>
 
+#include "robots/planning/path_vertices.hpp"
 #include "server/rehearsal/posed_query.hpp"
 
 namespace kinship::rehearsal {
+
+namespace {
+
+/// Whether a reported path can be planned again: within the turn of its start, and no longer than
+/// plans are.
+bool is_usable(const Eigen::MatrixXd& path, const Eigen::Matrix2Xd& bounds) {
+  constexpr double kMaxLength = 500;  // joint units
+  for (const auto& q : path.colwise())
+    if ((q.transpose().array() < bounds.row(0).array()).any() ||
+        (q.transpose().array() > bounds.row(1).array()).any())
+      return false;
+  return planning::path_length(path) <= kMaxLength;
+}
+
+}  // namespace
 
 std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                                                const Eigen::Isometry3d& T_task_base,
@@ -24,8 +40,11 @@ std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                               posed->query.bounds,
                               std::move(posed->query.start),
                               std::move(posed->query.goals)};
-    if (query.own)
+    if (query.own) {
+      if (!is_usable(query.own->waypoints, wanted.bounds))
+        continue;
       wanted.solution = query.own->waypoints;
+    }
     queries.push_back(std::move(wanted));
   }
   return queries;

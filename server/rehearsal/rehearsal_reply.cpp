@@ -25,12 +25,19 @@ class Addition {
     if (known)
       reply.rehearsal = *known;
     const SharedLibrary library = rehearsals_.library(key_);
-    if (library && library->revision != known_recall_ &&
+    const std::uint64_t revision = library ? library->revision : 0;
+    if (library && revision != known_recall_ &&
         recall_bytes(*library) <= catalog::room_for_experience(reply))
       reply.recall = *library;
-    else if (!library && known_recall_ != 0)
-      reply.recall = RecallLibrary{.revision = 1};  // what the client holds is no longer good
+    else if (revision != known_recall_)
+      take_back(reply);
     done(reply);
+  }
+
+  /// Tells a client that holds a library that it is no longer good.
+  void take_back(FetchReply& reply) const {
+    if (known_recall_ != 0)
+      reply.recall = RecallLibrary{.revision = 1};
   }
 
  private:
@@ -54,6 +61,11 @@ catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchReq
                           request.known_recall);
   return [&rehearsals, addition, deadline = now + request.deadline, waits = request.rehearsed,
           done = std::move(done)](const FetchReply& reply) {
+    if (reply.status == FetchStatus::NoExperience) {
+      FetchReply none = reply;
+      addition.take_back(none);
+      return done(none);
+    }
     if (!carries_rehearsal(reply.status))
       return done(reply);
     if (!waits)

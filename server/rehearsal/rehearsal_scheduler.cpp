@@ -58,6 +58,13 @@ std::string described(const std::vector<GuideCost>& costs) {
   return text;
 }
 
+/// Equal for keys that differ in the placement alone.
+Digest kind_of(const RehearsalKey& key) {
+  fitting::DistributionKey kind = key.distribution;
+  kind.T_task_base.reset();
+  return identify(kind);
+}
+
 }  // namespace
 
 RehearsalScheduler::RehearsalScheduler(const Parts& parts, RehearsalSchedulerOptions options)
@@ -82,18 +89,17 @@ SharedRehearsal RehearsalScheduler::known_to(const Entry& entry) const {
   return near != nullptr ? near->known : nullptr;
 }
 
-/// The entry of the same robot and task at the nearest other placement that has been rehearsed.
+/// The entry of an equal key at the nearest other placement that has been rehearsed.
 const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey& key) const {
   constexpr double kNear_m = 1.5;  // a radian counts as 0.3 m
   const auto place = [](const RehearsalKey& of) {
     return of.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
   };
+  const Digest kind = kind_of(key);
   const Entry* found = nullptr;
   double least = kNear_m;
   for (const auto& [id, entry] : entries_) {
-    const fitting::DistributionKey &a = entry.key.distribution, &b = key.distribution;
-    if (!entry.known || entry.is_lost || a.robot != b.robot || a.task != b.task ||
-        a.sources != b.sources || a.since_ms != b.since_ms)
+    if (!entry.known || entry.is_lost || entry.kind != kind)
       continue;
     const double distance = planning::pose_distance_m(place(entry.key), place(key));
     if (distance <= least) {
@@ -107,7 +113,7 @@ const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey&
 SharedLibrary RehearsalScheduler::library(const RehearsalKey& key) const {
   const std::lock_guard lock(mutex_);
   const auto own = entries_.find(identify(key.distribution));
-  if (own != entries_.end() && own->second.library)
+  if (own != entries_.end() && own->second.library && !own->second.is_lost)
     return own->second.library;
   const Entry* const near = nearest(key);
   return near != nullptr ? near->library : nullptr;
@@ -139,11 +145,15 @@ RehearsalScheduler::Entry& RehearsalScheduler::use(const RehearsalKey& key) {
   const Digest id = identify(key.distribution);
   Entry& entry = entries_[id];
   entry.key = key;
+  entry.kind = kind_of(key);
   entry.last_used = ++uses_;
   ++entry.asked;
   const bool is_current = entry.known && !entry.is_lost &&
                           entry.looked_at == versions_.of(key.distribution.task).changes;
-  const bool is_served = entry.asked == 1 && nearest(key) != nullptr;
+  const Entry* const near = entry.known ? nullptr : nearest(key);
+  if (near != nullptr)
+    near->last_used = ++uses_;  // it serves, too
+  const bool is_served = entry.asked == 1 && near != nullptr;
   if (!is_current && !entry.is_working && !is_served)
     entry.is_working = pool_.submit(runtime::WorkerPool::Priority::Background,
                                     {.run = [this, id] { work(id); }, .abandon = {}});
@@ -350,8 +360,10 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
   std::optional<RecallLibrary> made = maker.take();
   SharedLibrary library = made ? std::make_shared<const RecallLibrary>(*std::move(made)) : nullptr;
   const std::lock_guard lock(mutex_);
-  entries_[id].library = library;
-  return library;
+  Entry& entry = entries_[id];
+  if (!entry.is_lost)  // else it was made of paths that were retired meanwhile
+    entry.library = library;
+  return entry.library;
 }
 
 void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths) {

@@ -122,6 +122,7 @@ class RehearsalScheduler {
   };
   struct Entry {
     RehearsalKey key;
+    Digest kind;  // of the key without its placement
     SharedRehearsal known;
     SharedLibrary library;
     std::uint64_t asked = 0;
@@ -130,7 +131,7 @@ class RehearsalScheduler {
     bool is_lost = false;         // paths were retired since
     bool is_working = false;
     std::vector<Waiter> waiters;
-    std::uint64_t last_used = 0;
+    mutable std::uint64_t last_used = 0;
   };
   using WaiterAnswers = std::vector<std::pair<Done, SharedRehearsal>>;
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/sqlite/database/row_checksums.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 
@@ -31,6 +32,8 @@ inline void undo_next_schema(const std::filesystem::path& file) {
       "DROP TABLE made_up; ALTER TABLE task DROP COLUMN made_up;"
       "DELETE FROM schema_migration WHERE version > " +
       today + "; PRAGMA user_version = " + today);
+  const auto tables = store::read_checked_tables(database.connection());
+  database.execute("UPDATE task SET row_crc32c = " + tables.at("task").checksum(""));
   transaction.commit();
 }
 
