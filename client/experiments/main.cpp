@@ -135,6 +135,8 @@ void add_order(CLI::App& app) {
   add("--pause", "from a query to the next, s, as the robot moves", "FLOAT", "0")
       ->check(CLI::Range(0.0, 60.0));
   order->add_flag_callback(
+      "--rehearsed", [] {}, "wait for a rehearsal whenever guidance is asked for");
+  order->add_flag_callback(
       "--figures", [] {}, "figures as deploy/bench reads them instead of a table");
 }
 

@@ -79,7 +79,7 @@ def run_orders(words: Words, studies: "list[study.Study]") -> None:  # noqa: F82
 
     rows = order.run_orders(studies, order.OrderOptions(
         robots=words["robot"], seeds=[int(seed) for seed in words["seed"]], queries=int(words["queries"][0]), ask=int(words["ask"][0]),
-        pause_s=float(words["pause"][0])))
+        pause_s=float(words["pause"][0]), rehearsed="rehearsed" in words))
     orders = order_table.orders_of(rows)
     print(order_table.figures(orders) if "figures" in words else order_table.order_table(orders), end="")
 

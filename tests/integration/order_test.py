@@ -55,6 +55,11 @@ class Orders(unittest.TestCase):
             self.assertEqual(total["ratio_budget"], 0.5)
             self.assertGreater(total["reference"]["value"], 0)
 
+    def test_a_rehearsal_is_waited_for_if_told(self):
+        done = self.order("--queries", EVERY + 1, "--rehearsed")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("rehearsed on", self.rows()[EVERY]["told"])
+
     def test_exit_codes_say_what_is_missing(self):
         for words in (("--robot", "none"), ("--study", "none"), ("--kinshipd", self.out / "none")):
             done = self.order(*words)

@@ -27,6 +27,7 @@ class OrderOptions:
     queries: int = 100
     ask: int = 10  # guidance is asked for anew after so many reports
     pause_s: float = 0  # from a query to the next
+    rehearsed: bool = False  # a rehearsal is waited for whenever guidance is asked for
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,19 +50,20 @@ class Order:
 class Customer:
     """A robot's program beside its planning: it asks for guidance every so often and reports each attempt."""
 
-    def __init__(self, client: kinship.Client, order: Order, every: int) -> None:
-        self._client, self._every, self._reports = client, every, 0
+    def __init__(self, client: kinship.Client, order: Order, wanted: OrderOptions) -> None:
+        self._client, self._wanted, self._reports = client, wanted, 0
         self._task, self._member = order.study.name, order.study.fleet[order.robot]
         self._start = order.study.usual_start(order.robot)
         self.guidance: kinship.Guidance | None = None
         client.register(self._member.robot)
 
     def ask(self) -> str:
-        """Before a query; never waits for a rehearsal. Returns what the server said, or nothing if it was not asked."""
-        if self._reports % self._every != 0:
+        """Before a query. Returns what the server said, or nothing if it was not asked."""
+        if self._reports % self._wanted.ask != 0:
             return ""
         try:
-            self.guidance = self._client.guidance(self._task, self._member.robot, T_task_base=self._member.T_task_base, start=self._start)
+            self.guidance = self._client.guidance(self._task, self._member.robot, T_task_base=self._member.T_task_base, start=self._start,
+                                                   rehearsed=self._wanted.rehearsed, deadline=3600 if self._wanted.rehearsed else 30)
         except _NOTHING_YET as error:
             return str(error)
         return self.guidance.message
@@ -108,7 +110,7 @@ def run_order(order: Order, wanted: OrderOptions) -> Iterator[dict[str, Any]]:
     kinship.plan(member.robot, warm_up.problem, **options)
     with running_kinshipd(study.options, folder / "experience.db", tuned=False) as server, \
             kinship.Client(domain=study.options.domain, outbox=folder / "outbox", timeout=120) as client:
-        customer = Customer(client, order, wanted.ask)
+        customer = Customer(client, order, wanted)
         for index, instance in enumerate(order.instances(wanted.queries)):
             begin = time.process_time()
             told = customer.ask()
