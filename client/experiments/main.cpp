@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "client/arguments/command_options.hpp"
 #include "client/experiments/page_options.hpp"
 #include "client/experiments/python_program.hpp"
 #include "client/experiments/station_problems.hpp"
+#include "client/experiments/studies/study.hpp"
 #include "client/experiments/study_options.hpp"
 #include "proto/files/output_file.hpp"
 #include "proto/manual/manual.hpp"
@@ -31,6 +33,8 @@ Examples:
       the whole first experiment with few instances: learning sets, distributions, queries
   kinship-experiments planar --out build/experiments --resume
       goes on with what is there
+  kinship-experiments order --out build/order --study furniture_cage --robot panda --seed 1,2
+      two orders of a hundred queries each, from an empty store
   kinship-experiments planar --out build/tuning --tuning --overshoot 1.5 --share 0.9
       the same on tuning instances, to choose options by
 
@@ -97,6 +101,56 @@ void add_compare(CLI::App& app) {
       "--json", [] {}, "one JSON document instead of a table");
 }
 
+/// Python runs them, which is told the options as they were given and the studies.
+void add_order(CLI::App& app) {
+  CLI::App* const order = app.add_subcommand(
+      "order",
+      "plan a robot's queries one after another from an empty store, reporting each, beside the "
+      "same queries planned uniformly");
+  const auto add = [&](const char* name, const char* text, const char* type, const char* usual) {
+    return order->add_option(name, CLI::callback_t(), text)->type_name(type)->default_str(usual);
+  };
+  const auto add_list = [&](const char* name, const char* text, const char* type) {
+    return order->add_option(name, CLI::callback_t(), text)
+        ->type_name(type)
+        ->expected(1, CLI::detail::expected_max_vector_size)
+        ->delimiter(',');
+  };
+  add("--out", "folder of order.jsonl and the stores", "FOLDER", "")->required();
+  add("--models", "folder of the robots' model folders", "FOLDER", "robots/models");
+  add("--kinshipd", "program of the server that is started (default: beside this program)", "FILE",
+      "");
+  add("--domain", "DDS domain of that server", "UINT", "60")
+      ->envname("KINSHIP_DOMAIN")
+      ->check(CLI::Range(0, 230));
+  add_list("--study", "studies whose tasks are planned, or families of them", "TEXT")
+      ->default_str("furniture,kitting");
+  add_list("--robot", "robots, each with orders of its own", "ROBOT")->default_str("ur10e");
+  add("--queries", "of an order", "UINT", "100")->check(CLI::Range(1, 1000));
+  add_list("--seed", "an order for each; other seeds, other queries", "UINT")
+      ->default_str("1")
+      ->check(CLI::Range(1, 10));
+  add("--ask", "guidance is asked for anew after so many reports", "UINT", "10")
+      ->check(CLI::Range(1, 1000));
+  add("--pause", "from a query to the next, s, as the robot moves", "FLOAT", "0")
+      ->check(CLI::Range(0.0, 60.0));
+  order->add_flag_callback(
+      "--rehearsed", [] {}, "wait for a rehearsal whenever guidance is asked for");
+  order->add_flag_callback(
+      "--figures", [] {}, "figures as deploy/bench reads them instead of a table");
+}
+
+/// The names of the studies meant, of families each.
+std::vector<std::string> studies_of(const CLI::App& order) {
+  std::vector<std::string> names;
+  const CLI::Option& option = *order.get_option("--study");
+  for (const std::string& name :
+       option.count() > 0 ? option.results() : std::vector<std::string>{"furniture", "kitting"})
+    for (const Study* const study : find_studies(name))
+      names.push_back(study->name);
+  return names;
+}
+
 Eigen::Isometry3d read_placement(const std::string& text) {
   std::istringstream stream(text);
   PoseArray numbers{};
@@ -132,6 +186,7 @@ int run(int argc, char** argv) {
   add_station(app, "a held box goes from a table into a shelf", line.shelf, line);
   add_placement(app, line);
   add_compare(app);
+  add_order(app);
   add_page_command(app, line.page);
   add_study_commands(app, line.study);
   try {
@@ -152,6 +207,9 @@ int run(int argc, char** argv) {
                     line.placed, std::cout);
   else if (app.got_subcommand("page"))
     run_page_command(line.page, {argv + 1, argv + argc});
+  else if (app.got_subcommand("order"))
+    become_python("run_study.py", *app.get_subcommand("order"),
+                  {{"name", {"order"}}, {"studies", studies_of(*app.get_subcommand("order"))}});
   else
     become_python("compare.py", *app.get_subcommand("compare"));
   return kDone;

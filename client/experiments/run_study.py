@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs studies. kinship-experiments starts it, which has read and checked the command line.
+"""Runs studies and orders. kinship-experiments starts it, which has read and checked the command line.
 
     run_study.py OPTIONS      one JSON document: by name a list of words for each option, for "studies", "name" and "program"
 
@@ -52,7 +52,7 @@ def options_of(words: Words, program: pathlib.Path) -> "study.RunOptions":  # no
         folder=pathlib.Path(words["out"][0]), models=pathlib.Path(words["models"][0]), program=program,
         kinshipd=pathlib.Path(value(words, "kinshipd", str(program.with_name("kinshipd")))),
         analysis=pathlib.Path(value(words, "analysis", str(pathlib.Path(__file__).with_name("analyse.py")))),
-        domain=int(words["domain"][0]), threads=int(words["threads"][0]), learning=int(value(words, "learning", "0")),
+        domain=int(words["domain"][0]), threads=int(value(words, "threads", "1")), learning=int(value(words, "learning", "0")),
         resume="resume" in words, quick="quick" in words)
 
 
@@ -60,6 +60,9 @@ def run_all(words: Words, options: "study.RunOptions", runs: "module") -> None: 
     """Every study that is named, then the report of the family if they are one."""
     from pipeline.study import Study
 
+    if words["name"] == ["order"]:
+        run_orders(words, [Study(name, options) for name in words["studies"]])
+        return
     for name in words["studies"]:
         run_one(words, Study(name, options), runs)
     asked = {"calibration", "tuning", "quick", "learning"} & words.keys()
@@ -67,6 +70,18 @@ def run_all(words: Words, options: "study.RunOptions", runs: "module") -> None: 
         family = words["name"][0]
         runs.analyse(options, options.folder, f"--family={family}")
         print(f"{family}: {options.folder / (family + '.md')}", file=sys.stderr)
+
+
+def run_orders(words: Words, studies: "list[study.Study]") -> None:  # noqa: F821
+    """The table goes to standard output."""
+    from analysis import order_table
+    from pipeline import order
+
+    rows = order.run_orders(studies, order.OrderOptions(
+        robots=words["robot"], seeds=[int(seed) for seed in words["seed"]], queries=int(words["queries"][0]), ask=int(words["ask"][0]),
+        pause_s=float(words["pause"][0]), rehearsed="rehearsed" in words))
+    orders = order_table.orders_of(rows)
+    print(order_table.figures(orders) if "figures" in words else order_table.order_table(orders), end="")
 
 
 def run_one(words: Words, study: "study.Study", runs: "module") -> None:  # noqa: F821

@@ -99,7 +99,7 @@ void add_other_tasks(CLI::App& command, StudyOptions& options) {
           ->excludes(tunes);
   command
       .add_option("--set", options.set, "instances that are written: others than test instances")
-      ->check(CLI::IsMember({"calibration", "learning", "tuning", "test"}))
+      ->check(CLI::IsMember({"calibration", "learning", "tuning", "test", "order"}))
       ->needs(problems);
   command
       .add_option("--count", options.instances, "so many instances are written, not the study's")

@@ -50,6 +50,8 @@ BENCHES = [
     bench("proof-planning", "proof_bench", "Plans with proven edges, beside steps of 0.05", ["planning"], repeats=1),
     bench("recall", "recall_bench", "Recalled paths in the studies' furniture, CPU time of everything", ["furniture", "ur10e", "panda"], repeats=1),
     bench("recall-kitting", "recall_bench", "Recalled paths in the study of kitting, CPU time of everything", ["kitting", "ur10e", "panda"], repeats=1),
+    bench("order", "kinship-experiments", "Orders: 100 queries one after another from an empty store, CPU time of plans",
+          ["order", "--out", "order", "--models", str(ROOT / "robots" / "models"), "--figures"], repeats=1),
     bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1),
     bench("command", "command_bench", "One-shot commands against a local server"),
     bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1),
@@ -152,7 +154,8 @@ def end_group(process):
 
 def run_once(wanted, has_references, scratch):
     """The figures of one run, in order."""
-    command = [BUILD / "bin" / wanted.program, *wanted.arguments, *([] if has_references else ["--no-references"])]
+    more = [] if has_references or wanted.program == "kinship-experiments" else ["--no-references"]
+    command = [BUILD / "bin" / wanted.program, *wanted.arguments, *more]
     log = BUILD / f"{wanted.name}.log"
     with open(log, "w") as errors:
         process = subprocess.Popen(command, cwd=scratch, stdout=subprocess.PIPE, stderr=errors, text=True,

@@ -109,19 +109,24 @@ def end_with_parent() -> None:
 
 
 @contextlib.contextmanager
-def running_kinshipd(options: RunOptions, store: pathlib.Path) -> Iterator[None]:
-    """A kinshipd of the run's own, which serves. Raises FileNotFoundError without the program, ConnectionError if it does not serve."""
+def running_kinshipd(options: RunOptions, store: pathlib.Path, *, tuned: bool = True) -> Iterator[int]:
+    """A kinshipd of the run's own, which serves; its process.
+
+    tuned: it takes the run's threads and does not step back for others; otherwise as users have it. Raises FileNotFoundError without
+    the program, ConnectionError if it does not serve.
+    """
     if not options.kinshipd.exists():
         raise FileNotFoundError(f"no kinshipd at '{options.kinshipd}': give --kinshipd PATH")
     log = store.with_name(store.name + ".log")
     with log.open("ab") as messages:
-        process = subprocess.Popen([options.kinshipd, "--store", store, "--domain", str(options.domain), "--workers", str(options.threads),
-                                    "--fit-niceness", "0"], stdout=subprocess.PIPE, stderr=messages, preexec_fn=end_with_parent)
+        more = ["--workers", str(options.threads), "--fit-niceness", "0"] if tuned else []
+        process = subprocess.Popen([options.kinshipd, "--store", store, "--domain", str(options.domain), *more],
+                                   stdout=subprocess.PIPE, stderr=messages, preexec_fn=end_with_parent)
     with process:
         try:
             if not process.stdout.readline().startswith(b"ready "):
                 raise ConnectionError(f"{options.kinshipd} does not serve: ended with {process.wait()}, see '{log}'")
-            yield
+            yield process.pid
         finally:
             process.terminate()
 

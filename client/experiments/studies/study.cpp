@@ -12,7 +12,8 @@ InstanceSet parse_instance_set(std::string_view name) {
       {"calibration", InstanceSet::Calibration},
       {"learning", InstanceSet::Learning},
       {"tuning", InstanceSet::Tuning},
-      {"test", InstanceSet::Test}};
+      {"test", InstanceSet::Test},
+      {"order", InstanceSet::Order}};
   const auto found = kSets.find(name);
   if (found == kSets.end())
     throw Failure(ErrorCode::InvalidInput, "no set of instances '" + std::string(name) + "'");
@@ -27,6 +28,8 @@ std::uint64_t seed_of(InstanceSet set, std::size_t robot) {
       return 2000 + robot;
     case InstanceSet::Tuning:
       return 3000;
+    case InstanceSet::Order:
+      return 5000;
     case InstanceSet::Test:
       break;
   }

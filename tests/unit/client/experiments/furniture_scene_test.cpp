@@ -162,11 +162,12 @@ TEST(FurnitureStudies, AreAsTheProtocolSays) {
     EXPECT_EQ(study->settings.max_checks, 200'000U);
   }
   std::set<std::uint64_t> seeds;
-  for (const InstanceSet set : {InstanceSet::Calibration, InstanceSet::Tuning, InstanceSet::Test})
+  for (const InstanceSet set :
+       {InstanceSet::Calibration, InstanceSet::Tuning, InstanceSet::Test, InstanceSet::Order})
     seeds.insert(seed_of(set, 0));
   for (std::size_t robot = 0; robot < 5; ++robot)
     seeds.insert(seed_of(InstanceSet::Learning, robot));
-  EXPECT_EQ(seeds.size(), 8U);
+  EXPECT_EQ(seeds.size(), 9U);
 }
 
 }  // namespace

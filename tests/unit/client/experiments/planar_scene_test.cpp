@@ -88,7 +88,8 @@ TEST(PlanarScene, AnArmThatCannotReachTheStartIsSaid) {
 
 TEST(Studies, NoSeedServesTwoSets) {
   std::set<std::uint64_t> seeds;
-  for (const InstanceSet set : {InstanceSet::Calibration, InstanceSet::Tuning, InstanceSet::Test})
+  for (const InstanceSet set :
+       {InstanceSet::Calibration, InstanceSet::Tuning, InstanceSet::Test, InstanceSet::Order})
     EXPECT_TRUE(seeds.insert(seed_of(set, 0)).second);
   for (std::size_t robot = 0; robot < 8; ++robot)
     EXPECT_TRUE(seeds.insert(seed_of(InstanceSet::Learning, robot)).second);

@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""What an order took, by rows made up."""
+import json
+import pathlib
+import sys
+import unittest
+
+EXPERIMENTS = pathlib.Path(__file__).resolve().parents[5] / "client" / "experiments"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(EXPERIMENTS))
+
+from analysis import order_table  # noqa: E402: after the path
+
+
+def row(query: int, guided_ms: float, uniform_ms: float, mode: str, found_by: str = "search", robot: str = "arm") -> dict:
+    def side(ms: float, its_mode: str, found: str) -> dict:
+        return {"solved": True, "cpu_s": ms / 1000, "checks": round(100 * ms), "length": 1.0, "mode": its_mode, "guide": "ways",
+                "found_by": found, "recall_tries": 2 if found == "recalled" else 0}
+
+    return {"study": "box", "robot": robot, "seed": 3, "query": query, "instance": f"box-{query}", "told": "", "line_s": 0.5e-3,
+            "server_s": 0.1 * query, "guided": side(guided_ms, mode, found_by), "uniform": side(uniform_ms, "uniform", "search")}
+
+
+ROWS = [row(query, 11, 10, "uniform") for query in range(10)] + [row(query, 2, 10, "guided", "recalled") for query in range(10, 18)] + [
+    row(18, 3, 10, "guided"), row(19, 31, 10, "control")]
+
+
+class OrderTable(unittest.TestCase):
+    def test_a_row_tells_all_of_an_order(self):
+        text = order_table.order_table(order_table.orders_of(ROWS))
+        self.assertIn("\n| box, arm, seed 3 | 20 / 20 | 0.80 | 1.10 | 0.80 | 18.5 | 8 / 10 | 11 / 10 | 12 / 10 | 16 | 0.50 | 1.9 | "
+                      "10 uniform, 8 recalled, 1 ways, 1 control |\n", text)
+
+    def test_robots_have_orders_of_their_own(self):
+        orders = order_table.orders_of(ROWS + [row(0, 1, 2, "guided", robot="other")])
+        self.assertEqual([order.name for order in orders], ["box, arm, seed 3", "box, other, seed 3"])
+
+    def test_figures_have_the_budgets(self):
+        figures = [json.loads(line) for line in order_table.figures(order_table.orders_of(ROWS)).splitlines()]
+        total, first, worst = figures[0], figures[1], figures[5]
+        self.assertAlmostEqual(total["value"], 160)
+        self.assertAlmostEqual(total["reference"]["value"], 200)
+        self.assertEqual((total["unit"], total["ratio_budget"]), ("ms", 0.5))
+        self.assertAlmostEqual(first["value"] / first["reference"]["value"], 1.1)
+        self.assertEqual((first["ratio_budget"], worst["budget"]), (1.1, 10))
+        self.assertAlmostEqual(worst["value"], 18.5)
+
+
+if __name__ == "__main__":
+    unittest.main()
