@@ -51,8 +51,14 @@ SamplingMode GuidanceHandle::choose(const Problem& problem) const {
   return answer_.sampling->choose(guided::sampling_mode_seed(problem));
 }
 
+double GuidanceHandle::recall_trust() const {
+  const std::scoped_lock lock(mutex_);
+  return recall_trust_.value();
+}
+
 void GuidanceHandle::add(const guided::PlannedProblem& planned) {
   const std::scoped_lock lock(mutex_);
+  recall_trust_.add(planned.recall_expected, planned.result.found_by == FoundBy::Recalled);
   answer_.sampling->add(planned.result.sampling_mode, planned.outcome,
                         planned.result.collision_checks);
 }

@@ -33,10 +33,12 @@ class GuidanceHandle {
 
   double guided_part() const;
   SamplingMode choose(const Problem& problem) const;
+  double recall_trust() const;
   void add(const guided::PlannedProblem& planned);
 
  private:
   const Digest robot_;
+  guided::RecallTrust recall_trust_;
   guided::GuidanceAnswer answer_;  // but for its chooser never changed
   mutable std::mutex mutex_;       // guards the chooser
 };

@@ -76,7 +76,8 @@ guided::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& pr
   return {.guidance = &guidance->guidance(),
           .sampling_mode = sampling_mode.empty()
                                ? guidance->choose(problem)
-                               : parse_word<SamplingMode>(sampling_mode).value_or_throw()};
+                               : parse_word<SamplingMode>(sampling_mode).value_or_throw(),
+          .recall_trust = guidance->recall_trust()};
 }
 
 /// The warnings of kinship-plan: implausible solids of the robot and of the scene.

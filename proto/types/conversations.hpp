@@ -126,7 +126,8 @@ struct FetchRequest {
   std::chrono::seconds follow{0};      ///< a lease on interest, at most kMaxFollow_s; 0: once
   std::uint32_t experience_bytes = 0;  ///< limit of the task's experience; 0: none
   std::uint64_t known_experience = 0;  ///< the revision that the client has: not sent again
-  /// The reply waits, until the deadline at most, for a complete rehearsal. Needs experience_bytes.
+  /// The reply waits, until the deadline at most, for a complete rehearsal, here or near
+  /// by. Needs experience_bytes.
   bool rehearsed = false;
   std::uint64_t known_recall = 0;  ///< revision of the library that the client has: not sent again
   /// Where queries of the robot usually begin, joint units: what other robots recorded is planned

@@ -46,7 +46,7 @@ inline constexpr std::uint32_t kGoalFrame = 0, kTaskFrame = 1, kFirstAnchor = 2;
 /// worth on the queries of the others. Best first: every prefix of the paths is a library, too.
 struct RecallLibrary {
   std::uint64_t revision = 0;  ///< another library has another one; never 0
-  double search_checks = 0;    ///< that a search takes in the mean where no path fits
+  double search_checks = 0;    ///< that a search takes, mean of the recorded queries
   double try_checks = 0;       ///< of a search that take as long as a path that does not fit
   /// Names of objects of the recorded scenes that furniture is known by.
   std::vector<std::string> anchors;

@@ -90,7 +90,7 @@ bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
     return false;
   constexpr Eigen::Index kCoarse = 4;
   for (Eigen::Index stride = kCoarse; stride >= 1; stride /= kCoarse) {
-    warp.compute(stride, stride == kCoarse ? path.cols() : kCoarse);
+    warp.compute(stride, stride == kCoarse ? kRecallWaypoints : kCoarse);
     for (Eigen::Index i = stride; i < path.cols() - 1; i += stride)
       if ((stride == kCoarse || i % kCoarse != 0) &&
           !(path.col(i).allFinite() && asked.add(path.col(i))))

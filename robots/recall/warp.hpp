@@ -82,7 +82,7 @@ class Warp {
 
   /// Computes the waypoints at multiples of a stride that are no multiples of another one. The ends
   /// are there.
-  void compute(Eigen::Index stride, Eigen::Index except);
+  void compute(Eigen::Index stride, Eigen::Index except = kRecallWaypoints);
 
   /// dof x kRecallWaypoints: the ends, and what was computed.
   const Eigen::MatrixXd& waypoints() const noexcept { return moved_; }

@@ -142,7 +142,6 @@ Uuid uuid_of(std::size_t index) {
   return uuid;
 }
 
-/// \param records  problems, of this robot or another one that solved them
 /// A record of another robot as a server knows it: with the hand where it was at the start.
 bool start_as_told(const Robot& robot, const Robot& recorder, const Problem& told,
                    Problem& problem) {
@@ -159,6 +158,7 @@ bool start_as_told(const Robot& robot, const Robot& recorder, const Problem& tol
   return found.q.has_value();
 }
 
+/// \param records  problems, of this robot or another one that solved them
 std::optional<RecallLibrary> make_library(const Robot& robot, const experiments::Study& study,
                                           const std::vector<Problem>& records, bool is_own) {
   std::vector<recall::PosedQuery> posed;

@@ -107,7 +107,7 @@ def _ranked(results: Sequence[Result], what: str) -> list[float]:
 
 def _draws(result: Result) -> bool:
     guidance = result.get("guidance") or {}
-    return guidance.get("share", 0) > 0
+    return guidance.get("share", 0) > 0 or result.get("found_by") == "recalled"
 
 
 def _uses_experience(result: Result) -> bool:

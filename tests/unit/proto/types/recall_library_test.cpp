@@ -111,7 +111,11 @@ const std::vector<Case> kCases = {
     {[](auto& library) { library.paths[2].waypoints(2, 31) = kNan; },
      "recall: path 2: not finite as float"},
     {[](auto& library) { library.paths[0].waypoints(0, 0) = 1e300; },
-     "recall: path 0: not finite as float"}};
+     "recall: path 0: not finite as float"},
+    {[](auto& library) { library.paths[0].waypoints(0, 0) = -10001; },
+     "recall: path 0: a joint is beyond 10000"},
+    {[](auto& library) { library.queries[1].goal[2] = 1e308; },
+     "recall: query 1: goal: a joint is beyond 10000"}};
 
 TEST(RecallLibrary, EachRuleIsNamedWhereItIsBroken) {
   for (const Case& each : kCases) {

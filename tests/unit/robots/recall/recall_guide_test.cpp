@@ -69,7 +69,7 @@ TEST(RecallGuide, WhereAllIsAsItWasAPathIsItself) {
     for (std::size_t mode = 0; mode < made.library.modes.size(); ++mode) {
       auto warp = guide.warp(query, {path, mode, 0});
       ASSERT_TRUE(warp);
-      warp->compute(1, 1);
+      warp->compute(1);
       EXPECT_LT((warp->waypoints() - made.library.paths[path].waypoints).cwiseAbs().maxCoeff(),
                 1e-5);
     }
@@ -94,8 +94,8 @@ TEST(RecallGuide, WhatMovesWithTheBaseChangesNothing) {
         continue;  // that did not move
       auto one = guide.warp(here, {path, mode, 0}), other = guide.warp(there, {path, mode, 0});
       ASSERT_TRUE(one && other);
-      one->compute(1, 1);
-      other->compute(1, 1);
+      one->compute(1);
+      other->compute(1);
       EXPECT_LT((one->waypoints() - other->waypoints()).cwiseAbs().maxCoeff(), 1e-6);
       ++compared;
     }

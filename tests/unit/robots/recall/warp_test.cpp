@@ -34,7 +34,7 @@ WarpTarget target_of(const Warper& warper, const Eigen::VectorXd& start,
 /// All waypoints, in the order in which they are asked for.
 Eigen::MatrixXd computed(Warp warp) {
   for (const Eigen::Index stride : {4, 1})
-    warp.compute(stride, stride);
+    warp.compute(stride);
   return warp.waypoints();
 }
 
