@@ -213,10 +213,9 @@ class Planning {
       query.T_base_goal = T_task_base_.inverse() * *problem_.T_task_goal;
     query.T_task_anchors =
         recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
-    recall::RecallSummary summary = recall::recall(*guidance.recall, query, is_free_,
-                                                   {.step = settings_.resolution,
-                                                    .max_checks = settings_.max_checks,
-                                                    .trust = from.recall_trust});
+    recall::RecallOptions options{.step = settings_.resolution, .max_checks = settings_.max_checks};
+    options.trust = from.recall_trust;
+    recall::RecallSummary summary = recall::recall(*guidance.recall, query, is_free_, options);
     planned.recall_expected = summary.expected;
     result.guide = guidance.guide;
     result.collision_checks = summary.collision_checks;
@@ -232,6 +231,8 @@ class Planning {
       result.least_clearance_m = summary.least_clearance_m;
     result.waypoints = vertices(*summary.waypoints, settings_.resolution);
     planned.outcome = Outcome::Solved;
+    if (recorder_ != nullptr)
+      planning::record_path(*recorder_, is_free_, *summary.waypoints);
     return true;
   }
 

@@ -1,7 +1,9 @@
 #include "robots/planning/tree.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace kinship::planning {
@@ -48,6 +50,18 @@ RecordedSearch SearchRecorder::search() const {
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     search.nodes.col(static_cast<Eigen::Index>(i)) = nodes_[i];
   return search;
+}
+
+void record_path(SearchRecorder& recorder, const IsFree& is_free,
+                 const Eigen::MatrixXd& waypoints) {
+  PlanningBudget budget(is_free, std::numeric_limits<std::uint64_t>::max(), std::chrono::hours(1));
+  recorder.begin(budget);
+  for (Eigen::Index i = 0; i < waypoints.cols(); ++i) {
+    budget.is_free(waypoints.col(i));
+    recorder.add(SearchRecorder::Side::Start, waypoints.col(i), i - 1);
+  }
+  recorder.add(SearchRecorder::Side::Goal, waypoints.rightCols<1>(), -1);
+  recorder.join(waypoints.cols() - 1, 0);
 }
 
 Tree::Tree(Eigen::Index dof) : nodes_(dof, kFirstCapacity), nearest_(dof) {

@@ -39,6 +39,10 @@ class SearchRecorder {
   RecordedSearch search_;                             // without its nodes
 };
 
+/// Records a path that no search found, as a tree from the start that ends in the goal. Each
+/// waypoint is checked once more, so that the record tells a growth.
+void record_path(SearchRecorder& recorder, const IsFree& is_free, const Eigen::MatrixXd& waypoints);
+
 /// A tree of configurations grown from one or more roots.
 class Tree {
  public:

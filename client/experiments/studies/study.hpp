@@ -16,7 +16,8 @@ namespace kinship::experiments {
 /// What instances are for. No instance is in two of these: each has seeds of its own.
 enum class InstanceSet { Calibration, Learning, Tuning, Test, Order };
 
-/// "calibration", "learning", "tuning", "test" or "order". \throws Failure(InvalidInput) for another word.
+/// "calibration", "learning", "tuning", "test" or "order". \throws Failure(InvalidInput) for
+/// another word.
 InstanceSet parse_instance_set(std::string_view name);
 
 /// A robot of a study and where it stands.
