@@ -69,7 +69,7 @@ void check_path(const RecallPath& path, std::size_t index, const RecallLibrary& 
                 std::to_string(path.waypoints.cols()) + " waypoints are not " +
                 std::to_string(dof) + " x " + std::to_string(kRecallWaypoints))
       .that(path.waypoints.cast<float>().allFinite(), name + "not finite as float")
-      .that(!(path.waypoints.cwiseAbs().maxCoeff() > kMaxJointValue),
+      .that(!(path.waypoints.size() > 0 && path.waypoints.cwiseAbs().maxCoeff() > kMaxJointValue),
             name + "a joint is beyond 10000");
 }
 

@@ -37,7 +37,7 @@ class Addition {
   /// Tells a client that holds a library that it is no longer good.
   void take_back(FetchReply& reply) const {
     if (known_recall_ != 0)
-      reply.recall = RecallLibrary{.revision = 1};
+      reply.recall.emplace().revision = 1;
   }
 
  private:
