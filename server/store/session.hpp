@@ -136,6 +136,12 @@ class Session {
   virtual std::string is_intact(std::string_view /*table*/) { return "TRUE"; }
   /// SQL that says whether a row of table path, scene or distribution is quarantined.
   virtual std::string is_quarantined(std::string_view table) const = 0;
+  /// For a look-up by an index on `column` that found nothing, in a table with ids: a damaged index
+  /// may have led past the row. It looks at the next entries on both sides, which have to be in
+  /// order and to fit their rows. Nothing where the engine sees to it, or if the value is there.
+  /// \param value  of texts or bytes.
+  virtual void require_absent(std::string_view /*table*/, std::string_view /*column*/,
+                              const Parameter& /*value*/) {}
 
   template <typename... Values>
   Rows query(std::string_view sql, const Values&... values) {

@@ -25,11 +25,17 @@ template <typename Find>
 std::invoke_result_t<Find> find_undamaged(Session& session, const Digest& robot,
                                           std::string_view task, Find find) {
   std::invoke_result_t<Find> found = find();
-  if (found || !session.find_integer("SELECT 1 FROM experience"
-                                     " WHERE task_id = (SELECT id FROM task WHERE name = $1)"
-                                     " AND robot_id = (SELECT id FROM robot WHERE digest = $2)",
-                                     task, robot))
+  if (found)
     return found;
+  // By the index by robots: the table itself, which is one by tasks, has just been asked.
+  if (!session.find_integer("SELECT 1 FROM experience"
+                            " WHERE +task_id = (SELECT id FROM task WHERE name = $1)"
+                            " AND robot_id = (SELECT id FROM robot WHERE digest = $2)",
+                            task, robot)) {
+    session.require_absent("robot", "digest", Parameter(robot));
+    session.require_absent("task", "name", Parameter(task));
+    return found;
+  }
   found = find();  // the first report may have come between
   if (!found)
     throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ", task '" +

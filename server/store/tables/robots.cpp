@@ -157,10 +157,13 @@ std::map<std::int64_t, RobotName> names_in_indexes(Session& session) {
 }  // namespace
 
 std::optional<std::int64_t> find_registered(Session& session, const Digest& robot) {
-  return session.find_integer(
+  const auto id = session.find_integer(
       "SELECT id FROM robot WHERE digest = $1"
       " AND NOT EXISTS (SELECT 1 FROM robot AS removed WHERE removed.label = $2)",
       robot, removed_label(robot));
+  if (!id)
+    session.require_absent("robot", "digest", Parameter(robot));
+  return id;
 }
 
 bool is_robot_readable(Session& session, std::int64_t id) {
@@ -175,8 +178,11 @@ bool is_registered(Session& session, const Digest& robot) {
 std::optional<std::int64_t> lock_robot(Session& session, const Digest& robot) {
   if (!session.dialect().lock_robots.empty())
     session.query(session.dialect().lock_robots);
-  return session.find_integer(
+  const auto id = session.find_integer(
       "SELECT id FROM robot WHERE digest = $1" + std::string(session.dialect().for_update), robot);
+  if (!id)
+    session.require_absent("robot", "digest", Parameter(robot));
+  return id;
 }
 
 Result<RegisterStatus> insert_robot(Session& session, const RobotRecord& robot) {

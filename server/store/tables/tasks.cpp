@@ -51,6 +51,7 @@ std::int64_t ensure_task(Session& session, std::string_view task) {
   const std::string find = "SELECT id FROM task WHERE name = $1 AND " + session.is_intact("task");
   if (const std::optional<std::int64_t> id = session.find_integer(find, task))
     return *id;
+  session.require_absent("task", "name", Parameter(task));
   session.query("INSERT INTO task (name) VALUES ($1) ON CONFLICT (name) DO NOTHING", task);
   if (const std::optional<std::int64_t> id = session.find_integer(find, task))
     return *id;

@@ -23,6 +23,20 @@ int open_flags(Access access) {
   return SQLITE_OPEN_READONLY;
 }
 
+/// Of an index.
+struct Entry {
+  std::string key;
+  std::int64_t id = 0;
+  auto operator<=>(const Entry&) const = default;
+};
+
+std::string key_of(const Parameter& value) {
+  if (const auto* const text = std::get_if<std::string_view>(&value.value()))
+    return std::string(*text);
+  const Bytes bytes = std::get<Bytes>(value.value());
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
 
 void Database::Close::operator()(sqlite3* connection) const noexcept { sqlite3_close(connection); }
@@ -84,6 +98,31 @@ std::string Database::is_intact(std::string_view table) {
     const std::string row = std::string(table) + ".";
     return "(" + row + "row_crc32c IS " + checked.checksum(row) + ")";
   });
+}
+
+void Database::require_absent(std::string_view table, std::string_view column,
+                              const Parameter& value) {
+  const std::string name(table), key(column);
+  // A damaged row keeps its entries.
+  const std::string fits = "EXISTS (SELECT 1 FROM " + name + " WHERE " + name +
+                           ".id = entry.id AND (" + name + "." + key + " IS entry." + key +
+                           " OR NOT " + is_intact(table) + "))";
+  const std::string next = "SELECT " + key + ", id, " + fits + " FROM " + name + " AS entry WHERE ";
+  for (const bool is_rising : {true, false}) {
+    Entry before{key_of(value)};
+    for (const Row& row :
+         query(next + key +
+                   (is_rising ? " >= $1 ORDER BY " + key + ", id LIMIT 2"
+                              : " <= $1 ORDER BY " + key + " DESC, id DESC LIMIT 2"),
+               value)) {
+      Entry entry{key_of(Parameter(row.column_blob(0))), row.column_integer(1)};
+      if (before.id == 0 && entry.key == before.key)
+        return;
+      if (row.column_integer(2) == 0 || (is_rising ? entry <= before : before <= entry))
+        throw damaged_row("an index of table " + name);
+      before = std::move(entry);
+    }
+  }
 }
 
 void Database::keep_checksums() {

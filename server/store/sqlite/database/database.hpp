@@ -38,6 +38,8 @@ class Database : public Session {
   const Dialect& dialect() const noexcept override;
   std::string is_intact(std::string_view table) override;
   std::string is_quarantined(std::string_view table) const override { return in_quarantine(table); }
+  void require_absent(std::string_view table, std::string_view column,
+                      const Parameter& value) override;
 
   /// From now on the rows that this connection writes get their checksums.
   void keep_checksums();

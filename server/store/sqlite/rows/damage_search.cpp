@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <set>
 #include <sstream>
 #include <utility>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
@@ -57,30 +57,31 @@ RowsChecked check_small_table(Database& database, const std::string& table) {
   return checked;
 }
 
-/// The table of an index that a line of integrity_check is about; empty: another line.
-std::string table_of_index(Database& database, const std::string& line) {
-  for (const char* const about :
-       {"missing from index ", "of entries in index ", "non-unique entry in index "})
-    if (const std::size_t at = line.find(about); at != std::string::npos) {
-      Statement table(database.connection(), "SELECT tbl_name FROM sqlite_master WHERE name = ?");
-      const std::string index = line.substr(at + std::string_view(about).size());
-      return table.bind(1, std::string_view(index)).step() ? std::string(table.column_text(0)) : "";
-    }
-  return {};
-}
-
+/// Also quarantined ones, as long as no other row stands for them.
 bool has_damaged_rows(Database& database, const std::string& table) {
-  return database.checked_tables().contains(table) &&
+  return std::ranges::any_of(count_quarantined(database),
+                             [&](const QuarantineCount& count) { return count.table == table; }) ||
          !check_rows(database, table, 0, std::numeric_limits<std::int64_t>::max()).damaged.empty();
 }
 
-/// \return whether they fit now. If a row of the table is damaged, it is that row that does not
-/// fit;
-///         and two rows with one key are for a repair.
+bool has_sound_structure(Database& database, const std::string& table) try {
+  return check_structure(database, table).empty();
+} catch (const SqliteError& error) {
+  if (!error.is_damage())
+    throw;
+  return false;
+}
+
+/// \return whether that mended the structure of the table; else nothing is changed. Entries of a
+///         damaged row are kept, and two rows with one key are for a repair.
 bool make_indexes_anew(Database& database, const std::string& table) try {
   if (has_damaged_rows(database, table))
     return false;
+  Transaction whole(database, Transaction::Kind::Write);
   database.execute("REINDEX \"" + table + "\"");
+  if (!has_sound_structure(database, table))
+    return false;  // the table itself may have lost rows, of which the indexes know
+  whole.commit();
   return true;
 } catch (const SqliteError& error) {
   if (!error.is_damage() && !error.concerns_one_row())
@@ -166,21 +167,13 @@ std::vector<std::string> mend_indexes(Database& database) {
   if (database.integer("PRAGMA page_count") * database.integer("PRAGMA page_size") >
       kMaxBytesOfAStart)
     return {};
-  std::set<std::string> tables;
-  try {
-    for (const std::string& line : check_structure(database, ""))
-      tables.insert(table_of_index(database, line));
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-  }
-  tables.erase("");
+  if (has_sound_structure(database, ""))
+    return {};
   std::vector<std::string> mended;
-  for (const std::string& table : tables) {
-    if (make_indexes_anew(database, table))
+  for (const std::string& table : tables_of(database))
+    if (!has_sound_structure(database, table) && make_indexes_anew(database, table))
       mended.push_back("the indexes of table " + table +
                        " did not fit its rows and were made anew");
-  }
   return mended;
 }
 

@@ -57,8 +57,8 @@ class DamageItem : public WriteItem {
 std::optional<std::string> find_damaged_row(Database& database);
 
 /// Makes indexes anew whose entries do not fit the rows of their table, if all of its rows are as
-/// they were written. Reads the whole store; one of more than kMaxBytesOfAStart is left to the
-/// scrub.
+/// they were written and that mends its structure. Reads the whole store; one of more than
+/// kMaxBytesOfAStart is left to the scrub.
 /// \return a line for each table.
 std::vector<std::string> mend_indexes(Database& database);
 

@@ -247,8 +247,10 @@ Page<AttemptSummary> page_of_attempts(Database& database, const PairFilter& filt
 
 Result<Attempt> find_attempt(Database& database, const Uuid& report_uuid, DamagedRows& noted) {
   const ReportRows report = find_report(database, report_uuid);
-  if (!report.row && report.damaged.empty())
+  if (!report.row && report.damaged.empty()) {
+    database.require_absent("attempt", "report_uuid", Parameter(report_uuid));
     return Error{ErrorCode::NotFound, "report " + report_uuid.text() + ": no such report"};
+  }
   std::optional<AttemptRow> row = select_named(database, report.row, noted.attempts);
   if (row && row->attempt.report_uuid == report_uuid) {
     read_contents(database, *row, noted);

@@ -66,6 +66,8 @@ void read_robot(Database& database, const Digest& robot, BatchState& state) {
                                      database.is_intact("robot"));
   if (query->bind(1, Bytes(robot.bytes)).step() && !is_removed_label(query->column_text(2)))
     state.robots[robot] = {query->column_integer(0), query->column_integer(1)};
+  else
+    database.require_absent("robot", "digest", Parameter(robot));
 }
 
 /// \return whether all that the receipt of a report that came before vouches for can be read.

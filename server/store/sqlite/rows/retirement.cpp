@@ -126,8 +126,10 @@ Feed<Uuid> page_of_retirements(Database& database, std::string_view cursor, std:
 Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid, const AuditEntry* audit) {
   Database& database = batch.database();
   const ReportRows report = find_report(database, report_uuid);
-  if (!report.row && report.damaged.empty())
+  if (!report.row && report.damaged.empty()) {
+    database.require_absent("attempt", "report_uuid", Parameter(report_uuid));
     return no_such_report(report_uuid);
+  }
   if (!report.row)
     return Error{ErrorCode::Storage, "path " + report_uuid.text() + ": its attempt is damaged"};
   AttemptRow attempt = select_attempt(database, *report.row);

@@ -8,7 +8,11 @@
 #include <set>
 #include <thread>
 
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
+#include "server/store/tables/robots.hpp"
 
 /// Damage in one place of a store, and what becomes of it and of everything else.
 namespace kinship::store::store_damage_test {
@@ -216,6 +220,74 @@ TEST_F(StoreDamage, AnIndexThatDoesNotFitItsRowsIsMadeAnewAtTheStart) {
   EXPECT_EQ(store_->status().attempts, 20U);
   store_.reset();
   EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+TEST_F(StoreDamage, AnIndexWhosePageIsOutOfShapeIsMadeAnewAtTheStart) {
+  const RobotRecord second = test::make_robot("second", 2);
+  static_cast<void>(store_->register_robot(second));
+  store_.reset();
+  // Where the second entry lies: then where nothing is.
+  flip(leaves_of("sqlite_autoindex_robot_1").at(0), 10, 2);
+  EXPECT_GT(check().problems, 0U);
+  std::string lines;
+  open({.log = [&](std::string_view line) { lines += line; }});
+  EXPECT_NE(lines.find("the indexes of table robot"), std::string::npos) << lines;
+  EXPECT_TRUE(store_->find_robot(robot_.digest) && store_->find_robot(second.digest));
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+// Anew they would forget them too.
+TEST_F(StoreDamage, IndexesThatKnowOfLostRowsAreKept) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 9; ++number)
+    attempts.push_back(attempt(number));
+  test::report(*store_, attempts);
+  store_.reset();
+  flip(leaves_of("attempt").at(0), 4, 1);  // how many rows it has: the last one is lost
+  std::string lines;
+  open({.log = [&](std::string_view line) { lines += line; }});
+  EXPECT_EQ(lines, "");
+  EXPECT_THROW(static_cast<void>(store_->find_attempt(attempts.back().report_uuid)), Failure);
+}
+
+TEST_F(StoreDamage, ALookUpByADamagedIndexDoesNotSayThatNothingIsThere) {
+  const RobotRecord second = test::make_robot("second", 2);
+  static_cast<void>(store_->register_robot(second));
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 20; ++number)
+    attempts.push_back(attempt(number));
+  test::report(*store_, attempts);
+  store_.reset();
+  DamagedRows damaged;
+  {
+    Database sound(file_, Access::ReadOnly);
+    EXPECT_EQ(find_attempt(sound, test::id_from<Uuid>(77), damaged).error().code,
+              ErrorCode::NotFound);
+    EXPECT_EQ(select_robot(sound, test::id_from<Digest>(77)), std::nullopt);
+  }
+  constexpr std::uint64_t kInFirstEntry = kPageSize - 4;  // the first one that was written
+  flip(leaves_of("attempt_by_uuid").at(0));
+  flip(leaves_of("sqlite_autoindex_robot_1").at(0), kInFirstEntry);
+  flip(leaves_of("sqlite_autoindex_task_1").at(0), kInFirstEntry);
+  Database database(file_, Access::ReadOnly);
+  int refused = 0;
+  const auto expect_found = [&](const auto& look_up) {
+    try {
+      EXPECT_TRUE(look_up());
+    } catch (const SqliteError& error) {
+      EXPECT_TRUE(error.is_damage());
+      ++refused;
+    }
+  };
+  for (const Attempt& each : attempts)
+    expect_found([&] { return find_attempt(database, each.report_uuid, damaged); });
+  EXPECT_EQ(refused, 1);
+  for (const Digest& robot : {robot_.digest, second.digest})
+    expect_found([&] { return select_robot(database, robot); });
+  EXPECT_EQ(refused, 2);
+  expect_found([&] { return totals_of(database, robot_.digest, "shelf").guided.attempts > 0; });
+  EXPECT_EQ(refused, 3);
 }
 
 TEST_F(StoreDamage, AnIndexEntryThatLeadsToAnotherDistributionGivesNone) {
