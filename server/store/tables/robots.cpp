@@ -98,7 +98,9 @@ std::int64_t upsert_row(Session& session, const RobotRecord& robot) {
   const auto id = session.find_integer(
       "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
       " registered_ms, crc32c, urdf) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)"
-      " ON CONFLICT (digest) DO UPDATE SET label = excluded.label, dof = excluded.dof,"
+      // The digest too: an index may lead to a row in which it is damaged.
+      " ON CONFLICT (digest) DO UPDATE SET digest = excluded.digest, label = excluded.label,"
+      " dof = excluded.dof,"
       " base_link = excluded.base_link, tip_link = excluded.tip_link,"
       " T_tip_transfer = excluded.T_tip_transfer, task_axes = excluded.task_axes,"
       " registered_ms = excluded.registered_ms, crc32c = excluded.crc32c, urdf = excluded.urdf" +

@@ -290,6 +290,30 @@ TEST_F(StoreDamage, ALookUpByADamagedIndexDoesNotSayThatNothingIsThere) {
   EXPECT_EQ(refused, 3);
 }
 
+TEST_F(StoreDamage, ADamagedDigestOfARobotIsNotTakenForItsOwn) {
+  test::report(*store_, {attempt(1)});
+  store_.reset();
+  const std::uint64_t page = leaves_of("robot").at(0);
+  std::ifstream stream(file_, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>((page - 1) * kPageSize));
+  std::string bytes(kPageSize, '\0');
+  stream.read(bytes.data(), std::ssize(bytes));
+  const std::size_t place =
+      bytes.find(std::string(robot_.digest.bytes.begin(), robot_.digest.bytes.end()));
+  ASSERT_NE(place, std::string::npos);
+  flip(page, place);
+  store_ = open_sqlite_store(file_);
+  EXPECT_THROW(static_cast<void>(store_->register_robot(robot_)), Failure);
+  EXPECT_EQ(store_->find_attempt(attempt(1).report_uuid)->robot, robot_.digest);
+  store_.reset();
+  static_cast<void>(repair_store(file_, [](double) {}));
+  open();
+  EXPECT_EQ(store_->find_attempt(attempt(1).report_uuid)->robot, robot_.digest);
+  EXPECT_EQ(paths().size(), 1U);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
 TEST_F(StoreDamage, AnIndexEntryThatLeadsToAnotherDistributionGivesNone) {
   const Distribution first = test::make_distribution(robot_.digest, "shelf", 1);
   const Distribution second = test::make_distribution(robot_.digest, "shelf", 2);
