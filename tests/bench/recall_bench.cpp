@@ -2,11 +2,11 @@
 // configurations, preparation, search. Beside it uniform planning, and the retreat, which needs no
 // experience; both by the same steps.
 //
-//   recall_bench STUDY [ROBOT...] [--set tuning|test] [--learning N] [--instances N] [--from ROBOT]
+//   recall_bench STUDY [ROBOT...] [--set tuning|test]
 //
 // own: the robot's own learning instances, solved uniformly. first day: the learning instances of
-// another robot (--from, else the next one of the study), of which it knows scene, and the hand at
-// start and goal. Where no path is free, the retreat plans.
+// another robot, the next one of the study, of which it knows scenes and the hand at the goal; it
+// begins where it usually begins. Where no path is free, the retreat plans.
 
 #include <algorithm>
 #include <iostream>
@@ -142,22 +142,6 @@ Uuid uuid_of(std::size_t index) {
   return uuid;
 }
 
-/// A record of another robot as a server knows it: with the hand where it was at the start.
-bool start_as_told(const Robot& robot, const Robot& recorder, const Problem& told,
-                   Problem& problem) {
-  const Eigen::Isometry3d T_task_recorder =
-      told.T_task_base.value_or(Eigen::Isometry3d::Identity());
-  const Eigen::Isometry3d T_task_start =
-      T_task_recorder * kinematics::T_base_transfer(recorder.planned.chain, told.start);
-  Item item(robot, problem, 0);
-  const auto found = planning::start_configuration(
-      robot.planned.chain, robot.planned.solver, item.T_task_base.inverse() * T_task_start,
-      Eigen::MatrixXd(robot.planned.chain.dof(), 0), item.is_free);
-  if (found.q)
-    problem.start = *found.q;
-  return found.q.has_value();
-}
-
 /// \param records  problems, of this robot or another one that solved them
 std::optional<RecallLibrary> make_library(const Robot& robot, const experiments::Study& study,
                                           const std::vector<Problem>& records, bool is_own) {
@@ -182,20 +166,27 @@ std::optional<RecallLibrary> make_library(const Robot& robot, const experiments:
   return maker.take();
 }
 
+/// Costs of planning each query uniformly, by the retreat, and with recall.
+struct Compared {
+  Costs uniform, retreat, recalled;
+  int hits = 0;
+  std::uint64_t tries = 0;
+  double hit_s = 0, expected = 0, made_s = 0;
+};
+
+void print_as(const std::string& name, const RecallLibrary& library, const Compared& compared);
+
 void compare(const Robot& robot, const experiments::Study& study, const std::string& name,
              const std::vector<Problem>& records, const std::vector<Problem>& tests, bool is_own) {
+  Compared compared;
   const double begin_s = thread_cpu_s();
   const auto library = make_library(robot, study, records, is_own);
-  const double made_s = thread_cpu_s() - begin_s;
+  compared.made_s = thread_cpu_s() - begin_s;
   if (!library) {
     std::cerr << name << ": no library\n";
     return;
   }
   const recall::RecallGuide guide(robot.planned.chain, *library);
-  Costs uniform, retreat, recalled;
-  int hits = 0;
-  std::uint64_t tries = 0;
-  double hit_s = 0, expected = 0;
   const Queries queries(robot, study);
   const Guide fallback = Guide::Retreat;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
@@ -207,23 +198,28 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
         const auto path = run();
         costs.add(static_cast<double>(item.world.checks() - before), thread_cpu_s() - from_s, path);
       };
-      timed(uniform,
+      timed(compared.uniform,
             [&] { return queries.search(item, Guide::None, problem.seed + seed).waypoints; });
-      timed(retreat,
+      timed(compared.retreat,
             [&] { return queries.search(item, Guide::Retreat, problem.seed + seed).waypoints; });
-      timed(recalled, [&] {
+      timed(compared.recalled, [&] {
         const double from_s = thread_cpu_s();
         auto summary = queries.recall(item, guide);
-        tries += summary.tries;
-        expected += summary.expected;
+        compared.tries += summary.tries;
+        compared.expected += summary.expected;
         if (summary.waypoints) {
-          ++hits;
-          hit_s += thread_cpu_s() - from_s;
+          ++compared.hits;
+          compared.hit_s += thread_cpu_s() - from_s;
           return std::move(summary.waypoints);
         }
         return queries.search(item, fallback, problem.seed + seed).waypoints;
       });
     }
+  print_as(name, *library, compared);
+}
+
+void print_as(const std::string& name, const RecallLibrary& library, const Compared& compared) {
+  const auto& [uniform, retreat, recalled, hits, tries, hit_s, expected, made_s] = compared;
   const auto ratio = [](const std::vector<double>& a, const std::vector<double>& b, double at) {
     return at < 0 ? Costs::mean(a) / Costs::mean(b) : percentile(a, at) / percentile(b, at);
   };
@@ -239,7 +235,7 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
       ratio(uniform.time_s, retreat.time_s, -1), 100.0 * hits / count, 100.0 * expected / count,
       1e3 * hit_s / std::max(hits, 1), static_cast<double>(tries) / count,
       Costs::mean(recalled.lengths), Costs::mean(uniform.lengths), recalled.solved, uniform.solved,
-      library->paths.size(), library->queries.size(), library->modes.size(), made_s);
+      library.paths.size(), library.queries.size(), library.modes.size(), made_s);
   print({.name = name,
          .value = 1e3 * Costs::mean(recalled.time_s),
          .unit = "ms",
@@ -247,71 +243,76 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
          .note = note});
 }
 
+/// The robots of a study.
+class Fleet {
+ public:
+  explicit Fleet(const experiments::Study& study) : study_(study) {
+    for (const experiments::StudyRobot& placed : study.robots) {
+      models::LoadedRobot loaded =
+          models::load_robot({.source = test::source_dir() + "/robots/models/" + placed.model})
+              .value_or_throw();
+      guided::PlannedRobot planned(loaded.chain, loaded.shapes);
+      auto draw = study.make_instances(loaded, placed);
+      robots_.push_back(
+          std::make_unique<Robot>(Robot{std::move(loaded), std::move(planned), std::move(draw)}));
+    }
+  }
+
+  /// Own experience, and that of the next robot, on a set of instances.
+  void compare_all(std::size_t robot, experiments::InstanceSet set) const {
+    const std::string name = study_.name + " " + study_.robots[robot].model;
+    const auto tests = draw(robot, set);
+    compare(*robots_[robot], study_, name + " own", draw(robot, experiments::InstanceSet::Learning),
+            tests, true);
+    const std::size_t other = (robot + 1) % robots_.size();
+    std::vector<Problem> told = draw(other, experiments::InstanceSet::Learning);
+    for (Problem& each : told)
+      each = as_told(each, *robots_[other], tests.front());
+    compare(*robots_[robot], study_, name + " first day", told, tests, false);
+  }
+
+ private:
+  std::vector<Problem> draw(std::size_t robot, experiments::InstanceSet which) const {
+    constexpr std::uint32_t kInstances = 50;
+    std::vector<Problem> problems;
+    for (std::uint32_t i = 0; i < kInstances; ++i)
+      problems.push_back(robots_[robot]->draw(experiments::seed_of(which, robot), i));
+    return problems;
+  }
+
+  /// A record of another robot as it is for one that stands and starts as in a problem of its own.
+  static Problem as_told(const Problem& record, const Robot& recorder, Problem own) {
+    own.scene = record.scene;
+    own.seed = record.seed;
+    own.T_task_goal = record.T_task_goal;
+    if (!own.T_task_goal)
+      own.T_task_goal =
+          record.T_task_base.value_or(Eigen::Isometry3d::Identity()) *
+          kinematics::T_base_transfer(recorder.planned.chain, record.goal_configurations.col(0));
+    own.goal_configurations.resize(0, 0);
+    return own;
+  }
+
+  const experiments::Study& study_;
+  std::vector<std::unique_ptr<Robot>> robots_;
+};
+
 }  // namespace
 }  // namespace kinship::bench
 
 int main(int argc, char** argv) {
   using namespace kinship;
-  using namespace kinship::bench;
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  std::string set = "tuning", from;
-  std::uint32_t learning = 50, instances = 50;
-  std::vector<std::string> names, studies;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--set")
-      set = words[++i];
-    else if (words[i] == "--learning")
-      learning = static_cast<std::uint32_t>(std::stoul(words[++i]));
-    else if (words[i] == "--instances")
-      instances = static_cast<std::uint32_t>(std::stoul(words[++i]));
-    else if (words[i] == "--from")
-      from = words[++i];
-    else
-      (studies.empty() ? studies : names).push_back(words[i]);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  auto set = experiments::InstanceSet::Tuning;
+  if (const auto at = std::ranges::find(words, "--set"); at != words.end()) {
+    set = experiments::parse_instance_set(at[1]);
+    words.erase(at, at + 2);
   }
-  for (const experiments::Study* study : experiments::find_studies(studies.front())) {
-    std::vector<std::unique_ptr<Robot>> robots;
-    for (const experiments::StudyRobot& placed : study->robots) {
-      models::LoadedRobot loaded =
-          models::load_robot(
-              {.source = test::source_dir() + "/robots/models" + ("/" + placed.model)})
-              .value_or_throw();
-      guided::PlannedRobot planned(loaded.chain, loaded.shapes);
-      auto draw = study->make_instances(loaded, placed);
-      robots.push_back(
-          std::make_unique<Robot>(Robot{std::move(loaded), std::move(planned), std::move(draw)}));
-    }
-    const auto draw = [&](std::size_t robot, experiments::InstanceSet which, std::size_t as,
-                          std::uint32_t count) {
-      std::vector<Problem> problems;
-      for (std::uint32_t i = 0; i < count; ++i)
-        problems.push_back(robots[as]->draw(experiments::seed_of(which, robot), i));
-      return problems;
-    };
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-      const std::string& model = study->robots[i].model;
-      if (!names.empty() && std::ranges::find(names, model) == names.end())
-        continue;
-      const auto tests = draw(i, experiments::parse_instance_set(set), i, instances);
-      compare(*robots[i], *study, study->name + " " + model + " own",
-              draw(i, experiments::InstanceSet::Learning, i, learning), tests, true);
-      const std::size_t other = (i + 1) % robots.size();
-      const auto told = draw(other, experiments::InstanceSet::Learning, other, learning);
-      std::vector<Problem> records;
-      for (const Problem& each : told) {
-        Problem record = tests.front();  // this robot where it stands
-        record.scene = each.scene;
-        record.T_task_goal = each.T_task_goal;
-        record.goal_configurations.resize(0, 0);
-        record.seed = each.seed;
-        if (!record.T_task_goal)
-          record.T_task_goal = each.T_task_base.value_or(Eigen::Isometry3d::Identity()) *
-                               kinematics::T_base_transfer(robots[other]->planned.chain,
-                                                           each.goal_configurations.col(0));
-        if (start_as_told(*robots[i], *robots[other], each, record))
-          records.push_back(std::move(record));
-      }
-      compare(*robots[i], *study, study->name + " " + model + " first day", records, tests, false);
-    }
+  for (const experiments::Study* study : experiments::find_studies(words.at(0))) {
+    const bench::Fleet fleet(*study);
+    for (std::size_t robot = 0; robot < study->robots.size(); ++robot)
+      if (words.size() == 1 || std::ranges::find(words.begin() + 1, words.end(),
+                                                 study->robots[robot].model) != words.end())
+        fleet.compare_all(robot, set);
   }
 }
