@@ -106,7 +106,7 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
   RecallSummary summary;
   Ranking ranking(guide, query, options.trust);
   const RecallLibrary& library = guide.library();
-  const double most = options.most_spent * library.search_checks;
+  const double most = options.trust * options.most_spent * library.search_checks;
   const double try_checks = std::max(library.try_checks, 1.0);
   double missed = 1;  // chance that no try works
   std::optional<Candidate> candidate = ranking.next(options.step);

@@ -12,7 +12,8 @@ namespace kinship::recall {
 
 struct RecallOptions {
   double step = 0.1;  ///< between checked configurations, joint units
-  /// Largest part of RecallLibrary::search_checks that tries may cost by RecallLibrary::try_checks.
+  /// Largest part of RecallLibrary::search_checks that tries may cost by RecallLibrary::try_checks,
+  /// times the trust.
   double most_spent = 0.3;
   std::uint64_t max_checks = 100'000;  ///< after which no other path is tried
   double trust = 1;                    ///< factor of every candidate's chance, 0 to 1

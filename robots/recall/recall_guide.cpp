@@ -299,7 +299,8 @@ std::optional<Candidate> Ranking::next(double step) {
   double best = 0;
   for (Group& group : groups_)
     for (Ranked& ranked : group.ranked) {
-      const double chance = ranked.chance, checks = guide_.length(ranked.candidate.path) / step;
+      const double chance = doubt_ * ranked.chance,
+                   checks = guide_.length(ranked.candidate.path) / step;
       const double failed = (1 - chance) * guide_.library_.try_checks;
       if (ranked.is_tried || chance * (kOfSearch * guide_.library_.search_checks - checks) < failed)
         continue;
@@ -307,6 +308,7 @@ std::optional<Candidate> Ranking::next(double step) {
       if (worth > best) {
         best = worth;
         last_ = &ranked;
+        last_chance_ = chance;
         of_last_ = &group;
       }
     }
@@ -315,6 +317,8 @@ std::optional<Candidate> Ranking::next(double step) {
 
 void Ranking::fail() {
   constexpr double kUnlike = 0.3;  // a query is less alike if what solved it does not work here
+  constexpr double kDoubt = 0.85;  // each failure says that this query is unlike those recorded
+  doubt_ *= kDoubt;
   last_->is_tried = true;
   const Candidate& candidate = last_->candidate;
   const std::uint8_t* const works = guide_.works(metric_, candidate.path, candidate.mode);

@@ -132,7 +132,7 @@ class Ranking {
   void fail();
 
   /// Of the candidate of next(): its chance to work, 0 to 1.
-  double chance() const noexcept { return last_->chance; }
+  double chance() const noexcept { return last_chance_; }
 
  private:
   struct Ranked {
@@ -156,6 +156,8 @@ class Ranking {
   std::vector<Group> groups_;
   Ranked* last_ = nullptr;  // that next() gave
   Group* of_last_ = nullptr;
+  double last_chance_ = 0;
+  double doubt_ = 1;  // factor of every chance
 };
 
 }  // namespace kinship::recall
