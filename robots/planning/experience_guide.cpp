@@ -103,20 +103,6 @@ class Lanes {
 constexpr double kRadian_m = 0.3;
 constexpr double kGoalAlone = 0.5;  // share of the path after which it moves with the goal alone
 
-/// Between two poses: a at 0, b at 1.
-Eigen::Isometry3d blended(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double weight) {
-  const Eigen::Quaterniond from(a.linear());
-  Eigen::Quaterniond to(b.linear());
-  if (from.dot(to) < 0)
-    to.coeffs() *= -1;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::Quaterniond((1 - weight) * from.coeffs() + weight * to.coeffs())
-                      .normalized()
-                      .toRotationMatrix();
-  pose.translation() = (1 - weight) * a.translation() + weight * b.translation();
-  return pose;
-}
-
 /// The configurations of a track that lie within bounds, turning joints moved by full turns.
 void keep_within(const Eigen::Matrix2Xd& bounds, const std::vector<bool>& turning, Track& track) {
   Eigen::Index kept = 0;
@@ -144,6 +130,23 @@ double pose_distance_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   const double cosine = ((a.linear().transpose() * b.linear()).trace() - 1) / 2;
   return (a.translation() - b.translation()).norm() +
          kRadian_m * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+Eigen::Isometry3d blended(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double weight) {
+  if (weight <= 0)
+    return a;
+  if (weight >= 1)
+    return b;
+  const Eigen::Quaterniond from(a.linear());
+  Eigen::Quaterniond to(b.linear());
+  if (from.dot(to) < 0)
+    to.coeffs() *= -1;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::Quaterniond((1 - weight) * from.coeffs() + weight * to.coeffs())
+                      .normalized()
+                      .toRotationMatrix();
+  pose.translation() = (1 - weight) * a.translation() + weight * b.translation();
+  return pose;
 }
 
 PosePath retreat(double distance_m) {

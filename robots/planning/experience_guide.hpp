@@ -48,6 +48,10 @@ double pose_distance_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 std::vector<std::size_t> nearest_paths(const std::vector<PosePath>& paths, const PoseQuery& query,
                                        std::size_t count);
 
+/// Between two poses, a at a weight of 0, b at 1, these themselves beyond. Rotations by normalised
+/// linear interpolation.
+Eigen::Isometry3d blended(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double weight);
+
 /// The path moved onto the query: its start to the query's start, its goal to the query's goal. The
 /// first half blends from one motion to the other, the second half is moved with the goal alone, as
 /// the way around a goal is mostly narrower than that around a start. Rotations by normalised

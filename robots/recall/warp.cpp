@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/experience_guide.hpp"
 #include "robots/planning/planning_bounds.hpp"
 
 namespace kinship::recall {
@@ -14,24 +15,6 @@ constexpr int kSteps = 2;              // of inverse kinematics, per waypoint
 constexpr double kGoalZone = 0.15;     // last part of a path, where the hand moves with the goal
 constexpr double kUnrelatedStart = 1;  // joint units: the hand's way from there tells nothing
 constexpr double kSameStart = 1e-9;    // joint units
-
-/// Between two poses: a at 0, b at 1. Rotations by normalised linear interpolation.
-Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double weight) {
-  if (weight <= 0)
-    return a;
-  if (weight >= 1)
-    return b;
-  const Eigen::Quaterniond from(a.linear());
-  Eigen::Quaterniond to(b.linear());
-  if (from.dot(to) < 0)
-    to.coeffs() *= -1;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::Quaterniond((1 - weight) * from.coeffs() + weight * to.coeffs())
-                      .normalized()
-                      .toRotationMatrix();
-  pose.translation() = (1 - weight) * a.translation() + weight * b.translation();
-  return pose;
-}
 
 /// The first joint whose axis is vertical in the base link at any configuration of those before,
 /// all of which slide.
@@ -101,8 +84,9 @@ std::optional<Eigen::Isometry3d> Warp::move(Eigen::Index waypoint) {
   const Eigen::Isometry3d& hand = path_.T_base_transfer[static_cast<std::size_t>(waypoint)];
   Eigen::Isometry3d there = T_goal_ * hand;
   if (T_new_old_)
-    there = between(*T_new_old_ * hand, there, std::clamp(1 - (1 - at) / kGoalZone, 0.0, 1.0));
-  return over < 1 ? between(T_start_ * hand, there, over) : there;
+    there = planning::blended(*T_new_old_ * hand, there,
+                              std::clamp(1 - (1 - at) / kGoalZone, 0.0, 1.0));
+  return over < 1 ? planning::blended(T_start_ * hand, there, over) : there;
 }
 
 void Warp::compute(Eigen::Index stride, Eigen::Index except) {
