@@ -23,9 +23,10 @@
 namespace kinship::recall {
 namespace {
 
-constexpr std::size_t kProbed = 16;     // queries by which modes are chosen
-constexpr double kWorthKeeping = 0.6;   // of the best mode's success
-constexpr double kUsualTryChecks = 40;  // where none was measured
+constexpr std::size_t kProbed = 16;      // queries by which modes are chosen
+constexpr std::size_t kTriedPaths = 96;  // on a query; clients rank 64
+constexpr double kWorthKeeping = 0.6;    // of the best mode's success
+constexpr double kUsualTryChecks = 40;   // where none was measured
 constexpr std::size_t kMostModes = 4;
 constexpr std::uint64_t kPlans = 3;   // uniform ones of a query, of which the shortest is kept
 constexpr double kAnotherGoal = 0.1;  // joint units, from the goal reached
@@ -281,7 +282,7 @@ void LibraryMaker::probe(std::size_t query) {
   const Query wanted = query_of(query, true);
   for (std::size_t path = 0; path < library_.paths.size(); ++path)
     for (std::size_t mode = 0; mode < library_.modes.size(); ++mode)
-      if (library_.paths[path].query != query && works(world.is_free, wanted, {path, mode, -1}))
+      if (!guide_->answers(path, query) && works(world.is_free, wanted, {path, mode, -1}))
         ++worked_[mode];
 }
 
@@ -303,20 +304,19 @@ void LibraryMaker::begin_tries() {
   guide_.emplace(chain_, library_);
 }
 
-/// Fills the rows of one query.
+/// Fills the rows of one query: with the paths near enough to be tried on queries like it.
 void LibraryMaker::try_all(std::size_t query) {
   World world(*this, queries_[posed_of_[query]].surroundings);
-  const Query to_goal = query_of(query, false), to_pose = query_of(query, true);
-  for (std::size_t path = 0; path < library_.paths.size(); ++path)
-    for (std::size_t mode = 0; mode < library_.modes.size(); ++mode) {
-      if (library_.paths[path].query == query)
-        continue;
-      const std::size_t bit = library_.bit(query, path, mode);
-      if (works(world.is_free, to_goal, {path, mode, 0}))
-        set_bit(library_.solves, bit);
-      if (works(world.is_free, to_pose, {path, mode, -1}))
-        set_bit(library_.reaches, bit);
-    }
+  const auto fill = [&](RecallGuide::Metric metric, std::vector<std::uint8_t>& bits) {
+    const bool is_pose = metric == RecallGuide::Metric::Poses;
+    const Query wanted = query_of(query, is_pose);
+    for (const std::size_t path : guide_->nearest_paths(metric, query, kTriedPaths))
+      for (std::size_t mode = 0; mode < library_.modes.size(); ++mode)
+        if (works(world.is_free, wanted, {path, mode, is_pose ? -1 : 0}))
+          set_bit(bits, library_.bit(query, path, mode));
+  };
+  fill(RecallGuide::Metric::Configurations, library_.solves);
+  fill(RecallGuide::Metric::Poses, library_.reaches);
 }
 
 /// Queries that a path solves in any mode.

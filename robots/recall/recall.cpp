@@ -48,11 +48,14 @@ bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free
   constexpr std::size_t kStride = 8;
   if (is_free.proves_edges()) {
     double least_m = std::numeric_limits<double>::infinity();
-    for (const auto& line :
-         is_free.edges(path.leftCols(path.cols() - 1), path.rightCols(path.cols() - 1))) {
-      if (!line)
-        return false;
-      least_m = std::min(least_m, *line);
+    for (Eigen::Index at = 0; at + 1 < path.cols(); at += planning::kTogether) {
+      const Eigen::Index lines = std::min<Eigen::Index>(planning::kTogether, path.cols() - 1 - at);
+      for (const auto& line :
+           is_free.edges(path.middleCols(at, lines), path.middleCols(at + 1, lines))) {
+        if (!line)
+          return false;
+        least_m = std::min(least_m, *line);
+      }
     }
     summary.least_clearance_m = least_m;
     summary.waypoints = path;

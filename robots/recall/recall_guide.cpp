@@ -130,7 +130,7 @@ void RecallGuide::learn(Metric metric) {
   for (std::size_t query = 0; query < ends_.size(); ++query) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t path = 0; path < paths_.size(); ++path) {
-      if (library_.paths[path].query == query)
+      if (answers(path, query))
         continue;
       pairs.push_back({distances(metric, path_ends_[path], ends_[query]).together(), query, path});
       least = std::min(least, pairs.back().distance);
@@ -158,6 +158,20 @@ void RecallGuide::learn(Metric metric) {
       learned.worked[mode].push_back(worked / static_cast<double>(last - first + 1));
     }
   }
+}
+
+std::vector<std::size_t> RecallGuide::nearest_paths(Metric metric, std::size_t query,
+                                                    std::size_t count) const {
+  std::vector<std::pair<double, std::size_t>> found;
+  for (std::size_t path = 0; path < paths_.size(); ++path)
+    if (!answers(path, query))
+      found.emplace_back(distances(metric, path_ends_[path], ends_[query]).together(), path);
+  count = std::min(count, found.size());
+  std::ranges::nth_element(found, found.begin() + static_cast<std::ptrdiff_t>(count));
+  std::vector<std::size_t> nearest;
+  for (std::size_t i = 0; i < count; ++i)
+    nearest.push_back(found[i].second);
+  return nearest;
 }
 
 double RecallGuide::chance_at(Metric metric, std::size_t mode, double distance) const {
@@ -283,9 +297,8 @@ void Ranking::rank(Group& group) const {
     double weights = 1;
     const std::uint8_t* const works =
         guide_.works(metric_, ranked.candidate.path, ranked.candidate.mode);
-    const std::size_t own = library.paths[ranked.candidate.path].query;
     for (const auto& [query, weight] : group.alike)
-      if (query != own) {
+      if (!guide_.answers(ranked.candidate.path, query)) {
         weights += weight;
         worked += works[query] * weight;
       }

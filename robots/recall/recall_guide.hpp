@@ -62,11 +62,19 @@ class RecallGuide {
   /// Length of a path, joint units.
   double length(std::size_t path) const { return lengths_[path]; }
 
- private:
-  friend class Ranking;
-
   /// What distances of queries are measured by: a query's goals are configurations, or a pose.
   enum class Metric { Configurations, Poses };
+
+  /// The paths of other reports nearest to a query of the library, at most `count`, in no order.
+  std::vector<std::size_t> nearest_paths(Metric metric, std::size_t query, std::size_t count) const;
+
+  /// Whether a path answers a query of the library: it judges nothing there.
+  bool answers(std::size_t path, std::size_t query) const {
+    return library_.queries[library_.paths[path].query].report == library_.queries[query].report;
+  }
+
+ private:
+  friend class Ranking;
 
   /// Start and goal, as distances see them.
   struct Ends {

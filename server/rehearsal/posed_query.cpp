@@ -1,7 +1,10 @@
 #include "server/rehearsal/posed_query.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "proto/types/split_mix.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/planning_bounds.hpp"
 #include "server/transfer/scene_filter.hpp"
@@ -9,30 +12,78 @@
 namespace kinship::rehearsal {
 namespace {
 
-/// Of the configurations with the hand at the recorded start.
-std::optional<Eigen::VectorXd> find_start(const runtime::Robot& robot,
-                                          const Eigen::Isometry3d& T_base_start,
-                                          const planning::IsFree& is_free) {
-  const Eigen::VectorXd middle = (robot.chain.lower() + robot.chain.upper()) / 2;
-  const planning::GoalConfigurations found = planning::goal_configurations(
-      robot.chain, T_base_start, planning::planning_bounds(robot.chain, middle), is_free);
-  if (found.configurations.cols() == 0)
-    return std::nullopt;
-  Eigen::Index nearest = 0;
-  (found.configurations.colwise() - middle).colwise().norm().minCoeff(&nearest);
-  return found.configurations.col(nearest);
-}
-
 bool is_start(const kinematics::Chain& chain, const Eigen::VectorXd& q) {
   return q.size() == chain.dof() && q.allFinite() && chain.within_limits(q);
 }
 
+/// Of the configurations with the hand at the recorded start.
+/// \param drawn  chooses one; nothing: Branch::Usual
+std::optional<Eigen::VectorXd> find_start(const kinematics::Chain& chain,
+                                          const Eigen::Isometry3d& T_base_start,
+                                          const planning::IsFree& is_free,
+                                          const Eigen::VectorXd& usual,
+                                          std::optional<std::uint64_t> drawn) {
+  const Eigen::VectorXd near =
+      is_start(chain, usual) ? usual : Eigen::VectorXd((chain.lower() + chain.upper()) / 2);
+  const Eigen::MatrixXd found =
+      planning::goal_configurations(chain, T_base_start, planning::planning_bounds(chain, near),
+                                    is_free)
+          .configurations;
+  if (found.cols() == 0)
+    return std::nullopt;
+  Eigen::Index chosen = 0;
+  if (drawn)
+    chosen = static_cast<Eigen::Index>(*drawn % static_cast<std::uint64_t>(found.cols()));
+  else
+    (found.colwise() - near).colwise().norm().minCoeff(&chosen);
+  return found.col(chosen);
+}
+
+std::uint64_t drawn_for(const Uuid& path) {
+  std::uint64_t state = 0;
+  for (const std::uint8_t byte : path.bytes)
+    state = split_mixed(state + kSplitMixStep + byte);
+  return state;
+}
+
 }  // namespace
+
+Starts find_starts(const kinematics::Chain& chain, const Eigen::Isometry3d& T_task_base,
+                   const std::vector<RecordedQuery>& recorded, const Eigen::VectorXd& usual) {
+  constexpr double kSamePlace_m = 0.02;
+  constexpr std::size_t kOneIn = 4;  // starts are at places of their own, if they spread
+  std::vector<Eigen::Isometry3d> places;
+  std::size_t count = 0;
+  const auto distance = [](const Eigen::Isometry3d& a) {
+    return [&a](const Eigen::Isometry3d& b) { return planning::pose_distance_m(a, b); };
+  };
+  for (const RecordedQuery& query : recorded) {
+    if (query.own)
+      continue;
+    ++count;
+    if (std::ranges::none_of(places, [&](const Eigen::Isometry3d& place) {
+          return distance(query.T_task_start)(place) < kSamePlace_m;
+        }))
+      places.push_back(query.T_task_start);
+  }
+  Starts starts{usual, kOneIn * places.size() >= count && places.size() > 1};
+  if (!starts.are_recorded || !is_start(chain, usual))
+    return starts;
+  std::vector<double> spread;  // of the places, from the first one
+  for (const Eigen::Isometry3d& place : places)
+    spread.push_back(distance(places.front())(place));
+  std::ranges::nth_element(spread, spread.begin() + std::ssize(spread) / 2);
+  const Eigen::Isometry3d T_task_usual = T_task_base * kinematics::T_base_transfer(chain, usual);
+  starts.are_recorded = std::ranges::any_of(places, [&](const Eigen::Isometry3d& place) {
+    return distance(T_task_usual)(place) <= spread[spread.size() / 2];
+  });
+  return starts;
+}
 
 std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
                                      const Eigen::Isometry3d& T_task_base_today,
-                                     const RecordedQuery& recorded,
-                                     const Eigen::VectorXd& usual_start) {
+                                     const RecordedQuery& recorded, const Starts& starts,
+                                     Branch branch) {
   PosedQuery posed;
   const Eigen::Isometry3d T_task_base =
       recorded.own ? recorded.own->T_task_base : T_task_base_today;
@@ -47,9 +98,11 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
   const planning::IsFree is_free = planning::free_in(*posed.world);
   const std::optional<Eigen::VectorXd> start =
       recorded.own ? std::optional<Eigen::VectorXd>(recorded.own->waypoints.col(0))
-      : is_start(robot.chain, usual_start) && is_free(usual_start)
-          ? std::optional<Eigen::VectorXd>(usual_start)
-          : find_start(robot, T_base_task * recorded.T_task_start, is_free);
+      : !starts.are_recorded && is_start(robot.chain, starts.usual) && is_free(starts.usual)
+          ? std::optional<Eigen::VectorXd>(starts.usual)
+          : find_start(
+                robot.chain, T_base_task * recorded.T_task_start, is_free, starts.usual,
+                branch == Branch::Drawn ? std::optional(drawn_for(recorded.path)) : std::nullopt);
   if (!start || !is_free(*start))
     return std::nullopt;
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, *start);

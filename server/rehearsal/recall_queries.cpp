@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "robots/planning/path_vertices.hpp"
-#include "server/rehearsal/posed_query.hpp"
 
 namespace kinship::rehearsal {
 
@@ -26,14 +25,12 @@ bool is_usable(const Eigen::MatrixXd& path, const Eigen::Matrix2Xd& bounds) {
 std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                                                const Eigen::Isometry3d& T_task_base,
                                                const std::vector<RecordedQuery>& recorded,
-                                               const Eigen::VectorXd& usual_start) {
+                                               const Starts& starts) {
   std::vector<recall::PosedQuery> queries;
-  for (const RecordedQuery& query : recorded) {
-    if (!query.scene || query.scene->constraint)
-      continue;
-    std::optional<PosedQuery> posed = pose_query(robot, T_task_base, query, usual_start);
+  const auto add = [&](const RecordedQuery& query, Branch branch) {
+    std::optional<PosedQuery> posed = pose_query(robot, T_task_base, query, starts, branch);
     if (!posed)
-      continue;
+      return;
     recall::PosedQuery wanted{query.path,
                               std::nullopt,
                               std::move(posed->surroundings),
@@ -42,10 +39,18 @@ std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                               std::move(posed->query.goals)};
     if (query.own) {
       if (!is_usable(query.own->waypoints, wanted.bounds))
-        continue;
+        return;
       wanted.solution = query.own->waypoints;
     }
     queries.push_back(std::move(wanted));
+  };
+  const bool are_twice = starts.are_recorded && 2 * recorded.size() <= kMaxRecallQueries;
+  for (const RecordedQuery& query : recorded) {
+    if (!query.scene || query.scene->constraint)
+      continue;
+    add(query, Branch::Drawn);
+    if (are_twice && !query.own)
+      add(query, Branch::Usual);
   }
   return queries;
 }

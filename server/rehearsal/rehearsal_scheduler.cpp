@@ -270,9 +270,10 @@ Result<Subject> RehearsalScheduler::subject_of(const RehearsalKey& key) {
                                               subject.robot->label +
                                               "': " + subject.robot->geometry};
   subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
-  subject.start = key.start;
   subject.recorded =
       read_queries(parts_.store, parts_.robots, key.distribution, options_.max_queries, stop);
+  subject.starts =
+      find_starts(subject.robot->chain, subject.T_task_base, subject.recorded.queries, key.start);
   std::promise<catalog::SharedChoice> chosen;
   parts_.experience.ask(
       {key.distribution.task, key.distribution.sources, key.distribution.since_ms,
@@ -349,7 +350,7 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
   options.before = [stop = stop_source_.get_token()] { throw_if_stopped(stop); };
   recall::LibraryMaker maker(
       subject.robot->chain, {subject.robot->chain, subject.robot->shapes},
-      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries, subject.start),
+      recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries, subject.starts),
       options);
   double rested_s = planning::thread_time_s();
   while (maker.step()) {

@@ -70,8 +70,9 @@ Rehearsing::Rehearsing(Subject subject, const RehearsalOptions& options)
 bool Rehearsing::step() {
   if (is_done())
     return false;
-  std::optional<PosedQuery> posed = pose_query(*subject_.robot, subject_.T_task_base,
-                                               subject_.recorded.queries[next_], subject_.start);
+  std::optional<PosedQuery> posed =
+      pose_query(*subject_.robot, subject_.T_task_base, subject_.recorded.queries[next_],
+                 subject_.starts, Branch::Drawn);
   is_usable_[next_] = posed.has_value();
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
   const std::optional<Cost> recalled = posed ? recall(*posed) : std::nullopt;

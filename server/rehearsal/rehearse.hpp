@@ -28,7 +28,7 @@ std::size_t half_of(const Uuid& path);
 struct Subject {
   std::shared_ptr<const runtime::Robot> robot;
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
-  Eigen::VectorXd start = {};  ///< usual one of the robot; empty: not known
+  Starts starts = {};
   RecordedQueries recorded;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< not null
   std::shared_ptr<const recall::RecallGuide> recall;            ///< null: there is none
