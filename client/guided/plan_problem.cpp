@@ -67,7 +67,7 @@ std::string with_detail(const std::string& text, const std::string& detail) {
   return detail.empty() ? text : text + ": " + detail;
 }
 
-/// Empty for a query that is to be guided.
+/// Empty for a query that is guided.
 std::string why_unguided(const QueryGuidance& query) {
   if (query.guidance == nullptr)
     return query.why_not;
@@ -192,7 +192,7 @@ class Planning {
     planned.result.not_planned = not_planned_by(summary.reason);
     planned.result.solved = summary.waypoints.has_value();
     planned.result.collision_checks += summary.collision_checks;
-    planned.result.projections = summary.projections;
+    planned.result.projections += summary.projections;
     planned.result.planning_time_s += planning::thread_time_s() - begin_s - shortening_s_;
     planned.result.tracks_followed = summary.tracks_followed;
     planned.result.found_by = summary.found_by;
@@ -204,7 +204,7 @@ class Planning {
   bool recall(const QueryGuidance& from, const Eigen::MatrixXd& goals, PlannedProblem& planned) {
     const Guidance& guidance = *from.guidance;
     ProblemResult& result = planned.result;
-    if (!guidance.recall || !has_recall(guidance.guide) || constraint_ ||
+    if (!guidance.recall || !has_recall(guidance.guide) ||
         result.sampling_mode != SamplingMode::Guided)
       return false;
     const double begin_s = planning::thread_time_s();
@@ -213,6 +213,7 @@ class Planning {
       query.T_base_goal = T_task_base_.inverse() * *problem_.T_task_goal;
     query.T_task_anchors =
         recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
+    query.constraint = constraint_ ? &*constraint_ : nullptr;
     recall::RecallOptions options{.step = settings_.resolution, .max_checks = settings_.max_checks};
     options.trust = from.recall_trust;
     recall::RecallSummary summary = recall::recall(*guidance.recall, query, is_free_, options);
@@ -220,6 +221,7 @@ class Planning {
     result.guide = guidance.guide;
     result.collision_checks = summary.collision_checks;
     result.recall_tries = summary.tries;
+    result.projections = constraint_ ? constraint_->projections() : 0;
     result.planning_time_s = planning::thread_time_s() - begin_s;
     if (!summary.waypoints)
       return false;

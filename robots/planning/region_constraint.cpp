@@ -243,6 +243,26 @@ bool ConstrainedStepper::advance(const Eigen::VectorXd& q, const Eigen::VectorXd
   return false;
 }
 
+std::optional<Eigen::MatrixXd> ConstrainedStepper::way_through(const Eigen::MatrixXd& waypoints) {
+  std::vector<Eigen::MatrixXd> pieces;
+  Eigen::Index count = 1;
+  for (Eigen::Index i = 1; i < waypoints.cols(); ++i) {
+    auto piece = way(waypoints.col(i - 1), waypoints.col(i));
+    if (!piece)
+      return std::nullopt;
+    count += piece->cols() - 1;
+    pieces.push_back(*std::move(piece));
+  }
+  Eigen::MatrixXd whole(waypoints.rows(), count);
+  whole.col(0) = waypoints.col(0);
+  Eigen::Index at = 1;
+  for (const Eigen::MatrixXd& piece : pieces) {
+    whole.middleCols(at, piece.cols() - 1) = piece.rightCols(piece.cols() - 1);
+    at += piece.cols() - 1;
+  }
+  return whole;
+}
+
 std::optional<Eigen::MatrixXd> ConstrainedStepper::way(const Eigen::VectorXd& from,
                                                        const Eigen::VectorXd& to) {
   std::vector<Eigen::VectorXd> passed = {from};

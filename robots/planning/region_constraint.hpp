@@ -117,6 +117,10 @@ class ConstrainedStepper {
   /// \return dof x n, n >= 1; empty if the way gets stuck.
   std::optional<Eigen::MatrixXd> way(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
 
+  /// All configurations along waypoints, dof x n, n >= 2, each of which holds the constraint.
+  /// \return as way().
+  std::optional<Eigen::MatrixXd> way_through(const Eigen::MatrixXd& waypoints);
+
   /// Whether two configurations that hold the constraint are one step apart.
   bool joins(const Eigen::VectorXd& q, const Eigen::VectorXd& other);
 

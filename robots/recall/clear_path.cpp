@@ -38,7 +38,8 @@ std::optional<Eigen::MatrixXd> clear_path(const Eigen::MatrixXd& path,
                                           const Eigen::Matrix2Xd& bounds,
                                           const ClearPathOptions& options,
                                           std::mt19937_64& generator) {
-  const Eigen::MatrixXd dense = planning::densified(path, options.step);
+  const Eigen::MatrixXd dense =
+      options.constraint != nullptr ? path : planning::densified(path, options.step);
   Eigen::Index first = 0, last = dense.cols() - 1;
   while (first < dense.cols() && !is_clear(dense.col(first)))
     ++first;
@@ -51,15 +52,22 @@ std::optional<Eigen::MatrixXd> clear_path(const Eigen::MatrixXd& path,
   plan.step = options.step;
   plan.max_checks = options.plan_checks;
   plan.time_limit = kNoTimeLimit;
+  const planning::ConfigurationSampler sampler(bounds);
+  const planning::ShortcutOptions polish{options.step, options.polish_checks};
   const planning::PlanSummary found =
-      planning::plan_birrt(dense.col(first), dense.col(last), is_clear,
-                           planning::ConfigurationSampler(bounds), plan, generator);
+      options.constraint != nullptr
+          ? planning::plan_cbirrt2(dense.col(first), dense.col(last),
+                                   {is_clear, *options.constraint}, sampler, plan, generator)
+          : planning::plan_birrt(dense.col(first), dense.col(last), is_clear, sampler, plan,
+                                 generator);
   if (!found.waypoints)
     return std::nullopt;
   const Eigen::MatrixXd middle =
-      planning::shortcut(*found.waypoints, is_clear, {options.step, options.polish_checks},
-                         generator)
-          .waypoints;
+      options.constraint != nullptr
+          ? planning::shortcut_constrained(*found.waypoints, is_clear, *options.constraint, polish,
+                                           generator)
+                .waypoints
+          : planning::shortcut(*found.waypoints, is_clear, polish, generator).waypoints;
   const Eigen::Index behind = dense.cols() - 1 - last;
   Eigen::MatrixXd clear(dense.rows(), first + middle.cols() + behind);
   clear << dense.leftCols(first), middle, dense.rightCols(behind);

@@ -69,12 +69,20 @@ std::uint64_t revision_of(const RecallLibrary& library) {
 
 /// A query's obstacles, and what is free among them.
 struct LibraryMaker::World {
-  World(const LibraryMaker& maker, const collision::Surroundings& surroundings)
-      : world(maker.solids_, surroundings),
-        is_free(planning::free_in(world, maker.options_.before)) {}
+  World(const LibraryMaker& maker, const PosedQuery& posed, double larger_by_m = 0)
+      : world(maker.solids_, enlarged(posed.surroundings, larger_by_m)),
+        is_free(planning::free_in(world, maker.options_.before)) {
+    if (posed.constraint)
+      constraint.emplace(maker.chain_, *posed.constraint, posed.surroundings.T_task_base,
+                         posed.bounds);
+  }
+
+  /// Null: none.
+  planning::RegionConstraint* constraint_or_null() { return constraint ? &*constraint : nullptr; }
 
   collision::CollisionWorld world;
   planning::IsFree is_free;
+  std::optional<planning::RegionConstraint> constraint;
 };
 
 LibraryMaker::LibraryMaker(const kinematics::Chain& chain, const collision::RobotSolids& solids,
@@ -134,7 +142,7 @@ bool LibraryMaker::step() {
   return true;
 }
 
-planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, const planning::IsFree& is_free,
+planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, World& world,
                                          const Eigen::MatrixXd& goals, Guide guide,
                                          std::uint64_t seed) const {
   planning::BirrtOptions options;
@@ -144,24 +152,39 @@ planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, const planning
   std::mt19937_64 generator(seed);
   const planning::TrackQuery query{posed.surroundings.T_task_base, posed.bounds, posed.start,
                                    goals};
-  return planning::plan_birrt(
-      posed.start, goals, is_free,
-      planning::guided_sampler(chain_, query, nullptr, no_experience_, {.guide = guide}).sampler,
-      options, generator);
+  const auto sampler =
+      planning::guided_sampler(chain_, query, nullptr, no_experience_, {.guide = guide}).sampler;
+  return world.constraint
+             ? planning::plan_cbirrt2(posed.start, goals, {world.is_free, *world.constraint},
+                                      sampler, options, generator)
+             : planning::plan_birrt(posed.start, goals, world.is_free, sampler, options, generator);
+}
+
+/// A recorded answer at the steps of a plan; nothing if it does not keep the constraint.
+std::optional<Eigen::MatrixXd> LibraryMaker::as_planned(const Eigen::MatrixXd& answer,
+                                                        World& world) const {
+  if (!world.constraint)
+    return answer;
+  for (const auto& q : answer.colwise())
+    if (!world.constraint->holds(q))
+      return std::nullopt;
+  return planning::ConstrainedStepper(options_.step, *world.constraint).way_through(answer);
 }
 
 /// The shortest answer once each is shortened a little: a way around is long however it is
 /// polished.
 Eigen::MatrixXd LibraryMaker::shortest(const std::vector<Eigen::MatrixXd>& answers,
-                                       const planning::IsFree& is_free) const {
-  constexpr std::uint64_t kChecks = 500;
+                                       World& world) const {
+  const planning::ShortcutOptions options{options_.step, 500};
   Eigen::MatrixXd best;
   double least = std::numeric_limits<double>::infinity();
   for (const Eigen::MatrixXd& answer : answers) {
     std::mt19937_64 generator(answers.size());
-    Eigen::MatrixXd shorter = planning::shortcut(planning::densified(answer, options_.step),
-                                                 is_free, {options_.step, kChecks}, generator)
-                                  .waypoints;
+    Eigen::MatrixXd shorter =
+        world.constraint ? planning::shortcut_constrained(answer, world.is_free, *world.constraint,
+                                                          options, generator)
+                               .waypoints
+                         : planning::shortcut(answer, world.is_free, options, generator).waypoints;
     const double length = planning::path_length(shorter);
     if (length < least) {
       least = length;
@@ -174,11 +197,10 @@ Eigen::MatrixXd LibraryMaker::shortest(const std::vector<Eigen::MatrixXd>& answe
 /// Solves a query and keeps its paths with clearance.
 void LibraryMaker::solve(std::size_t query) {
   const PosedQuery& posed = queries_[query];
-  World world(*this, posed.surroundings);
+  World world(*this, posed);
   const std::uint64_t seed = split_mixed((query + 1) * kSplitMixStep);
-  const planning::PlanSummary found = plan(posed, world.is_free, posed.goals, Guide::None, seed);
-  const planning::PlanSummary backed =
-      plan(posed, world.is_free, posed.goals, Guide::Retreat, seed);
+  const planning::PlanSummary found = plan(posed, world, posed.goals, Guide::None, seed);
+  const planning::PlanSummary backed = plan(posed, world, posed.goals, Guide::Retreat, seed);
   planned_s_ += found.planning_time_s;
   uniform_checks_ += static_cast<double>(found.collision_checks);
   retreat_checks_ += static_cast<double>(backed.collision_checks);
@@ -186,17 +208,17 @@ void LibraryMaker::solve(std::size_t query) {
   const Eigen::MatrixXd goals =
       posed.solution ? Eigen::MatrixXd(posed.solution->rightCols<1>()) : posed.goals;
   std::vector<Eigen::MatrixXd> answers;
-  if (posed.solution)
-    answers.push_back(*posed.solution);
+  if (auto own = posed.solution ? as_planned(*posed.solution, world) : std::nullopt)
+    answers.push_back(*std::move(own));
   for (const planning::PlanSummary* each : {&found, &backed})
     if (!posed.solution && each->waypoints)
       answers.push_back(*each->waypoints);
   for (std::uint64_t again = 1; again < kPlans; ++again)
-    if (auto other = plan(posed, world.is_free, goals, Guide::None, seed + again); other.waypoints)
+    if (auto other = plan(posed, world, goals, Guide::None, seed + again); other.waypoints)
       answers.push_back(*std::move(other.waypoints));
   if (answers.empty())
     return;
-  const Eigen::MatrixXd raw = shortest(answers, world.is_free);
+  const Eigen::MatrixXd raw = shortest(answers, world);
   RecallQuery solved;
   solved.report = posed.report;
   solved.is_synthetic = !posed.solution.has_value();
@@ -218,16 +240,18 @@ void LibraryMaker::solve(std::size_t query) {
   others.resize(std::min(others.size(), branches_));
   for (const Eigen::Index other : others)
     if (const planning::PlanSummary branch =
-            plan(posed, world.is_free, posed.goals.col(other), Guide::Retreat, seed);
+            plan(posed, world, posed.goals.col(other), Guide::Retreat, seed);
         branch.waypoints)
       add_clear_paths(posed, *branch.waypoints, {options_.clearances_m.data(), 1});
 }
 
 void LibraryMaker::add_clear_paths(const PosedQuery& posed, const Eigen::MatrixXd& raw,
                                    std::span<const double> clearances_m) {
-  const ClearPathOptions options{.step = options_.step, .plan_checks = options_.max_checks};
   for (const double clearance_m : clearances_m) {
-    World larger(*this, enlarged(posed.surroundings, clearance_m));
+    World larger(*this, posed, clearance_m);
+    const ClearPathOptions options{.step = options_.step,
+                                   .plan_checks = options_.max_checks,
+                                   .constraint = larger.constraint_or_null()};
     std::mt19937_64 generator(library_.paths.size());
     if (const auto clear = clear_path(raw, larger.is_free, posed.bounds, options, generator))
       library_.paths.push_back(
@@ -251,7 +275,7 @@ void LibraryMaker::begin_probe() {
   guide_.emplace(chain_, library_);
 }
 
-Query LibraryMaker::query_of(std::size_t query, bool is_pose) const {
+Query LibraryMaker::query_of(std::size_t query, World& world, bool is_pose) const {
   const RecallQuery& solved = library_.queries[query];
   Query wanted;
   wanted.T_task_base = solved.T_task_base;
@@ -261,6 +285,7 @@ Query LibraryMaker::query_of(std::size_t query, bool is_pose) const {
     wanted.T_base_goal = kinematics::T_base_transfer(chain_, solved.goal);
   else
     wanted.goals = solved.goal;
+  wanted.constraint = world.constraint_or_null();
   wanted.T_task_anchors.assign(solved.T_task_anchors.begin(), solved.T_task_anchors.end());
   return wanted;
 }
@@ -278,8 +303,8 @@ bool LibraryMaker::works(const planning::IsFree& is_free, const Query& query,
 }
 
 void LibraryMaker::probe(std::size_t query) {
-  World world(*this, queries_[posed_of_[query]].surroundings);
-  const Query wanted = query_of(query, true);
+  World world(*this, queries_[posed_of_[query]]);
+  const Query wanted = query_of(query, world, true);
   for (std::size_t path = 0; path < library_.paths.size(); ++path)
     for (std::size_t mode = 0; mode < library_.modes.size(); ++mode)
       if (!guide_->answers(path, query) && works(world.is_free, wanted, {path, mode, -1}))
@@ -306,10 +331,10 @@ void LibraryMaker::begin_tries() {
 
 /// Fills the rows of one query: with the paths near enough to be tried on queries like it.
 void LibraryMaker::try_all(std::size_t query) {
-  World world(*this, queries_[posed_of_[query]].surroundings);
+  World world(*this, queries_[posed_of_[query]]);
   const auto fill = [&](RecallGuide::Metric metric, std::vector<std::uint8_t>& bits) {
     const bool is_pose = metric == RecallGuide::Metric::Poses;
-    const Query wanted = query_of(query, is_pose);
+    const Query wanted = query_of(query, world, is_pose);
     for (const std::size_t path : guide_->nearest_paths(metric, query, kTriedPaths))
       for (std::size_t mode = 0; mode < library_.modes.size(); ++mode)
         if (works(world.is_free, wanted, {path, mode, is_pose ? -1 : 0}))

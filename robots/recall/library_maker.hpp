@@ -25,10 +25,11 @@ struct PosedQuery {
   Uuid report;
   /// The robot's own path that answered it, dof x n; missing: the maker plans one.
   std::optional<Eigen::MatrixXd> solution;
-  collision::Surroundings surroundings;  ///< with the robot's placement
-  Eigen::Matrix2Xd bounds;               ///< 2 x dof
-  Eigen::VectorXd start;                 ///< dof, free
-  Eigen::MatrixXd goals;                 ///< dof x n, n >= 1, free; one pose
+  collision::Surroundings surroundings;            ///< with the robot's placement
+  Eigen::Matrix2Xd bounds;                         ///< 2 x dof
+  Eigen::VectorXd start;                           ///< dof, free
+  Eigen::MatrixXd goals;                           ///< dof x n, n >= 1, free; one pose
+  std::optional<TaskSpaceRegion> constraint = {};  ///< that the whole path keeps
 };
 
 struct LibraryMakerOptions {
@@ -63,11 +64,11 @@ class LibraryMaker {
 
   void advance();
   std::size_t parts_of_phase() const;
-  planning::PlanSummary plan(const PosedQuery& posed, const planning::IsFree& is_free,
-                             const Eigen::MatrixXd& goals, Guide guide, std::uint64_t seed) const;
+  planning::PlanSummary plan(const PosedQuery& posed, World& world, const Eigen::MatrixXd& goals,
+                             Guide guide, std::uint64_t seed) const;
   void solve(std::size_t query);
-  Eigen::MatrixXd shortest(const std::vector<Eigen::MatrixXd>& answers,
-                           const planning::IsFree& is_free) const;
+  std::optional<Eigen::MatrixXd> as_planned(const Eigen::MatrixXd& answer, World& world) const;
+  Eigen::MatrixXd shortest(const std::vector<Eigen::MatrixXd>& answers, World& world) const;
   void add_clear_paths(const PosedQuery& posed, const Eigen::MatrixXd& raw,
                        std::span<const double> clearances_m);
   void begin_probe();
@@ -76,7 +77,7 @@ class LibraryMaker {
   void try_all(std::size_t query);
   void finish();
 
-  Query query_of(std::size_t query, bool is_pose) const;
+  Query query_of(std::size_t query, World& world, bool is_pose) const;
   bool works(const planning::IsFree& is_free, const Query& query, const Candidate& candidate);
   std::vector<bool> solved_by(std::size_t path) const;
   std::vector<std::size_t> best_first() const;

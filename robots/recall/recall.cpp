@@ -42,25 +42,47 @@ class Asked {
   Eigen::Index count_ = 0;
 };
 
+/// Whether the lines of a path are proven free.
+bool are_lines_proven(const Eigen::MatrixXd& path, const planning::IsFree& is_free,
+                      RecallSummary& summary) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (Eigen::Index at = 0; at + 1 < path.cols(); at += planning::kTogether) {
+    const Eigen::Index lines = std::min<Eigen::Index>(planning::kTogether, path.cols() - 1 - at);
+    for (const auto& line :
+         is_free.edges(path.middleCols(at, lines), path.middleCols(at + 1, lines))) {
+      if (!line)
+        return false;
+      least_m = std::min(least_m, *line);
+    }
+  }
+  summary.least_clearance_m = least_m;
+  summary.waypoints = path;
+  return true;
+}
+
+/// The same along a constraint that the waypoints hold.
+bool is_way_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free,
+                 planning::RegionConstraint& constraint, double step, RecallSummary& summary) {
+  auto way = planning::ConstrainedStepper(step, constraint).way_through(path);
+  if (!way)
+    return false;
+  Asked asked(is_free, summary.collision_checks);
+  planning::MiddlesFirst middles(way->cols() - 1);
+  for (Eigen::Index next = middles.next(); next != 0; next = middles.next())
+    if (!asked.add(way->col(next)))
+      return false;
+  if (!asked.are_free() || (is_free.proves_edges() && !are_lines_proven(*way, is_free, summary)))
+    return false;
+  summary.waypoints = *std::move(way);
+  return true;
+}
+
 /// Whether the lines of a path are free whose ends are: proven, or checked from coarse to fine.
 bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free, double step,
                     RecallSummary& summary) {
   constexpr std::size_t kStride = 8;
-  if (is_free.proves_edges()) {
-    double least_m = std::numeric_limits<double>::infinity();
-    for (Eigen::Index at = 0; at + 1 < path.cols(); at += planning::kTogether) {
-      const Eigen::Index lines = std::min<Eigen::Index>(planning::kTogether, path.cols() - 1 - at);
-      for (const auto& line :
-           is_free.edges(path.middleCols(at, lines), path.middleCols(at + 1, lines))) {
-        if (!line)
-          return false;
-        least_m = std::min(least_m, *line);
-      }
-    }
-    summary.least_clearance_m = least_m;
-    summary.waypoints = path;
-    return true;
-  }
+  if (is_free.proves_edges())
+    return are_lines_proven(path, is_free, summary);
   Eigen::MatrixXd dense = planning::densified(path, step);
   std::vector<Eigen::Index> between;  // of the ends of lines
   for (Eigen::Index line = 0, at = 0; line + 1 < path.cols(); ++line) {
@@ -86,7 +108,8 @@ bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free
 bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
                    RecallSummary& summary) {
   const Eigen::MatrixXd& path = warp.waypoints();
-  if (!path.rightCols<1>().allFinite())
+  if (!path.rightCols<1>().allFinite() ||
+      (warp.constraint() != nullptr && !warp.constraint()->holds(path.rightCols<1>())))
     return false;
   Asked asked(is_free, summary.collision_checks);
   if (!asked.add(path.rightCols<1>()))
@@ -101,7 +124,9 @@ bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
     if (!asked.are_free())
       return false;
   }
-  return are_lines_free(path, is_free, step, summary);
+  return warp.constraint() != nullptr
+             ? is_way_free(path, is_free, *warp.constraint(), step, summary)
+             : are_lines_free(path, is_free, step, summary);
 }
 
 RecallSummary recall(const RecallGuide& guide, const Query& query, const planning::IsFree& is_free,
@@ -115,7 +140,8 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
   std::optional<Candidate> candidate = ranking.next(options.step);
   if (candidate) {
     ++summary.collision_checks;
-    if (!is_free(query.start))
+    if ((query.constraint != nullptr && !query.constraint->holds(query.start)) ||
+        !is_free(query.start))
       return summary;
   }
   bool is_line_tried = false;
@@ -128,8 +154,8 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
         Eigen::MatrixXd line(query.start.size(), 2);
         line << query.start, warp->waypoints().rightCols<1>();
         ++summary.collision_checks;
-        summary.is_straight_line =
-            is_free(line.col(1)) && are_lines_free(line, is_free, options.step, summary);
+        summary.is_straight_line = query.constraint == nullptr && is_free(line.col(1)) &&
+                                   are_lines_free(line, is_free, options.step, summary);
         if (summary.is_straight_line)
           break;
       }

@@ -209,7 +209,7 @@ std::optional<Eigen::VectorXd> RecallGuide::goal_at_pose(const Query& query,
 std::optional<Warp> RecallGuide::warp(const Query& query, const Candidate& candidate) const {
   const RecallQuery& from = library_.queries[library_.paths[candidate.path].query];
   const WarpMode& mode = library_.modes[candidate.mode];
-  WarpTarget target{query.bounds, query.start, {}, {}, query.T_base_goal};
+  WarpTarget target{query.bounds, query.start, {}, {}, query.T_base_goal, query.constraint};
   if (candidate.goal >= 0) {
     target.goal = query.goals.col(candidate.goal);
     target.T_base_goal = kinematics::T_base_transfer(warper_.chain(), target.goal);
@@ -291,7 +291,6 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
 
 /// The chance of each candidate of a goal, as far as recorded queries tell.
 void Ranking::rank(Group& group) const {
-  const RecallLibrary& library = guide_.library_;
   for (Ranked& ranked : group.ranked) {
     double worked = guide_.chance_at(metric_, ranked.candidate.mode, ranked.candidate.distance);
     double weights = 1;
@@ -330,7 +329,7 @@ std::optional<Candidate> Ranking::next(double step) {
 
 void Ranking::fail() {
   constexpr double kUnlike = 0.3;  // a query is less alike if what solved it does not work here
-  constexpr double kDoubt = 0.85;  // each failure says that this query is unlike those recorded
+  constexpr double kDoubt = 0.9;   // each failure says that this query is unlike those recorded
   doubt_ *= kDoubt;
   last_->is_tried = true;
   const Candidate& candidate = last_->candidate;

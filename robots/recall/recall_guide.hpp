@@ -29,6 +29,8 @@ struct Query {
   Eigen::Isometry3d T_base_goal = Eigen::Isometry3d::Identity();  ///< if there are no goals
   /// Of RecallLibrary::anchors in this scene; nothing: it is not there.
   std::vector<std::optional<Eigen::Isometry3d>> T_task_anchors = {};
+  /// That the whole path keeps, with these bounds; null: none. Counts the projections.
+  planning::RegionConstraint* constraint = nullptr;
   /// A recorded query whose own solution is left out, as it is planned again.
   std::optional<Uuid> without = {};
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -99,6 +100,17 @@ void Warp::compute(Eigen::Index stride, Eigen::Index except) {
       wanted.at(count++) = *T;
     }
   put_hands({waypoints.data(), count}, {wanted.data(), count});
+  for (Eigen::Index i = stride; constraint() != nullptr && i < moved_.cols() - 1; i += stride)
+    if (i % except != 0)
+      project(i);
+}
+
+void Warp::project(Eigen::Index waypoint) {
+  Eigen::VectorXd q = moved_.col(waypoint);
+  if (constraint()->project(q))
+    moved_.col(waypoint) = q;
+  else
+    moved_.col(waypoint).setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 void Warp::put_hands(std::span<const Eigen::Index> waypoints,

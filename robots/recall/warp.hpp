@@ -12,6 +12,7 @@
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 namespace kinship::recall {
 
@@ -38,6 +39,8 @@ struct WarpTarget {
   Eigen::Matrix2Xd bounds;                      ///< 2 x dof (planning_bounds)
   Eigen::VectorXd start, goal;                  ///< dof, within bounds
   Eigen::Isometry3d T_base_start, T_base_goal;  ///< of the transfer frame
+  /// That the path keeps; null: none. Counts the projections.
+  planning::RegionConstraint* constraint = nullptr;
 };
 
 /// Moves whole paths of one robot onto queries.
@@ -70,11 +73,12 @@ class Warper {
 
 /// A path with the start and goal of a query, computed waypoint by waypoint: its joints are moved
 /// by the offsets of start and goal, then two damped steps of inverse kinematics a waypoint put the
-/// hand where it was in a frame, near the start and the goal where it was with respect to these. It
-/// keeps within the bounds, and is checked for nothing else.
+/// hand where it was in a frame, near the start and the goal where it was with respect to these,
+/// and it is projected onto the constraint. It keeps within the bounds, and is checked for nothing
+/// else.
 class Warp {
  public:
-  /// Borrows all but the target.
+  /// Borrows all but the target, of which it borrows the constraint.
   /// \param T_new_old  of the frame, in the base link: its pose at the query times the inverse of
   ///                   its pose when the path was planned; nothing: the goal's motion.
   Warp(const Warper& warper, const WarpedPath& path, WarpTarget target, const WarpBlend& blend,
@@ -84,8 +88,10 @@ class Warp {
   /// are there.
   void compute(Eigen::Index stride, Eigen::Index except = kRecallWaypoints);
 
-  /// dof x kRecallWaypoints: the ends, and what was computed.
+  /// dof x kRecallWaypoints: the ends, and what was computed; not finite where the projection onto
+  /// the constraint failed.
   const Eigen::MatrixXd& waypoints() const noexcept { return moved_; }
+  planning::RegionConstraint* constraint() const noexcept { return target_.constraint; }
 
  private:
   /// Moves the joints of a waypoint. \return the pose of the hand to be reached there; nothing: it
@@ -93,6 +99,7 @@ class Warp {
   std::optional<Eigen::Isometry3d> move(Eigen::Index waypoint);
   void put_hands(std::span<const Eigen::Index> waypoints,
                  std::span<const Eigen::Isometry3d> wanted);
+  void project(Eigen::Index waypoint);
 
   const Warper& warper_;
   const WarpedPath& path_;

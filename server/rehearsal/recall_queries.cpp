@@ -36,7 +36,8 @@ std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                               std::move(posed->surroundings),
                               posed->query.bounds,
                               std::move(posed->query.start),
-                              std::move(posed->query.goals)};
+                              std::move(posed->query.goals),
+                              query.scene->constraint};
     if (query.own) {
       if (!is_usable(query.own->waypoints, wanted.bounds))
         return;
@@ -46,7 +47,7 @@ std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
   };
   const bool are_twice = starts.are_recorded && 2 * recorded.size() <= kMaxRecallQueries;
   for (const RecordedQuery& query : recorded) {
-    if (!query.scene || query.scene->constraint)
+    if (!query.scene)
       continue;
     add(query, Branch::Drawn);
     if (are_twice && !query.own)

@@ -11,7 +11,7 @@
 namespace kinship::rehearsal {
 
 /// The recorded queries of which a library of paths to recall is made for a robot: those with a
-/// scene and without a constraint, that it can start and end. Where the robot begins as the others
+/// scene, that it can start and end. Where the robot begins as the others
 /// did, their queries twice, from two branches, if there is room for them.
 /// \param T_task_base  of the robot's base in the task frame, for what other robots recorded.
 std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,

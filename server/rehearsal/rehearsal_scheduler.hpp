@@ -147,6 +147,8 @@ class RehearsalScheduler {
   bool is_out_of_date(const RehearsalKey& key, const Entry& entry);
   void rehearse(const Digest& id, const RehearsalKey& key);
   Result<Subject> subject_of(const RehearsalKey& key);
+  void try_a_few(const Digest& id, const Subject& subject, RehearsalOptions plan,
+                 std::uint64_t paths);
   Rehearsal try_guides(const Digest& id, Subject subject, std::uint64_t paths);
   SharedLibrary make_library(const Digest& id, const Subject& subject);
   void keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths);

@@ -116,15 +116,16 @@ void Rehearsing::Tried::add(const Cost& cost) {
   solved += cost.is_solved ? 1U : 0U;
 }
 
-/// \return nothing if there is nothing to recall, as under a constraint.
+/// \return nothing if there is nothing to recall.
 std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed) const {
-  if (!subject_.recall || posed.constraint)
+  if (!subject_.recall)
     return std::nullopt;
   const planning::TrackQuery& planned = posed.query;
   recall::Query query{planned.T_task_base, planned.bounds, planned.start, {}};
   query.T_base_goal = kinematics::T_base_transfer(subject_.robot->chain, planned.goals.col(0));
   query.T_task_anchors =
       recall::find_anchors(subject_.recall->library().anchors, posed.surroundings.scene.objects);
+  query.constraint = posed.constraint ? &*posed.constraint : nullptr;
   query.without = planned.without;
   const planning::IsFree is_free =
       planning::free_in(*posed.world, [this] { throw_if_stopped(options_.stop); });

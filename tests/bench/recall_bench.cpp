@@ -51,7 +51,10 @@ struct Item {
         surroundings{T_task_base, problem.scene, problem.attached, problem.allowed_collisions},
         world(robot.planned.solids, surroundings),
         is_free(planning::free_in(world)),
-        bounds(planning::planning_bounds(robot.planned.chain, problem.start)) {}
+        bounds(planning::planning_bounds(robot.planned.chain, problem.start)) {
+    if (problem.constraint)
+      constraint.emplace(robot.planned.chain, *problem.constraint, T_task_base, bounds);
+  }
 
   Eigen::MatrixXd find_goals(const Robot& robot, int most) {
     if (!problem.T_task_goal)
@@ -72,6 +75,7 @@ struct Item {
   collision::CollisionWorld world;
   planning::IsFree is_free;
   Eigen::Matrix2Xd bounds;
+  std::optional<planning::RegionConstraint> constraint;
 };
 
 struct Costs {
@@ -106,11 +110,14 @@ class Queries {
     options.time_limit = std::chrono::seconds(600);
     std::mt19937_64 generator(seed);
     const planning::TrackQuery query{item.T_task_base, item.bounds, item.problem.start, goals};
-    return planning::plan_birrt(
-        item.problem.start, goals, item.is_free,
+    const auto sampler =
         planning::guided_sampler(robot_.planned.chain, query, nullptr, nothing_, {.guide = guide})
-            .sampler,
-        options, generator);
+            .sampler;
+    return item.constraint
+               ? planning::plan_cbirrt2(item.problem.start, goals, {item.is_free, *item.constraint},
+                                        sampler, options, generator)
+               : planning::plan_birrt(item.problem.start, goals, item.is_free, sampler, options,
+                                      generator);
   }
 
   recall::RecallSummary recall(Item& item, const recall::RecallGuide& guide) const {
@@ -122,6 +129,7 @@ class Queries {
       query.T_base_goal = item.T_task_base.inverse() * *item.problem.T_task_goal;
     else
       query.goals = item.problem.goal_configurations;
+    query.constraint = item.constraint ? &*item.constraint : nullptr;
     query.T_task_anchors =
         recall::find_anchors(guide.library().anchors, item.problem.scene.objects);
     return recall::recall(guide, query, item.is_free, {.step = study_.settings.resolution});
@@ -151,6 +159,7 @@ std::optional<RecallLibrary> make_library(const Robot& robot, const experiments:
     Item item(robot, records[i], study.settings.resolution);
     recall::PosedQuery query{uuid_of(i), {}, item.surroundings, item.bounds, records[i].start, {}};
     query.goals = item.find_goals(robot, study.settings.max_goals);
+    query.constraint = records[i].constraint;
     if (query.goals.cols() == 0 || !item.is_free(query.start))
       continue;
     if (is_own)

@@ -95,6 +95,25 @@ TEST(LibraryMaker, APathThatSolvesAQueryIsFreeThere) {
   EXPECT_GT(solved, 0);
 }
 
+TEST(LibraryMaker, AReportsPathsJudgeNoQueryOfIt) {
+  const MadeShelf& made = made_shelf();
+  std::vector<PosedQuery> twice = made.recorded;
+  for (PosedQuery query : made.recorded) {
+    query.start[0] += 0.1;
+    twice.push_back(std::move(query));
+  }
+  const RecallLibrary library = made.cell.make(twice).value();
+  ASSERT_GT(library.queries.size(), made.recorded.size());
+  for (std::size_t query = 0; query < library.queries.size(); ++query)
+    for (std::size_t path = 0; path < library.paths.size(); ++path)
+      for (std::size_t mode = 0; mode < library.modes.size(); ++mode) {
+        const std::size_t bit = library.bit(query, path, mode);
+        EXPECT_FALSE(library.queries[library.paths[path].query].report ==
+                         library.queries[query].report &&
+                     (bit_of(library.solves, bit) || bit_of(library.reaches, bit)));
+      }
+}
+
 TEST(LibraryMaker, EachPathSolvesAnotherQuery) {
   const RecallLibrary& library = made_shelf().library;
   for (std::size_t path = 0; path < library.paths.size(); ++path) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "robots/collision/edge_prover.hpp"
@@ -17,6 +18,7 @@ using test_support::asked;
 using test_support::kStep;
 using test_support::made_shelf;
 using test_support::MadeShelf;
+using test_support::ShelfCell;
 
 constexpr RecallOptions kOptions{.step = kStep};
 
@@ -82,6 +84,56 @@ TEST_P(Recalls, WhatTheyReturnIsAWholeFreePath) {
                   .norm()
                   .maxCoeff(),
               kStep + 1e-9);
+  }
+  EXPECT_GT(solved, 0) << "else nothing was compared";
+}
+
+/// The hand stays nearly level from before the shelf until it is within.
+TEST_P(Recalls, UnderAConstraintTheWholePathKeepsIt) {
+  ShelfCell level;
+  const auto front = planning::goal_configurations(
+      level.chain,
+      Eigen::Translation3d(0.38, 0, 0.5) *
+          Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()),
+      planning::planning_bounds(level.chain, level.start), [](const auto&) { return true; });
+  ASSERT_GT(front.configurations.cols(), 0);
+  level.start = front.configurations.col(0);
+  TaskSpaceRegion region;
+  region.T_region_end.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
+  region.bounds.row(1) << 9, 9, 9, 0.3, 0.3, 0.5;
+  region.bounds.row(0) = -region.bounds.row(1);
+  const auto constrained = [&](std::uint64_t first, std::uint64_t count) {
+    std::vector<PosedQuery> queries = level.queries(first, count);
+    for (PosedQuery& query : queries)
+      query.constraint = region;
+    return queries;
+  };
+  RecallLibrary library = level.make(constrained(0, 8)).value();
+  library.search_checks = 1e6;
+  const RecallGuide guide(level.chain, library);
+  int solved = 0;
+  for (const PosedQuery& posed : constrained(100, 8)) {
+    Query query = asked(level, library, posed, GetParam());
+    planning::RegionConstraint constraint(level.chain, region, posed.surroundings.T_task_base,
+                                          posed.bounds);
+    query.constraint = &constraint;
+    collision::CollisionWorld world(level.solids, posed.surroundings);
+    const RecallSummary found = recall(guide, query, planning::free_in(world), kOptions);
+    if (!found.waypoints)
+      continue;
+    ++solved;
+    EXPECT_GT(constraint.projections(), 0U);
+    const Eigen::MatrixXd& path = *found.waypoints;
+    EXPECT_EQ(path.col(0), query.start);
+    for (Eigen::Index i = 0; i < path.cols(); ++i) {
+      EXPECT_LE(constraint.distance(path.col(i)), planning::RegionConstraint::kWaypointTolerance);
+      EXPECT_FALSE(world.collides(path.col(i)));
+      if (i == 0)
+        continue;
+      EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), kStep + 1e-9);
+      EXPECT_LE(constraint.distance((path.col(i) + path.col(i - 1)) / 2),
+                planning::RegionConstraint::kBetweenTolerance);
+    }
   }
   EXPECT_GT(solved, 0) << "else nothing was compared";
 }

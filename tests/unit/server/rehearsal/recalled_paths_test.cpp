@@ -38,9 +38,9 @@ class RecalledPaths : public RehearsalTest {
                     [&known](const SharedRehearsal& found) { known.set_value(found); });
     return known.get_future().get();
   }
-  std::vector<recall::PosedQuery> posed(const Digest& digest) {
+  std::vector<recall::PosedQuery> posed(const Digest& digest, const Starts& starts = {}) {
     return recall_queries(*robot(digest), Eigen::Isometry3d::Identity(),
-                          queries_for(digest).queries, {});
+                          queries_for(digest).queries, starts);
   }
   RecallLibrary library_of(const Digest& digest) {
     const runtime::Robot& known = *robot(digest);
@@ -55,14 +55,36 @@ class RecalledPaths : public RehearsalTest {
   const RehearsalScheduler::Parts parts_{*store_, registry_, clock_, experience_};
 };
 
-TEST_F(RecalledPaths, AreMadeOfQueriesWithASceneAndWithoutAConstraint) {
+TEST_F(RecalledPaths, AreMadeOfQueriesWithAScene) {
   report_sweeps(2);
   report_sweeps(1, std::nullopt);
   RecordedScene level = post();
   level.constraint = TaskSpaceRegion();
   report_sweeps(1, level);
   EXPECT_EQ(queries_for(panda_).queries.size(), 4U);
-  EXPECT_EQ(posed(panda_).size(), 2U);
+  const std::vector<recall::PosedQuery> made = posed(panda_);
+  ASSERT_EQ(made.size(), 3U);
+  EXPECT_FALSE(made.front().constraint);
+  EXPECT_TRUE(made.back().constraint);
+}
+
+TEST_F(RecalledPaths, BeginInTwoBranchesWhereTheOthersBegan) {
+  report_sweeps(8);
+  const runtime::Robot& ur10e = *robot(ur10e_);
+  const std::vector<RecordedQuery> recorded = queries_for(ur10e_).queries;
+  const std::vector<recall::PosedQuery> twice = posed(ur10e_, {.usual = {}, .are_recorded = true});
+  ASSERT_EQ(twice.size(), 2 * recorded.size());
+  bool is_another_branch = false;
+  for (std::size_t i = 0; i < twice.size(); ++i) {
+    const RecordedQuery& query = recorded[i / 2];
+    EXPECT_EQ(twice[i].report, query.path);
+    EXPECT_TRUE(kinematics::T_base_transfer(ur10e.chain, twice[i].start)
+                    .isApprox(query.T_task_start, 1e-4));
+    is_another_branch = is_another_branch || (twice[i].start - twice[i / 2 * 2].start).norm() > 1;
+  }
+  EXPECT_TRUE(is_another_branch);
+  EXPECT_EQ(posed(ur10e_).size(), recorded.size()) << "once from a usual start";
+  EXPECT_EQ(posed(panda_, {.usual = {}, .are_recorded = true}).size(), 8U) << "its own, as it did";
 }
 
 TEST_F(RecalledPaths, OwnAnswersAreTakenAndAnothersQueriesPlanned) {

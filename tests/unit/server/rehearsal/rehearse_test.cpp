@@ -72,6 +72,27 @@ TEST_F(Rehearse, AnotherArmBeginsWithItsHandWhereThePathBegan) {
   EXPECT_EQ(posed->query.without, query.path) << "its answer is not followed";
 }
 
+TEST_F(Rehearse, ARobotBeginsAsTheOthersIfTheirStartsSpreadAndItsOwnIsAmongThem) {
+  report_sweeps(8);
+  const kinematics::Chain& ur10e = robot(ur10e_)->chain;
+  const Eigen::Isometry3d at_task = Eigen::Isometry3d::Identity();
+  std::vector<RecordedQuery> recorded = queries_for(ur10e_).queries;
+  const auto are_recorded = [&](const Eigen::VectorXd& usual) {
+    return find_starts(ur10e, at_task, recorded, usual).are_recorded;
+  };
+  const auto among = pose_query(*robot(ur10e_), at_task, recorded.front());
+  ASSERT_TRUE(among);
+  EXPECT_TRUE(are_recorded(among->query.start));
+  EXPECT_TRUE(are_recorded({})) << "nothing else is known";
+  EXPECT_FALSE(are_recorded(Eigen::VectorXd::Zero(6))) << "its hand is far from all of them";
+  EXPECT_FALSE(
+      find_starts(robot(panda_)->chain, at_task, queries_for(panda_).queries, {}).are_recorded)
+      << "all are its own";
+  for (RecordedQuery& query : recorded)
+    query.T_task_start = recorded.front().T_task_start;
+  EXPECT_FALSE(are_recorded(among->query.start)) << "the others begin at home";
+}
+
 TEST_F(Rehearse, ItsOwnQueriesStandWhereTheyStood) {
   const Eigen::Isometry3d then(Eigen::Translation3d(2, 1, 0) *
                                Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
