@@ -295,7 +295,8 @@ bool LibraryMaker::works(const planning::IsFree& is_free, const Query& query,
   const double begin_s = planning::thread_time_s();
   RecallSummary summary;
   auto warp = guide_->warp(query, candidate);
-  if (warp && is_whole_free(*warp, is_free, options_.step, summary))
+  if (warp && is_goal_free(*warp, is_free, summary) &&
+      is_way_free(*warp, is_free, options_.step, summary))
     return true;
   failed_s_ += planning::thread_time_s() - begin_s;
   ++failed_;

@@ -61,8 +61,8 @@ bool are_lines_proven(const Eigen::MatrixXd& path, const planning::IsFree& is_fr
 }
 
 /// The same along a constraint that the waypoints hold.
-bool is_way_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free,
-                 planning::RegionConstraint& constraint, double step, RecallSummary& summary) {
+bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free,
+                    planning::RegionConstraint& constraint, double step, RecallSummary& summary) {
   auto way = planning::ConstrainedStepper(step, constraint).way_through(path);
   if (!way)
     return false;
@@ -105,15 +105,17 @@ bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free
 
 }  // namespace
 
-bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
-                   RecallSummary& summary) {
+bool is_goal_free(const Warp& warp, const planning::IsFree& is_free, RecallSummary& summary) {
+  const Eigen::VectorXd goal = warp.waypoints().rightCols<1>();
+  if (!goal.allFinite() || (warp.constraint() != nullptr && !warp.constraint()->holds(goal)))
+    return false;
+  ++summary.collision_checks;
+  return is_free(goal);
+}
+
+bool is_way_free(Warp& warp, const planning::IsFree& is_free, double step, RecallSummary& summary) {
   const Eigen::MatrixXd& path = warp.waypoints();
-  if (!path.rightCols<1>().allFinite() ||
-      (warp.constraint() != nullptr && !warp.constraint()->holds(path.rightCols<1>())))
-    return false;
   Asked asked(is_free, summary.collision_checks);
-  if (!asked.add(path.rightCols<1>()))
-    return false;
   constexpr Eigen::Index kCoarse = 4;
   for (Eigen::Index stride = kCoarse; stride >= 1; stride /= kCoarse) {
     warp.compute(stride, stride == kCoarse ? kRecallWaypoints : kCoarse);
@@ -125,7 +127,7 @@ bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
       return false;
   }
   return warp.constraint() != nullptr
-             ? is_way_free(path, is_free, *warp.constraint(), step, summary)
+             ? are_lines_free(path, is_free, *warp.constraint(), step, summary)
              : are_lines_free(path, is_free, step, summary);
 }
 
@@ -149,20 +151,21 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
          summary.collision_checks < options.max_checks;
        candidate = ranking.next(options.step)) {
     ++summary.tries;
-    if (auto warp = guide.warp(query, *candidate)) {
-      if (!std::exchange(is_line_tried, true)) {
-        Eigen::MatrixXd line(query.start.size(), 2);
-        line << query.start, warp->waypoints().rightCols<1>();
-        ++summary.collision_checks;
-        summary.is_straight_line = query.constraint == nullptr && is_free(line.col(1)) &&
-                                   are_lines_free(line, is_free, options.step, summary);
-        if (summary.is_straight_line)
-          break;
-      }
-      missed *= 1 - ranking.chance();
-      if (is_whole_free(*warp, is_free, options.step, summary))
+    missed *= 1 - ranking.chance();
+    auto warp = guide.warp(query, *candidate);
+    if (!warp || !is_goal_free(*warp, is_free, summary)) {
+      ranking.fail_at_goal();
+      continue;
+    }
+    if (query.constraint == nullptr && !std::exchange(is_line_tried, true)) {
+      Eigen::MatrixXd line(query.start.size(), 2);
+      line << query.start, warp->waypoints().rightCols<1>();
+      summary.is_straight_line = are_lines_free(line, is_free, options.step, summary);
+      if (summary.is_straight_line)
         break;
     }
+    if (is_way_free(*warp, is_free, options.step, summary))
+      break;
     ranking.fail();
   }
   summary.expected = 1 - missed;

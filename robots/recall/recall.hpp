@@ -31,11 +31,13 @@ struct RecallSummary {
   double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
 };
 
-/// Whether a path is free: it is computed and checked at few waypoints first, then at all, then
-/// between these.
+/// Whether a path's goal is free, and keeps the constraint. \param summary  out: checks are added.
+bool is_goal_free(const Warp& warp, const planning::IsFree& is_free, RecallSummary& summary);
+
+/// Whether a path with a free goal is free: it is computed and checked at few waypoints first, then
+/// at all, then between these.
 /// \param summary  out: checks are added; if it is free, its waypoints and clearance.
-bool is_whole_free(Warp& warp, const planning::IsFree& is_free, double step,
-                   RecallSummary& summary);
+bool is_way_free(Warp& warp, const planning::IsFree& is_free, double step, RecallSummary& summary);
 
 /// Tries whole paths on a query, the most promising first, as long as that is cheaper in the mean
 /// than a search. A path is checked at few configurations first, then between these. Starts with

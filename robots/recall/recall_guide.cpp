@@ -284,7 +284,7 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
   std::ranges::partial_sort(candidates, candidates.begin() + static_cast<std::ptrdiff_t>(kept), {},
                             &Candidate::distance);
   for (std::size_t i = 0; i < kept; ++i)
-    group.ranked.push_back({candidates[i], 0, false});
+    group.ranked.push_back({candidates[i]});
   rank(group);
   groups_.push_back(std::move(group));
 }
@@ -301,7 +301,7 @@ void Ranking::rank(Group& group) const {
         weights += weight;
         worked += works[query] * weight;
       }
-    ranked.chance = group.trust * worked / weights;
+    ranked.chance = group.trust * ranked.goal_is_free * worked / weights;
   }
 }
 
@@ -325,6 +325,20 @@ std::optional<Candidate> Ranking::next(double step) {
       }
     }
   return last_ != nullptr ? std::optional(last_->candidate) : std::nullopt;
+}
+
+void Ranking::fail_at_goal() {
+  constexpr double kPosture = 0.7;    // joint units: postures alike
+  constexpr double kCollides = 0.95;  // chance that one collides, where an equal one does
+  last_->is_tried = true;
+  const Candidate& failed = last_->candidate;
+  const Eigen::VectorXd& posture = guide_.path_ends_[failed.path].goal;
+  for (Ranked& ranked : of_last_->ranked) {
+    const double d = (guide_.path_ends_[ranked.candidate.path].goal - posture).norm() / kPosture;
+    const bool is_same = failed.goal >= 0 || ranked.candidate.path == failed.path;
+    ranked.goal_is_free *= is_same ? 0 : 1 - kCollides * std::exp(-d * d);
+  }
+  rank(*of_last_);
 }
 
 void Ranking::fail() {

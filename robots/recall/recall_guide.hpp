@@ -138,8 +138,12 @@ class Ranking {
   /// \param step  between checked configurations, joint units.
   std::optional<Candidate> next(double step);
 
-  /// The candidate of next() did not work.
+  /// The candidate of next() did not work, though its goal is free.
   void fail();
+
+  /// The candidate of next() has no free goal. Other modes of its path have the same one, and paths
+  /// that end in a posture like it one that is near.
+  void fail_at_goal();
 
   /// Of the candidate of next(): its chance to work, 0 to 1.
   double chance() const noexcept { return last_chance_; }
@@ -148,6 +152,7 @@ class Ranking {
   struct Ranked {
     Candidate candidate;
     double chance = 0;
+    double goal_is_free = 1;  // factor of the chance
     bool is_tried = false;
   };
   /// The candidates for one goal.

@@ -41,6 +41,31 @@ RecallLibrary hopeful(RecallLibrary library) {
   return library;
 }
 
+TEST(Ranking, AGoalThatIsNotFreeIsNotTriedAgain) {
+  const MadeShelf& made = made_shelf();
+  const RecallGuide guide(made.cell.chain, hopeful(made.library));
+  ASSERT_GT(made.library.modes.size(), 1U) << "else a path has one candidate anyhow";
+  const PosedQuery posed = made.cell.queries(100, 1).front();
+  std::vector<std::size_t> paths;
+  Ranking by_pose(guide, asked(made.cell, made.library, posed, true), 1);
+  while (const auto candidate = by_pose.next(kStep)) {
+    paths.push_back(candidate->path);
+    by_pose.fail_at_goal();
+  }
+  EXPECT_GT(paths.size(), 1U);
+  std::ranges::sort(paths);
+  EXPECT_TRUE(std::ranges::adjacent_find(paths) == paths.end()) << "its modes end alike";
+
+  std::vector<Eigen::Index> goals;
+  Ranking by_goal(guide, asked(made.cell, made.library, posed, false), 1);
+  while (const auto candidate = by_goal.next(kStep)) {
+    goals.push_back(candidate->goal);
+    by_goal.fail_at_goal();
+  }
+  std::ranges::sort(goals);
+  EXPECT_TRUE(std::ranges::adjacent_find(goals) == goals.end());
+}
+
 TEST(RecallGuide, ALibraryOfAnotherNumberOfJointsIsRefused) {
   EXPECT_THROW(RecallGuide(test::model_chain("ur10e"), made_shelf().library),
                std::invalid_argument);
