@@ -27,6 +27,14 @@ std::uint64_t count_selected(const store::ExperienceStore& store,
   return fitting::count_paths(fitting::selected_experience(key, store.experience(key.task)));
 }
 
+/// Another number once a path of the task was retired.
+std::uint64_t count_retirements(const store::ExperienceStore& store, std::string_view task) {
+  std::uint64_t sum = 0;
+  for (const store::ExperienceSummary& robot : store.experience(task))
+    sum += robot.retired_generation;
+  return sum;
+}
+
 /// The mixture of the paths that are not in one half; nothing if none can be fitted.
 std::optional<Mixture> fit_without(std::size_t half, const fitting::DistributionKey& key,
                                    const RehearsalScheduler::Parts& parts,
@@ -70,7 +78,36 @@ Digest kind_of(const RehearsalKey& key) {
 RehearsalScheduler::RehearsalScheduler(const Parts& parts, RehearsalSchedulerOptions options)
     : parts_(parts),
       options_(std::move(options)),
-      pool_({.threads = 1, .queue_limit = kMaxQueued, .niceness = kNiceness}) {}
+      pool_({.threads = 1, .queue_limit = kMaxQueued, .niceness = kNiceness}) {
+  if (parts_.rehearsals == nullptr || options_.processor_fraction == 0)
+    return;
+  try {
+    load();
+  } catch (const std::exception& exception) {
+    options_.log("rehearsals of the store: " + std::string(exception.what()));
+  }
+}
+
+/// Without those that have a path which is retired by now. The first request compares their paths
+/// with the experience.
+void RehearsalScheduler::load() {
+  std::vector<store::StoredRehearsal> stored =
+      parts_.rehearsals->read_rehearsals(options_.max_rehearsals);
+  std::ranges::reverse(stored);  // the oldest first
+  for (store::StoredRehearsal& each : stored) {
+    if (each.retired != count_retirements(parts_.store, each.task))
+      continue;
+    Entry& entry = entries_[each.id];
+    entry.key.distribution.task = std::move(each.task);  // a request brings the rest
+    entry.key.distribution.T_task_base = each.T_task_base;
+    entry.kind = each.kind;
+    entry.known = std::make_shared<const Rehearsal>(std::move(each.rehearsal));
+    if (each.library)
+      entry.library = std::make_shared<const RecallLibrary>(*std::move(each.library));
+    entry.paths = each.paths;
+    entry.last_used = ++uses_;
+  }
+}
 
 SharedRehearsal RehearsalScheduler::ask(const RehearsalKey& key) {
   const std::lock_guard lock(mutex_);
@@ -289,10 +326,12 @@ Result<Subject> RehearsalScheduler::subject_of(const RehearsalKey& key) {
 
 void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   const double begin_s = planning::thread_time_s();
+  const std::uint64_t retired = count_retirements(parts_.store, key.distribution.task);
   const std::uint64_t paths = count_selected(parts_.store, key.distribution);
   Rehearsal result;
   result.is_complete = true;
-  if (Result<Subject> subject = subject_of(key)) {
+  Result<Subject> subject = subject_of(key);
+  if (subject) {
     result = try_guides(id, *std::move(subject), paths);
     if (stop_source_.stop_requested())
       return;
@@ -306,6 +345,8 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
                " of processor time" + described(result.costs) +
                (result.message.empty() ? "" : ": " + result.message));
   keep(id, std::move(result), paths);
+  if (subject && parts_.rehearsals != nullptr)
+    save(id, retired);
 }
 
 /// Makes the library, then plans every query with every guide.
@@ -376,6 +417,27 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64
     ++totals_.done;
   }
   entry.known = std::move(known);
+}
+
+/// Writes what was kept into the store.
+/// \param retired  of the task before its paths were read.
+void RehearsalScheduler::save(const Digest& id, std::uint64_t retired) {
+  std::unique_lock lock(mutex_);
+  const Entry& entry = entries_[id];
+  const fitting::DistributionKey& key = entry.key.distribution;
+  store::StoredRehearsal stored{.id = id,
+                                .robot = key.robot,
+                                .task = key.task,
+                                .made_ms = parts_.clock.unix_ms(),
+                                .kind = entry.kind,
+                                .paths = entry.paths,
+                                .retired = retired,
+                                .T_task_base = key.T_task_base,
+                                .rehearsal = *entry.known};
+  if (entry.library)
+    stored.library = *entry.library;
+  lock.unlock();
+  parts_.rehearsals->put_rehearsal(stored);
 }
 
 /// Leaves the processor to others in proportion to its use, unless a request waits.
