@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <future>
 #include <string>
 
 #include "proto/types/duration_text.hpp"
@@ -12,9 +11,9 @@
 #include "proto/types/failure.hpp"
 #include "proto/types/stopped.hpp"
 #include "robots/planning/planning_budget.hpp"
-#include "server/fitting/fit_distribution.hpp"
 #include "server/fitting/selected_experience.hpp"
 #include "server/rehearsal/recall_queries.hpp"
+#include "server/rehearsal/subject.hpp"
 
 namespace kinship::rehearsal {
 namespace {
@@ -27,19 +26,12 @@ std::uint64_t count_selected(const store::ExperienceStore& store,
   return fitting::count_paths(fitting::selected_experience(key, store.experience(key.task)));
 }
 
-/// The mixture of the paths that are not in one half; nothing if none can be fitted.
-std::optional<Mixture> fit_without(std::size_t half, const fitting::DistributionKey& key,
-                                   const RehearsalScheduler::Parts& parts,
-                                   const std::stop_token& stop) {
-  const fitting::FitOutcome outcome = fitting::fit_distribution(
-      key,
-      {.store = parts.store,
-       .robots = parts.robots,
-       .clock = parts.clock,
-       .leaves_out = [half](const Uuid& report) { return half_of(report) == half; },
-       .memory = parts.memory},
-      stop);
-  return outcome.distribution ? outcome.distribution->mixture : std::nullopt;
+/// Another number once a path of the task was retired.
+std::uint64_t count_retirements(const store::ExperienceStore& store, std::string_view task) {
+  std::uint64_t sum = 0;
+  for (const store::ExperienceSummary& robot : store.experience(task))
+    sum += robot.retired_generation;
+  return sum;
 }
 
 std::string seconds(double value) {
@@ -70,7 +62,36 @@ Digest kind_of(const RehearsalKey& key) {
 RehearsalScheduler::RehearsalScheduler(const Parts& parts, RehearsalSchedulerOptions options)
     : parts_(parts),
       options_(std::move(options)),
-      pool_({.threads = 1, .queue_limit = kMaxQueued, .niceness = kNiceness}) {}
+      pool_({.threads = 1, .queue_limit = kMaxQueued, .niceness = kNiceness}) {
+  if (parts_.rehearsals == nullptr || options_.processor_fraction == 0)
+    return;
+  try {
+    load();
+  } catch (const std::exception& exception) {
+    options_.log("rehearsals of the store: " + std::string(exception.what()));
+  }
+}
+
+/// Without those that have a path which is retired by now. The first request compares their paths
+/// with the experience.
+void RehearsalScheduler::load() {
+  std::vector<store::StoredRehearsal> stored =
+      parts_.rehearsals->read_rehearsals(options_.max_rehearsals);
+  std::ranges::reverse(stored);  // the oldest first
+  for (store::StoredRehearsal& each : stored) {
+    if (each.retired != count_retirements(parts_.store, each.task))
+      continue;
+    Entry& entry = entries_[each.id];
+    entry.key.distribution.task = std::move(each.task);  // a request brings the rest
+    entry.key.distribution.T_task_base = each.T_task_base;
+    entry.kind = each.kind;
+    entry.known = std::make_shared<const Rehearsal>(std::move(each.rehearsal));
+    if (each.library)
+      entry.library = std::make_shared<const RecallLibrary>(*std::move(each.library));
+    entry.paths = each.paths;
+    entry.last_used = ++uses_;
+  }
+}
 
 SharedRehearsal RehearsalScheduler::ask(const RehearsalKey& key) {
   const std::lock_guard lock(mutex_);
@@ -258,42 +279,15 @@ bool RehearsalScheduler::is_out_of_date(const RehearsalKey& key, const Entry& en
   return now >= entry.paths + std::max(kLeastGrowth, entry.paths / kPartOfGrowth);
 }
 
-Result<Subject> RehearsalScheduler::subject_of(const RehearsalKey& key) {
-  const std::stop_token stop = stop_source_.get_token();
-  Subject subject;
-  const auto robot = parts_.robots.find(key.distribution.robot);
-  if (!robot)
-    return robot.error();
-  subject.robot = *robot;
-  if (subject.robot->shapes.shapes.empty())
-    return Error{ErrorCode::InvalidInput, "the server knows no shapes of robot '" +
-                                              subject.robot->label +
-                                              "': " + subject.robot->geometry};
-  subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
-  subject.recorded =
-      read_queries(parts_.store, parts_.robots, key.distribution, options_.max_queries, stop);
-  subject.starts =
-      find_starts(subject.robot->chain, subject.T_task_base, subject.recorded.queries, key.start);
-  std::promise<catalog::SharedChoice> chosen;
-  parts_.experience.ask(
-      {key.distribution.task, key.distribution.sources, key.distribution.since_ms,
-       key.experience_bytes},
-      [&chosen](const catalog::SharedChoice& choice) { chosen.set_value(choice); });
-  const catalog::SharedChoice ways = chosen.get_future().get();
-  subject.experience = std::make_shared<const planning::ExperienceGuide>(
-      subject.robot->chain, ways ? to_experience(*ways) : TaskExperience{});
-  for (std::size_t half = 0; half < kHalves; ++half)
-    subject.mixtures.at(half) = fit_without(half, key.distribution, parts_, stop);
-  throw_if_stopped(stop);
-  return subject;
-}
-
 void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   const double begin_s = planning::thread_time_s();
+  const std::uint64_t retired = count_retirements(parts_.store, key.distribution.task);
   const std::uint64_t paths = count_selected(parts_.store, key.distribution);
   Rehearsal result;
   result.is_complete = true;
-  if (Result<Subject> subject = subject_of(key)) {
+  Result<Subject> subject =
+      read_subject(key, parts_, options_.max_queries, stop_source_.get_token());
+  if (subject) {
     result = try_guides(id, *std::move(subject), paths);
     if (stop_source_.stop_requested())
       return;
@@ -307,6 +301,8 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
                " of processor time" + described(result.costs) +
                (result.message.empty() ? "" : ": " + result.message));
   keep(id, std::move(result), paths);
+  if (subject && parts_.rehearsals != nullptr)
+    save(id, retired);
 }
 
 /// A first result, before the long work: each guide on a few queries.
@@ -403,6 +399,27 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64
     ++totals_.done;
   }
   entry.known = std::move(known);
+}
+
+/// Writes what was kept into the store.
+/// \param retired  of the task before its paths were read.
+void RehearsalScheduler::save(const Digest& id, std::uint64_t retired) {
+  std::unique_lock lock(mutex_);
+  const Entry& entry = entries_[id];
+  const fitting::DistributionKey& key = entry.key.distribution;
+  store::StoredRehearsal stored{.id = id,
+                                .robot = key.robot,
+                                .task = key.task,
+                                .made_ms = parts_.clock.unix_ms(),
+                                .kind = entry.kind,
+                                .paths = entry.paths,
+                                .retired = retired,
+                                .T_task_base = key.T_task_base,
+                                .rehearsal = *entry.known};
+  if (entry.library)
+    stored.library = *entry.library;
+  lock.unlock();
+  parts_.rehearsals->put_rehearsal(stored);
 }
 
 /// Leaves the processor to others in proportion to its use, unless a request waits.

@@ -17,7 +17,6 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/recall_library.hpp"
 #include "proto/types/rehearsal.hpp"
-#include "proto/types/result.hpp"
 #include "server/catalog/experience_index.hpp"
 #include "server/catalog/experience_versions.hpp"
 #include "server/fitting/distribution_key.hpp"
@@ -27,6 +26,7 @@
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
 #include "server/store/experience_store.hpp"
+#include "server/store/rehearsal_store.hpp"
 
 namespace kinship::rehearsal {
 
@@ -43,7 +43,8 @@ struct RehearsalSchedulerOptions {
   std::size_t max_waiters = 1024;
   /// next_deadline() is earlier than it was. Called from any thread.
   std::function<void()> wake = [] {};
-  /// A line for people, without a line feed. Called on the scheduler's thread.
+  /// A line for people, without a line feed. Called on the scheduler's thread, or by the
+  /// constructor.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
 
@@ -65,9 +66,10 @@ struct RehearsalKey {
 
 /// Finds the best guide for a robot and task before its first query, and makes its library of paths
 /// to recall, on a low-priority thread of its own. Both are valid until the experience has grown by
-/// a fifth and ten paths, or lost one; after a restart there is none. At a placement that has none,
-/// those of the nearest one count; it is rehearsed itself from its second request on. May be shared
-/// between threads; no lock is held across the store, a plan or an answer.
+/// a fifth and ten paths, or lost one, also after a restart: complete ones are in the store. At a
+/// placement that has none, those of the nearest one count; it is rehearsed itself from its second
+/// request on. May be shared between threads; no lock is held across the store, a plan or an
+/// answer.
 class RehearsalScheduler {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -80,9 +82,11 @@ class RehearsalScheduler {
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
     catalog::ExperienceIndex& experience;
-    fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
+    fitting::MemoryCeiling* memory = nullptr;     ///< of all fits together; null: no limit
+    store::RehearsalStore* rehearsals = nullptr;  ///< null: none are kept and found again
   };
 
+  /// Begins with what the store has; one that cannot be read has none.
   RehearsalScheduler(const Parts& parts, RehearsalSchedulerOptions options);
   ~RehearsalScheduler() { stop(); }
   RehearsalScheduler(const RehearsalScheduler&) = delete;
@@ -126,14 +130,17 @@ class RehearsalScheduler {
     SharedRehearsal known;
     SharedLibrary library;
     std::uint64_t asked = 0;
-    std::uint64_t paths = 0;      // it was made of
-    std::uint64_t looked_at = 0;  // changes of the task's experience when it was last compared
-    bool is_lost = false;         // paths were retired since
+    std::uint64_t paths = 0;  // it was made of
+    /// Changes of the task's experience when it was last compared; nothing: by no request yet.
+    std::optional<std::uint64_t> looked_at;
+    bool is_lost = false;  // paths were retired since
     bool is_working = false;
     std::vector<Waiter> waiters;
     mutable std::uint64_t last_used = 0;
   };
   using WaiterAnswers = std::vector<std::pair<Done, SharedRehearsal>>;
+
+  void load();  // before the thread has anything to do
 
   // Under the lock.
   Entry& use(const RehearsalKey& key);
@@ -146,12 +153,12 @@ class RehearsalScheduler {
   void work(const Digest& id);
   bool is_out_of_date(const RehearsalKey& key, const Entry& entry);
   void rehearse(const Digest& id, const RehearsalKey& key);
-  Result<Subject> subject_of(const RehearsalKey& key);
   void try_a_few(const Digest& id, const Subject& subject, RehearsalOptions plan,
                  std::uint64_t paths);
   Rehearsal try_guides(const Digest& id, Subject subject, std::uint64_t paths);
   SharedLibrary make_library(const Digest& id, const Subject& subject);
   void keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths);
+  void save(const Digest& id, std::uint64_t retired);
   void rest(const Digest& id, double worked_s);
 
   const Parts parts_;

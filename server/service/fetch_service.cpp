@@ -43,7 +43,8 @@ std::string seconds(double value) {
 }  // namespace
 
 FetchService::FetchService(const ServiceParts& parts, const store::ExperienceStore& store,
-                           store::DistributionStore& distributions, Upstream& upstream)
+                           store::DistributionStore& distributions,
+                           store::RehearsalStore& rehearsals, Upstream& upstream)
     : parts_(parts),
       store_(store),
       upstream_(upstream),
@@ -67,7 +68,7 @@ FetchService::FetchService(const ServiceParts& parts, const store::ExperienceSto
       catalog_({store, distributions, parts.robots, parts.pools.store, fitters_,
                 parts.options.clock, &memory_},
                catalog_options()),
-      rehearsals_({store, parts.robots, parts.options.clock, experience_, &memory_},
+      rehearsals_({store, parts.robots, parts.options.clock, experience_, &memory_, &rehearsals},
                   rehearsal_options(parts.options)) {}
 
 catalog::Catalog::Options FetchService::catalog_options() {

@@ -26,9 +26,10 @@ class FetchService final : public ServedGuidance {
  public:
   using TimePoint = catalog::Catalog::TimePoint;
 
-  /// \param store, distributions, upstream  outlive the service.
+  /// \param store, distributions, rehearsals, upstream  outlive the service.
   FetchService(const ServiceParts& parts, const store::ExperienceStore& store,
-               store::DistributionStore& distributions, Upstream& upstream);
+               store::DistributionStore& distributions, store::RehearsalStore& rehearsals,
+               Upstream& upstream);
   FetchService(const FetchService&) = delete;
   FetchService& operator=(const FetchService&) = delete;
 

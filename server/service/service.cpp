@@ -19,7 +19,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
                             }}),
       pools_(options_.short_task_queue, options_.client_short_tasks, clients_),
       upstream_(parts(), *store_),
-      fetches_(parts(), *store_, *store_, upstream_),
+      fetches_(parts(), *store_, *store_, *store_, upstream_),
       reports_(parts(), *store_, fetches_, upstream_),
       registration_(parts()),
       administration_(parts(),

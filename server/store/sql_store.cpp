@@ -4,6 +4,7 @@
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/experience.hpp"
+#include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/settings.hpp"
 #include "server/store/tables/tasks.hpp"
@@ -101,6 +102,23 @@ std::optional<Distribution> SqlStore::find_distribution(const Digest& id) const 
 bool SqlStore::evict_distribution(const Digest& id, const AuditEntry* audit) {
   return write(
       [&](Session& session, const RetireSome&) { return evict_audited(session, id, audit); });
+}
+
+void SqlStore::put_rehearsal(const StoredRehearsal& rehearsal, const RehearsalLimits& limits) {
+  run_writing([&](Session& session, const RetireSome&) { insert_rehearsal(session, rehearsal); });
+  const auto surplus = read(View::EachStatement, [&](Session& session) {
+    return find_surplus_rehearsals(session, limits);
+  });
+  for (const std::int64_t row : surplus)
+    try {  // apart: a page that cannot be read fails its transaction
+      run_writing([row](Session& session, const RetireSome&) { drop_rehearsal(session, row); });
+    } catch (const Failure&) {  // the row stays, and the next rehearsal tries again
+    }
+}
+
+std::vector<StoredRehearsal> SqlStore::read_rehearsals(std::size_t limit) const {
+  return read(View::EachStatement,
+              [&](Session& session) { return select_rehearsals(session, limit); });
 }
 
 void SqlStore::add_audit(const AuditEntry& entry) {

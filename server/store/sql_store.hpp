@@ -41,6 +41,9 @@ class SqlStore : public Store {
   std::optional<Distribution> find_distribution(const Digest& id) const override;
   bool evict_distribution(const Digest& id, const AuditEntry* audit) override;
 
+  void put_rehearsal(const StoredRehearsal& rehearsal, const RehearsalLimits& limits) override;
+  std::vector<StoredRehearsal> read_rehearsals(std::size_t limit) const override;
+
   void add_audit(const AuditEntry& entry) override;
   std::map<std::string, std::string> notes(std::string_view prefix) const override;
   void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override;

@@ -9,6 +9,7 @@
 #include "server/store/admin_store.hpp"
 #include "server/store/distribution_store.hpp"
 #include "server/store/experience_store.hpp"
+#include "server/store/rehearsal_store.hpp"
 #include "server/store/replication_store.hpp"
 #include "server/store/report_store.hpp"
 #include "server/store/robot_store.hpp"
@@ -29,9 +30,9 @@ struct StoreChanges {
   std::vector<Digest> evicted;  ///< distributions, on request; not for want of room
 };
 
-/// Keeps robots, attempts, paths and distributions. A part of the server takes the interfaces that
-/// it needs. Every method of them may be called from any thread. Reads see committed data only.
-/// Methods throw Failure(Storage) unless said otherwise.
+/// Keeps robots, attempts, paths, distributions and rehearsals. A part of the server takes the
+/// interfaces that it needs. Every method of them may be called from any thread. Reads see
+/// committed data only. Methods throw Failure(Storage) unless said otherwise.
 ///
 /// Changes by an administrator take an `audit`, which names the administrator and the request. The
 /// store adds it to the audit log, with the values before and after, in the transaction of the
@@ -41,6 +42,7 @@ class Store : public RobotStore,
               public ReportStore,
               public ExperienceStore,
               public DistributionStore,
+              public RehearsalStore,
               public ReplicationStore,
               public AdminStore {
  public:

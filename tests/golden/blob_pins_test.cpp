@@ -8,6 +8,7 @@
 #include "proto/json/distribution_json.hpp"
 #include "server/store/values/compression.hpp"
 #include "server/store/values/distribution_blob.hpp"
+#include "server/store/values/rehearsal_blob.hpp"
 #include "server/store/values/scene_blob.hpp"
 #include "server/store/values/waypoint_blob.hpp"
 #include "tests/golden/every_value.hpp"
@@ -35,6 +36,27 @@ TEST(BlobPins, DistributionsOfEveryFormatAreRead) {
     test::expect_pinned("blob/distribution-" + std::to_string(format) + ".json",
                         json::to_json(*distribution) + "\n");
   }
+}
+
+StoredRehearsal every_stored_rehearsal() {
+  test::Distinct next(6000);
+  StoredRehearsal rehearsal;
+  rehearsal.kind = next.id<Digest>();
+  rehearsal.paths = next.count();
+  rehearsal.retired = next.count();
+  rehearsal.T_task_base = next.pose();
+  rehearsal.rehearsal = test::every_rehearsal();
+  rehearsal.library = test::every_fetch_reply().recall;
+  return rehearsal;
+}
+
+TEST(BlobPins, RehearsalsAreWrittenAsPinnedAndRead) {
+  const std::string name = "blob/rehearsal-" + std::to_string(kRehearsalVersion) + ".hex";
+  const std::vector<std::uint8_t> blob = encode_rehearsal(every_stored_rehearsal());
+  test::expect_pinned_bytes(name, blob);
+  StoredRehearsal read;
+  ASSERT_TRUE(decode_rehearsal(test::read_pinned_bytes(name), read));
+  EXPECT_EQ(encode_rehearsal(read), blob);
 }
 
 /// zstd may compress otherwise tomorrow: what is compressed is pinned, and that it comes back.

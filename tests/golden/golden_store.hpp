@@ -98,4 +98,8 @@ inline Distribution golden_distribution() {
   return make_distribution(golden_robots()[0].digest, "shelf", 100);
 }
 
+inline store::StoredRehearsal golden_rehearsal() {
+  return make_rehearsal(golden_robots()[0].digest, "shelf", 100);
+}
+
 }  // namespace kinship::test

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint64_t kAttempts = 17;
 constexpr std::uint64_t kPaths = 11;
+constexpr int kFirstWithRehearsals = 2;
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -66,6 +67,21 @@ TEST_P(GoldenStore, StillHasItsDistribution) {
   EXPECT_EQ(found->sources[0].paths_used, 0U);
   EXPECT_EQ(found->mixture->means(), wanted.mixture->means());
   EXPECT_EQ(found->mixture->covariances(), wanted.mixture->covariances());
+}
+
+TEST_P(GoldenStore, StillHasItsRehearsal) {
+  const store::StoredRehearsal wanted = test::golden_rehearsal();
+  std::vector<store::StoredRehearsal> found = store_->read_rehearsals(10);
+  if (GetParam() < kFirstWithRehearsals) {
+    EXPECT_TRUE(found.empty());
+    store_->put_rehearsal(wanted);
+    found = store_->read_rehearsals(10);
+  }
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].id, wanted.id);
+  EXPECT_EQ(found[0].rehearsal, wanted.rehearsal);
+  ASSERT_TRUE(found[0].library);
+  EXPECT_EQ(found[0].library->paths[0].waypoints, wanted.library->paths[0].waypoints);
 }
 
 TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
@@ -192,7 +208,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

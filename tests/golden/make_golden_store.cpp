@@ -34,6 +34,7 @@ int make(const std::filesystem::path& file) {
     store->put_notes({{"golden", "note"}});
     store->put_distribution(test::golden_evicted_distribution());
     store->evict_distribution(test::golden_evicted_distribution().id, &audit);
+    store->put_rehearsal(test::golden_rehearsal());
     store->add_audit(audit);
     store::RobotRecord robot = test::golden_robots()[0];
     robot.description.mesh_solids = test::golden_mesh_solids();

@@ -143,7 +143,8 @@ TEST_F(MigrateStore, AllOfAStoreComesToADatabaseAndBack) {
   for (const char* const table :
        {"robot", "robot_held_joint", "robot_never_colliding", "robot_geometry", "task",
         "experience", "scene", "path", "attempt", "distribution", "distribution_use",
-        "evicted_distribution", "audit", "setting", "retired_report", "same_content", "quarantine"})
+        "evicted_distribution", "rehearsal", "audit", "setting", "retired_report", "same_content",
+        "quarantine"})
     EXPECT_TRUE(wanted.contains(table)) << "the store to be moved has no " << table;
   const auto quiet = [](double) {};
   EXPECT_EQ(store::check_store(back_, quiet).problems, store::check_store(file_, quiet).problems);

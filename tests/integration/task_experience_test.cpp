@@ -60,6 +60,34 @@ TEST_F(TaskExperiences, IsHeldByAFollowerAndFollowsItsTask) {
   EXPECT_NE(follower->experience()->revision, held->revision);
 }
 
+TEST_F(TaskExperiences, IsRehearsedOnceAlsoIfTheServerIsKilled) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Attempt attempt = test::panda_attempt(panda_, "sweep", seed);
+    attempt.record.planner_options = "step=0.1 overshoot=1 max_checks=100000";
+    attempt.scene.emplace().objects = {{"post", BoxShape{{0.08, 0.08, 1.2}},
+                                        Eigen::Isometry3d(Eigen::Translation3d(0.62, 0, 0.6))}};
+    cell_.client().report(attempt);
+  }
+  ASSERT_EQ(cell_.client().flush(test::Cell::kEnough).accepted, 6U);
+  request_.rehearsed = true;
+  request_.deadline = seconds(300);
+  const FetchReply before = cell_.client().fetch(request_).value_or_throw();
+  ASSERT_TRUE(before.rehearsal && before.rehearsal->is_complete) << before.message;
+  ASSERT_TRUE(before.recall);
+  cell_.kill();
+  cell_.start();
+  const FetchReply after = cell_.client().fetch(request_).value_or_throw();
+  EXPECT_EQ(after.rehearsal, before.rehearsal);
+  ASSERT_TRUE(after.recall);
+  EXPECT_EQ(after.recall->revision, before.recall->revision);
+  ASSERT_EQ(after.recall->paths.size(), before.recall->paths.size());
+  for (std::size_t i = 0; i < after.recall->paths.size(); ++i)
+    EXPECT_EQ(after.recall->paths[i].waypoints, before.recall->paths[i].waypoints);
+  EXPECT_EQ(after.recall->solves, before.recall->solves);
+  EXPECT_EQ(cell_.status().rehearsals, 0U) << "it was made by the server before";
+  EXPECT_EQ(cell_.status().queued_rehearsals, 0U);
+}
+
 TEST_F(TaskExperiences, FillsAMessageWithoutBreakingIt) {
   cell_.report(panda_, 1, 900);
   request_.experience_bytes = kMaxExperienceBytes;

@@ -136,6 +136,44 @@ inline Distribution make_distribution(const Digest& robot, const std::string& ta
   return distribution;
 }
 
+/// With a library of two queries; its waypoints are floats.
+inline store::StoredRehearsal make_rehearsal(const Digest& robot, const std::string& task,
+                                             std::uint64_t number) {
+  store::StoredRehearsal rehearsal{.id = id_from<Digest>(number),
+                                   .robot = robot,
+                                   .task = task,
+                                   .made_ms = 1'700'000'000'321,
+                                   .kind = id_from<Digest>(number + 1),
+                                   .paths = 50 + number,
+                                   .retired = 7,
+                                   .T_task_base = make_pose()};
+  rehearsal.rehearsal = {.guide = Guide::RecallRetreat,
+                         .is_complete = true,
+                         .queries = 40,
+                         .left_out = 2,
+                         .processor_time_s = 1.5,
+                         .costs = {{Guide::Ways, 160, 150, 1250.5, 400, 0.004}},
+                         .message = "with the shapes that the server knows"};
+  RecallLibrary& library = rehearsal.library.emplace();
+  library.revision = 1000 + number;
+  library.search_checks = 800.5;
+  library.try_checks = 12.25;
+  library.anchors = {"shelf"};
+  for (const bool is_synthetic : {false, true})
+    library.queries.push_back({id_from<Uuid>(number),
+                               is_synthetic,
+                               make_pose(),
+                               make_path(number).waypoints().col(0),
+                               make_path(number).waypoints().col(1),
+                               {make_pose()}});
+  library.paths = {
+      {1, make_path(number, kDof, kRecallWaypoints).waypoints().cast<float>().cast<double>()}};
+  library.modes = {{2, kGoalFrame}, {1, kFirstAnchor}};
+  library.solves = {0b0110};
+  library.reaches = {0b1110};
+  return rehearsal;
+}
+
 /// Reports and waits for the receipts.
 inline std::vector<Receipt> report(store::Store& store, std::vector<Attempt> attempts) {
   std::promise<std::vector<Receipt>> done;

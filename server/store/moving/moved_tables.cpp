@@ -194,6 +194,21 @@ MovedTable evictions() {
           " ON of_table = 'distribution' AND quarantine.id = distribution.id) GROUP BY digest)"};
 }
 
+MovedTable rehearsals() {
+  const std::string light = "SELECT id, made_ms, crc32c FROM rehearsal ORDER BY id";
+  return {.name = "rehearsal",
+          .reading = Reading::ById,
+          .columns = {{"id"},
+                      {"digest", Blob},
+                      {"robot", Blob},
+                      {"task", Text},
+                      {"made_ms"},
+                      {"crc32c"},
+                      {"payload", Blob}},
+          .sqlite_light = light,
+          .postgres_light = light};
+}
+
 MovedTable audit() {
   return {.name = "audit",
           .reading = Reading::ById,
@@ -240,6 +255,7 @@ std::vector<MovedTable> all_tables() {
           distributions(),
           uses(),
           evictions(),
+          rehearsals(),
           audit(),
           settings(),
           {.name = "retired_report",

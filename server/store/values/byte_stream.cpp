@@ -60,6 +60,14 @@ std::uint64_t ByteReader::integer() {
   return value;
 }
 
+std::size_t ByteReader::integer(std::size_t max) {
+  const std::uint64_t value = integer();
+  if (value > max)
+    throw std::out_of_range("blob: " + std::to_string(value) + " of at most " +
+                            std::to_string(max));
+  return value;
+}
+
 double ByteReader::real() {
   double value = 0;
   std::memcpy(&value, take(sizeof value).data(), sizeof value);
@@ -76,7 +84,8 @@ std::string ByteReader::text(std::size_t max_size) {
 
 void ByteReader::bytes(std::span<std::uint8_t> out) {
   const std::span<const std::uint8_t> taken = take(out.size());
-  std::memcpy(out.data(), taken.data(), taken.size());
+  if (!out.empty())
+    std::memcpy(out.data(), taken.data(), taken.size());
 }
 
 Eigen::MatrixXd ByteReader::matrix(std::size_t max_rows, std::size_t max_cols) {
@@ -95,10 +104,14 @@ Eigen::MatrixXd ByteReader::matrix(std::size_t max_rows, std::size_t max_cols) {
 std::optional<Eigen::Isometry3d> ByteReader::pose() {
   if (integer() == 0)
     return std::nullopt;
-  std::optional<Eigen::Isometry3d> T_a_b = pose_from_blob(take(sizeof(PoseArray)));
+  return bare_pose();
+}
+
+Eigen::Isometry3d ByteReader::bare_pose() {
+  const std::optional<Eigen::Isometry3d> T_a_b = pose_from_blob(take(sizeof(PoseArray)));
   if (!T_a_b)
     throw std::out_of_range("blob: seven numbers that are no pose");
-  return T_a_b;
+  return *T_a_b;
 }
 
 std::vector<std::uint8_t> pose_blob(const Eigen::Isometry3d& T_a_b) {

@@ -38,11 +38,13 @@ class ByteReader {
   explicit ByteReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
 
   std::uint64_t integer();
+  std::size_t integer(std::size_t max);  ///< refuses a greater one
   double real();
   std::string text(std::size_t max_size);
   void bytes(std::span<std::uint8_t> out);
   Eigen::MatrixXd matrix(std::size_t max_rows, std::size_t max_cols);
   std::optional<Eigen::Isometry3d> pose();
+  Eigen::Isometry3d bare_pose();  ///< added as pose_blob(), without a flag
   bool at_end() const noexcept { return rest_.empty(); }
 
  private:

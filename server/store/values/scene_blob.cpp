@@ -36,39 +36,23 @@ void add(ByteWriter& out, const TaskSpaceRegion& constraint) {
     out.add(bound);
 }
 
-std::size_t read_count(ByteReader& in, std::size_t limit) {
-  const std::uint64_t count = in.integer();
-  if (count > limit)
-    throw std::out_of_range("scene: " + std::to_string(count) + " entries");
-  return count;
-}
-
-Eigen::Isometry3d read_pose(ByteReader& in) {
-  std::array<std::uint8_t, 7 * sizeof(double)> pose{};
-  in.bytes(pose);
-  const std::optional<Eigen::Isometry3d> T = pose_from_blob(pose);
-  if (!T)
-    throw std::out_of_range("scene: seven numbers that are no pose");
-  return *T;
-}
-
 /// A SceneObject or a HeldObject: name, shape, pose, and whether it was fitted around a mesh.
 template <typename Thing>
 Thing read_thing(ByteReader& in) {
   std::string name = in.text(kMaxLinkNameBytes);
   ShapeNumbers numbers;
-  numbers.kind = read_count(in, std::variant_size_v<Shape> - 1);
+  numbers.kind = in.integer(std::variant_size_v<Shape> - 1);
   for (double& size : numbers.sizes)
     size = in.real();
   const Shape shape = to_shape(numbers);
-  const Eigen::Isometry3d T = read_pose(in);
-  return {std::move(name), shape, T, read_count(in, 1) == 1};
+  const Eigen::Isometry3d T = in.bare_pose();
+  return {std::move(name), shape, T, in.integer(1) == 1};
 }
 
 TaskSpaceRegion read_constraint(ByteReader& in) {
   TaskSpaceRegion constraint;
-  constraint.T_task_region = read_pose(in);
-  constraint.T_region_end = read_pose(in);
+  constraint.T_task_region = in.bare_pose();
+  constraint.T_region_end = in.bare_pose();
   for (double& bound : constraint.bounds.reshaped())
     bound = in.real();
   return constraint;
@@ -78,15 +62,15 @@ RecordedScene read_scene(ByteReader& in) {
   if (in.integer() != kSceneFormat)
     throw std::out_of_range("scene: unknown format");
   RecordedScene scene;
-  for (std::size_t count = read_count(in, kMaxSceneObjects); count > 0; --count)
+  for (std::size_t count = in.integer(kMaxSceneObjects); count > 0; --count)
     scene.objects.push_back(read_thing<SceneObject>(in));
-  for (std::size_t count = read_count(in, kMaxHeldObjects); count > 0; --count)
+  for (std::size_t count = in.integer(kMaxHeldObjects); count > 0; --count)
     scene.held.push_back(read_thing<HeldObject>(in));
-  for (std::size_t count = read_count(in, kMaxAllowedPairs); count > 0; --count) {
+  for (std::size_t count = in.integer(kMaxAllowedPairs); count > 0; --count) {
     std::string first = in.text(kMaxLinkNameBytes);
     scene.allowed_collisions.emplace_back(std::move(first), in.text(kMaxLinkNameBytes));
   }
-  if (read_count(in, 1) == 1)
+  if (in.integer(1) == 1)
     scene.constraint = read_constraint(in);
   if (!in.at_end())
     throw std::out_of_range("scene: bytes after its end");

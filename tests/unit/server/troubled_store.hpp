@@ -238,6 +238,13 @@ class TroubledStore final : public store::Store {
   std::optional<Distribution> find_distribution(const Digest& id) const override {
     return store_.find_distribution(id);
   }
+  void put_rehearsal(const store::StoredRehearsal& rehearsal,
+                     const store::RehearsalLimits& limits) override {
+    store_.put_rehearsal(rehearsal, limits);
+  }
+  std::vector<store::StoredRehearsal> read_rehearsals(std::size_t limit) const override {
+    return store_.read_rehearsals(limit);
+  }
   store::Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const override {
     return store_.list_robots(cursor, limit);
   }

@@ -41,6 +41,7 @@ const std::vector<CopiedTable>& copied_tables() {
       {"distribution"},
       {"distribution_use"},
       {"evicted_distribution", false},
+      {"rehearsal"},
       {"audit"},
       {"setting", false, "key = 'revision_floor'"},
       {"retired_report"},

@@ -12,6 +12,7 @@
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
 
 namespace kinship::store {
@@ -29,6 +30,8 @@ bool has_right_content(Database& database, const std::string& table, std::int64_
     return can_read_scene(database, id);
   if (table == "distribution")
     return read_distribution(database, id).distribution.has_value();
+  if (table == "rehearsal")
+    return is_rehearsal_sound(database, id);
   if (table == "robot")
     return is_robot_readable(database, id);
   return true;
@@ -149,7 +152,10 @@ void DamageItem::apply(Batch& batch) {
   if (table_ == "path")
     return quarantine_paths(batch, rows_);
   for (const std::int64_t row : rows_)
-    quarantine_row(batch.database(), table_, row);
+    if (table_ == "rehearsal")
+      drop_rehearsal(batch.database(), row);
+    else
+      quarantine_row(batch.database(), table_, row);
 }
 
 std::optional<std::string> find_damaged_row(Database& database) {

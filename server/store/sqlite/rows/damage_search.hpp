@@ -36,10 +36,11 @@ struct RowsChecked {
 RowsChecked check_rows(Database& database, const std::string& table, std::int64_t after_id,
                        std::int64_t limit);
 
-/// Quarantines damaged rows that a reader found; if it fails, the next reader finds them again.
+/// Quarantines damaged rows that a reader found, or drops them, if they are made anew anyhow; if it
+/// fails, the next reader finds them again.
 class DamageItem : public WriteItem {
  public:
-  /// \param table  one with a quarantine.
+  /// \param table  one with a quarantine, or rehearsal.
   DamageItem(std::string table, std::vector<std::int64_t> rows)
       : table_(std::move(table)), rows_(std::move(rows)) {}
 

@@ -16,9 +16,10 @@ struct Salvaged {
 /// Writes into a new store every row that SQL can read of a damaged one and whose checksum is
 /// right. Where a page cannot be read, the rows behind it are searched by their ids. A damaged
 /// schema is read as that of the new store, which lies at the same places. Counts and sums are
-/// computed again; of distributions only the revisions are kept, they are fitted again. A lost row
-/// that others refer to becomes a quarantined row without content until a client sends it again: a
-/// robot at its registration, a path or a scene with a report.
+/// computed again; of distributions only the revisions are kept, they are fitted again, and
+/// rehearsals are made again. A lost row that others refer to becomes a quarantined row without
+/// content until a client sends it again: a robot at its registration, a path or a scene with a
+/// report.
 ///
 /// \param file         may be damaged anywhere; its WAL is not read.
 /// \param target       an empty store of today's schema, in `target_file`.

@@ -22,6 +22,12 @@ class RehearsalSchedulers : public RehearsalTest {
     return options;
   }
   RehearsalScheduler::Parts parts() { return {*store_, registry_, clock_, experience_}; }
+  /// As a server has them.
+  RehearsalScheduler::Parts kept() {
+    RehearsalScheduler::Parts parts = this->parts();
+    parts.rehearsals = store_.get();
+    return parts;
+  }
   RehearsalKey rehearsal_key(const Digest& robot) const {
     return {key_of(robot), kDefaultExperienceBytes};
   }
@@ -120,6 +126,64 @@ TEST_F(RehearsalSchedulers, WithoutProcessorTimeNothingIsRehearsed) {
   EXPECT_FALSE(wait(experience_index, panda_).get());
   EXPECT_FALSE(experience_index.ask(rehearsal_key(panda_)));
   EXPECT_EQ(experience_index.totals().queued, 0U);
+}
+
+TEST_F(RehearsalSchedulers, TheNextOneOverTheStoreAnswersAtOnce) {
+  report_sweeps(6);
+  Rehearsal made;
+  std::uint64_t revision = 0;
+  {
+    RehearsalScheduler first(kept(), quick());
+    made = *wait(first, panda_).get();
+    revision = first.library(rehearsal_key(panda_))->revision;
+  }
+  RehearsalScheduler second(kept(), quick());
+  const SharedRehearsal known = second.ask(rehearsal_key(panda_));
+  ASSERT_TRUE(known);
+  EXPECT_EQ(*known, made);
+  EXPECT_EQ(*wait(second, panda_).get(), made);
+  EXPECT_EQ(second.totals().done, 0U) << "it compared the paths alone";
+  ASSERT_TRUE(second.library(rehearsal_key(panda_)));
+  EXPECT_EQ(second.library(rehearsal_key(panda_))->revision, revision);
+  EXPECT_EQ(second.find(identify(key_of(panda_))), known);
+  EXPECT_FALSE(second.ask(rehearsal_key(ur10e_))) << "it is one robot's";
+  RehearsalScheduler alone(parts(), quick());
+  EXPECT_FALSE(alone.ask(rehearsal_key(panda_))) << "without the store's rehearsals";
+}
+
+TEST_F(RehearsalSchedulers, TheNextOneServesAPlacementNearAStoredOne) {
+  report_sweeps(6);
+  Rehearsal made;
+  {
+    RehearsalScheduler first(kept(), quick());
+    made = *wait(first, panda_).get();
+  }
+  RehearsalScheduler second(kept(), quick());
+  RehearsalKey near = rehearsal_key(panda_);
+  near.distribution.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0, 0));
+  const SharedRehearsal known = second.ask(near);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(*known, made);
+  EXPECT_TRUE(second.library(near));
+  near.distribution.since_ms = 1;
+  EXPECT_FALSE(second.ask(near)) << "of another selection";
+}
+
+TEST_F(RehearsalSchedulers, AStoredOneIsComparedWithTheExperienceOfToday) {
+  std::vector<Attempt> reports = report_sweeps(6);
+  static_cast<void>(wait(*std::make_unique<RehearsalScheduler>(kept(), quick()), panda_).get());
+  report_sweeps(10);
+  {
+    RehearsalScheduler grown(kept(), quick());
+    EXPECT_TRUE(grown.find(identify(key_of(panda_)))) << "until there is a newer one";
+    static_cast<void>(wait(grown, panda_).get());
+    EXPECT_EQ(grown.totals().done, 1U);
+  }
+  EXPECT_TRUE(RehearsalScheduler(kept(), quick()).ask(rehearsal_key(panda_)));
+  ASSERT_TRUE(store_->retire_path(reports[0].report_uuid));
+  RehearsalScheduler after(kept(), quick());
+  EXPECT_FALSE(after.library(rehearsal_key(panda_))) << "it has a path that is retired";
+  EXPECT_FALSE(after.ask(rehearsal_key(panda_)));
 }
 
 TEST_F(RehearsalSchedulers, AReplyCarriesIt) {

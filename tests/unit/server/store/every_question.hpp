@@ -64,6 +64,9 @@ class EveryQuestion {
         store_->read_scene(*path.scene_id);
     for (std::uint64_t number = 1; number < 9; ++number)
       store_->put_distribution(test::make_distribution(robot_, task_, number));
+    for (const std::uint64_t number : {1U, 2U, 1U})
+      store_->put_rehearsal(test::make_rehearsal(robot_, task_, number), {.count = 1});
+    store_->read_rehearsals(10);
   }
   void fetch() {
     EXPECT_TRUE(store_->find_distribution(test::id_from<Digest>(8)));

@@ -13,6 +13,8 @@
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/experience.hpp"
 #include "server/store/tables/robots.hpp"
+#include "server/store/values/crc32c.hpp"
+#include "server/store/values/rehearsal_blob.hpp"
 
 /// Damage in one place of a store, and what becomes of it and of everything else.
 namespace kinship::store::store_damage_test {
@@ -328,6 +330,66 @@ TEST_F(StoreDamage, AnIndexEntryThatLeadsToAnotherDistributionGivesNone) {
     EXPECT_FALSE(found.distribution) << "of another id";
     EXPECT_TRUE(found.damaged);
   }
+}
+
+TEST_F(StoreDamage, ADamagedRehearsalIsNoneAndTheScrubDropsIt) {
+  const auto put = [this](std::uint64_t number) {
+    store_->put_rehearsal(test::make_rehearsal(robot_.digest, "shelf", number));
+  };
+  for (const std::uint64_t number : {1U, 2U, 3U})
+    put(number);
+  edit("UPDATE rehearsal SET made_ms = made_ms + 1 WHERE id = 1");
+  edit(
+      "UPDATE rehearsal SET payload = CAST(substr(payload, 1, length(payload) - 1) || x'07' AS "
+      "BLOB)"
+      " WHERE id = 2");
+  const StoreCheck found = check();
+  EXPECT_EQ(found.problems, 2U) << testing::PrintToString(found.messages);
+  EXPECT_NE(first_finding_of_scrub().find("table rehearsal: row 1 (checksum), row 2 (checksum)"),
+            std::string::npos);
+  drain();
+  EXPECT_EQ(store_->read_rehearsals(10).size(), 1U);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+  open();
+  put(1);
+  put(2);
+  EXPECT_EQ(store_->read_rehearsals(10).size(), 3U);
+}
+
+TEST_F(StoreDamage, ARehearsalOfAnotherVersionIsNoneButNotDamaged) {
+  const StoredRehearsal rehearsal = test::make_rehearsal(robot_.digest, "shelf", 1);
+  store_->put_rehearsal(rehearsal);
+  store_.reset();
+  std::vector<std::uint8_t> payload = encode_rehearsal(rehearsal);
+  ++payload[0];
+  {
+    Database database(file_, Access::ReadWrite);
+    database.keep_checksums();
+    database.query("UPDATE rehearsal SET payload = $1, crc32c = $2", payload, crc32c(payload));
+  }
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+  open();
+  EXPECT_TRUE(store_->read_rehearsals(10).empty());
+  store_->put_rehearsal(rehearsal);
+  EXPECT_EQ(store_->read_rehearsals(10).size(), 1U);
+}
+
+TEST_F(StoreDamage, APageOfRehearsalsThatCannotBeReadIsInNoOnesWay) {
+  for (std::uint64_t number = 1; number <= 30; ++number)
+    store_->put_rehearsal(test::make_rehearsal(robot_.digest, "shelf", number));
+  store_.reset();
+  break_page(leaves_of("rehearsal").front());
+  open();
+  const std::size_t left = store_->read_rehearsals(100).size();
+  EXPECT_LT(left, 30U);
+  EXPECT_GT(left, 15U);
+  store_.reset();
+  static_cast<void>(first_finding_of_scrub());
+  EXPECT_EQ(report(attempt(1)).status, ReceiptStatus::Stored);
+  for (std::uint64_t number = 1; number <= 30; ++number)
+    store_->put_rehearsal(test::make_rehearsal(robot_.digest, "shelf", number));
+  EXPECT_EQ(store_->read_rehearsals(100).size(), 30U);
 }
 
 /// Reports that find their place in a damaged page of an index.

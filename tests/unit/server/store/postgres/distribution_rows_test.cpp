@@ -5,10 +5,11 @@
 #include <thread>
 
 #include "server/store/postgres/database/transaction.hpp"
+#include "server/store/tables/rehearsals.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/unit/server/store/postgres/empty_store.hpp"
 
-/// Distributions that several servers store and forget at once.
+/// Distributions and rehearsals that several servers store and forget at once.
 namespace kinship::store::postgres::distribution_rows_test {
 namespace {
 
@@ -32,6 +33,15 @@ class DistributionRows : public EmptyStore {
     const std::uint64_t revision = upsert_distribution(connection, distribution, max_bytes);
     EXPECT_EQ(transaction.commit().certainty, Certainty::Committed);
     return revision;
+  }
+  static void put(Connection& connection, const StoredRehearsal& rehearsal) {
+    {
+      Transaction transaction(connection, Transaction::Kind::Write);
+      insert_rehearsal(connection, rehearsal);
+      EXPECT_EQ(transaction.commit().certainty, Certainty::Committed);
+    }
+    for (const std::int64_t row : find_surplus_rehearsals(connection, {}))
+      drop_rehearsal(connection, row);
   }
   static void evict(Connection& connection, const Digest& id) {
     Transaction transaction(connection, Transaction::Kind::Write);
@@ -88,6 +98,28 @@ TEST_F(DistributionRows, ADamagedOneCountsAsAbsentAndIsWrittenOver) {
   EXPECT_FALSE(read.distribution);
   EXPECT_EQ(put(*connection_, made(1)), 2U);
   EXPECT_TRUE(select_distribution(*connection_, made(1).id).distribution);
+}
+
+TEST_F(DistributionRows, OfRehearsalsThatServersStoreAtOnceOneIsLeft) {
+  constexpr std::uint64_t kServers = 4, kTimes = 10;
+  std::vector<std::jthread> servers;
+  for (std::uint64_t server = 0; server < kServers; ++server)
+    servers.emplace_back([&] {
+      const auto connection = connect();
+      for (std::uint64_t i = 0; i < kTimes; ++i)
+        put(*connection, test::make_rehearsal(robot_, "shelf", 1 + i % 2));
+    });
+  servers.clear();
+  EXPECT_EQ(connection_->query("SELECT count(*) FROM rehearsal").front().column_integer(0), 2);
+  EXPECT_EQ(select_rehearsals(*connection_, 10).size(), 2U);
+}
+
+TEST_F(DistributionRows, ADamagedRehearsalIsNoneAndIsWrittenOver) {
+  put(*connection_, test::make_rehearsal(robot_, "shelf", 1));
+  connection_->query("UPDATE rehearsal SET payload = overlay(payload PLACING '\\xff' FROM 90)");
+  EXPECT_TRUE(select_rehearsals(*connection_, 10).empty());
+  put(*connection_, test::make_rehearsal(robot_, "shelf", 1));
+  EXPECT_EQ(select_rehearsals(*connection_, 10).size(), 1U);
 }
 
 }  // namespace
