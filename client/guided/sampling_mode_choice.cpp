@@ -16,7 +16,7 @@ namespace {
 // may, so not every attempt is followed by one.
 constexpr double kComparison_s = 0.4e-6;  // processor time for each attempt compared
 constexpr double kCheck_s = 1e-6;         // for each check where no time is known
-constexpr double kMaxPart = 0.01;         // of the time of planning that comparisons take
+constexpr double kMaxPart = 0.005;        // of the time of planning that comparisons take
 constexpr std::size_t kMaxParts = 4;      // the evidence never grows by more than a fourth unseen
 
 /// Numbers one after another become one number.

@@ -52,7 +52,7 @@ class SamplingModeChooser {
   double guided_part() const;
 
   /// Adds the outcome of a query. Uniform attempts and those that could not be planned at all
-  /// (Failed) are no evidence. The modes are compared anew once that costs at most a hundredth of
+  /// (Failed) are no evidence. The modes are compared anew once that costs at most 0.5 % of
   /// the time planned since, or the evidence has grown by a fourth: deciding takes 1 to 2 us a
   /// query where plans are cheap or guidance does not pay.
   ///
