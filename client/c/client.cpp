@@ -7,6 +7,7 @@
 #include "client/c/errors.hpp"
 #include "client/c/handles.hpp"
 #include "client/link/environment.hpp"
+#include "proto/evidence/machine_speed.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/recorded_scene.hpp"
@@ -87,6 +88,9 @@ Attempt read_attempt(const kinship_attempt& given) {
   attempt.record.collision_checks = given.collision_checks;
   attempt.record.sampling_mode = read_sampling(given.sampling);
   attempt.record.share = given.share;
+  attempt.record.processor_time_s = given.processor_time_s;
+  if (given.processor_time_s > 0)
+    attempt.record.machine_speed = evidence::machine_speed();
   if (given.solved != 0)
     attempt.path = read_path(given);
   if (given.objects != nullptr || given.object_count > 0)

@@ -201,6 +201,9 @@ typedef struct kinship_attempt {
   size_t object_count;
   const char* const* allowed_collisions; /**< 2 n names of objects that may touch, pair by pair */
   size_t allowed_collision_pairs;        /**< n; 0 without objects */
+  /** Processor time on this machine of the query with everything that guidance costs, samples too;
+   * 0: unknown. The server compares sampling modes by it, of whatever machines. */
+  double processor_time_s;
 } kinship_attempt;
 
 /** Puts the attempt into the outbox: durable on return, sent in the background. Never waits for the

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "proto/evidence/machine_speed.hpp"
+
 namespace kinship::guided {
 namespace {
 
@@ -38,6 +40,8 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   record.share = result.share;
   record.distribution_id = result.distribution_id;
   record.distribution_revision = result.distribution_revision;
+  record.processor_time_s = result.processor_time_s;
+  record.machine_speed = evidence::machine_speed();
   if (result.waypoints)
     attempt.path = Path(*result.waypoints);
   return attempt;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "proto/evidence/machine_speed.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::guided {
@@ -250,7 +251,8 @@ QueryGuidance GuidanceCache::choose(const Problem& problem) const {
 void GuidanceCache::add(const PlannedProblem& planned) {
   recall_trust_.add(planned.recall_expected, planned.result.found_by == FoundBy::Recalled);
   if (sampling_)
-    sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks);
+    sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks,
+                   planned.result.processor_time_s * evidence::machine_speed());
 }
 
 }  // namespace kinship::guided

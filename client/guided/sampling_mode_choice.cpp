@@ -12,6 +12,13 @@
 namespace kinship::guided {
 namespace {
 
+// A comparison of the modes costs about 0.1 ms with all attempts that are known, as much as a plan
+// may, so not every attempt is followed by one.
+constexpr double kComparison_s = 0.4e-6;  // processor time for each attempt compared
+constexpr double kCheck_s = 1e-6;         // for each check where no time is known
+constexpr double kMaxPart = 0.005;        // of the time of planning that comparisons take
+constexpr std::size_t kMaxParts = 4;      // the evidence never grows by more than a fourth unseen
+
 /// Numbers one after another become one number.
 class Fingerprint {
  public:
@@ -48,6 +55,7 @@ SamplingModeChooser::SamplingModeChooser(const Advice& advice, const SamplingMod
       control_(attempts_of(advice.control)) {
   require_part("share", options.guided_fraction.value_or(0));
   require_part("control share", options.control_fraction.value_or(0));
+  compare();
 }
 
 SamplingMode SamplingModeChooser::choose(std::uint64_t seed) const {
@@ -66,15 +74,34 @@ double SamplingModeChooser::guided_part() const {
   if (options_.control_fraction)
     return 1 - *options_.control_fraction;
   const double floor = control_ < kEarlyControls ? kEarlyControlFloor : kLateControlFloor;
-  return std::clamp(evidence::compare_costs(window_.recent()).guided_is_cheaper, kGuidedFloor,
-                    1 - floor);
+  return std::clamp(guided_is_cheaper_, kGuidedFloor, 1 - floor);
 }
 
-void SamplingModeChooser::add(SamplingMode mode, Outcome outcome, std::uint64_t checks) {
+void SamplingModeChooser::compare() {
+  guided_is_cheaper_ = evidence::compare_costs(window_.recent()).guided_is_cheaper;
+  added_ = 0;
+  planned_s_ = 0;
+}
+
+/// Where guidance is known not to pay, one query in fifty is guided: what the others bring does not
+/// change that, so they are cheap.
+bool SamplingModeChooser::is_belief_due() const {
+  const std::size_t known = window_.recent().size();
+  return added_ * kMaxParts >= known ||
+         (guided_is_cheaper_ > kGuidedFloor &&
+          kMaxPart * planned_s_ >= kComparison_s * static_cast<double>(known));
+}
+
+void SamplingModeChooser::add(SamplingMode mode, Outcome outcome, std::uint64_t checks,
+                              double time_s) {
   if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
     return;
   ++(mode == SamplingMode::Guided ? guided_ : control_);
-  window_.add(mode, outcome == Outcome::Solved, checks);
+  window_.add(mode, outcome == Outcome::Solved, checks, time_s);
+  ++added_;
+  planned_s_ += time_s > 0 ? time_s : kCheck_s * static_cast<double>(checks);
+  if (is_sampling() && is_belief_due())
+    compare();
 }
 
 std::uint64_t sampling_mode_seed(const Problem& problem) {

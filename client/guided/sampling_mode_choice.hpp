@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -51,17 +52,26 @@ class SamplingModeChooser {
   double guided_part() const;
 
   /// Adds the outcome of a query. Uniform attempts and those that could not be planned at all
-  /// (Failed) are no evidence.
-  void add(SamplingMode mode, Outcome outcome, std::uint64_t checks);
+  /// (Failed) are no evidence. The modes are compared anew once that costs at most 0.5 % of
+  /// the time planned since, or the evidence has grown by a fourth: deciding takes 1 to 2 us a
+  /// query where plans are cheap or guidance does not pay.
+  ///
+  /// \param time_s  see JudgedAttempt; 0: unknown.
+  void add(SamplingMode mode, Outcome outcome, std::uint64_t checks, double time_s = 0);
 
   bool is_sampling() const noexcept { return !options_.control_fraction && !is_uniform(); }
 
  private:
   bool is_uniform() const noexcept { return options_.guided_fraction == 0.0; }
+  bool is_belief_due() const;
+  void compare();
 
   SamplingModeOptions options_;
   evidence::AttemptWindow window_;
   std::uint64_t guided_, control_;  // attempts known, of any age
+  double guided_is_cheaper_ = 0;    // probability, when the modes were compared last
+  std::size_t added_ = 0;           // attempts since then
+  double planned_s_ = 0;            // time that these took
 };
 
 /// How far the chances hold that a library of paths to recall tells: by what the tries of this

@@ -163,7 +163,7 @@
       hide("benefit");
       return;
     }
-    byId("benefit-text").textContent = "What a typical query costs in collision checks without guidance, relative to one with it: above 1 guidance saves. The server\u2019s own estimate " +
+    byId("benefit-text").textContent = "What a typical query costs in processor time (in collision checks where no time is known) without guidance, relative to one with it: above 1 guidance saves. The server\u2019s own estimate " +
       "(proto/evidence) as it stood after each bin, with its 90 % interval, from ten guided and ten control attempts on; all profiles together, where the server\u2019s advice takes each by itself.";
     byId("benefit-keys").append(keys([["guided", "ratio, 90 % interval"], ["ink", "1: no difference"], ["goal", "first attempt with another revision of a distribution", "block"]]));
     for (const robot of compared) {

@@ -209,7 +209,8 @@ void add_benefit(const std::vector<const AttemptSummary*>& attempts, const TaskH
       end_bin();
     bin = of_attempt;
     has_news = true;
-    window.add(record.sampling_mode, record.outcome == Outcome::Solved, record.collision_checks);
+    window.add(record.sampling_mode, record.outcome == Outcome::Solved, record.collision_checks,
+               record.processor_time_s * record.machine_speed);
     ++(record.sampling_mode == SamplingMode::Guided ? belief.guided : belief.control);
   }
   if (has_news)

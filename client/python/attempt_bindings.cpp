@@ -7,6 +7,7 @@
 #include "client/python/bindings.hpp"
 #include "client/python/robot_names.hpp"
 #include "client/python/sampled_distribution.hpp"
+#include "proto/evidence/machine_speed.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::python {
@@ -79,6 +80,14 @@ void bind_record(AttemptClass& attempt) {
   bind_member(attempt, "planner", &PlanningRecord::planner, "Its name.");
   bind_member(attempt, "planner_options", &PlanningRecord::planner_options, "Free text.");
   bind_member(attempt, "planning_time_s", &PlanningRecord::planning_time_s, "0 or more.");
+  attempt.def_property(
+      "processor_time_s",
+      [](const NamedAttempt& self) { return self.attempt.record.processor_time_s; },
+      [](NamedAttempt& self, double time_s) {
+        self.attempt.record.processor_time_s = time_s;
+        self.attempt.record.machine_speed = time_s > 0 ? evidence::machine_speed() : 0;
+      },
+      "Of the query on this machine, with everything that guidance costs; 0: unknown.");
   bind_member(attempt, "time_limit_s", &PlanningRecord::time_limit_s, "0: none said.");
   bind_member(attempt, "collision_checks", &PlanningRecord::collision_checks,
               "Configurations of which any collision question was asked.");

@@ -13,13 +13,14 @@ AttemptWindow::AttemptWindow(std::vector<JudgedAttempt> recent) : recent_(std::m
     drop_beyond_window(mode);
 }
 
-void AttemptWindow::add(SamplingMode mode, bool solved, std::uint64_t checks) {
+void AttemptWindow::add(SamplingMode mode, bool solved, std::uint64_t checks, double time_s) {
   if (mode == SamplingMode::Uniform)
     return;
   for (JudgedAttempt& one : recent_)
     if (one.age < std::numeric_limits<std::uint32_t>::max())
       ++one.age;
-  recent_.push_back({.sampling_mode = mode, .solved = solved, .checks = checks, .age = 0});
+  recent_.push_back(
+      {.sampling_mode = mode, .solved = solved, .checks = checks, .age = 0, .time_s = time_s});
   drop_beyond_window(mode);
 }
 

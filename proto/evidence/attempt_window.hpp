@@ -17,7 +17,8 @@ class AttemptWindow {
   explicit AttemptWindow(std::vector<JudgedAttempt> recent);
 
   /// An attempt newer than all others, which age by one. Uniform ones are no evidence: ignored.
-  void add(SamplingMode mode, bool solved, std::uint64_t checks);
+  /// \param time_s  see JudgedAttempt; 0: unknown.
+  void add(SamplingMode mode, bool solved, std::uint64_t checks, double time_s = 0);
 
   const std::vector<JudgedAttempt>& recent() const noexcept { return recent_; }
 

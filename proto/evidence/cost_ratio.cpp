@@ -13,7 +13,7 @@ namespace kinship::evidence {
 namespace {
 
 constexpr double kBoundOfAll = 3.5;            // robust standard deviations from the median
-constexpr double kMinDeviation = 0.7;          // of log(checks)
+constexpr double kMinDeviation = 0.7;          // of log(cost)
 constexpr double kDeviationOfMedian = 1.4826;  // standard deviations in a median absolute deviation
 
 /// One answer to how fast level and ratio wander, and how likely it is beforehand.
@@ -34,15 +34,30 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The attempts that report checks.
-std::vector<LogCost> log_costs(std::span<const JudgedAttempt> recent) {
+/// Whether times are known well enough to be compared, see compare_costs().
+bool compares_times(std::span<const JudgedAttempt> recent) {
+  return std::ranges::all_of(std::array{SamplingMode::Guided, SamplingMode::Control},
+                             [&](auto mode) {
+                               std::size_t timed = 0, untimed = 0;
+                               for (const JudgedAttempt& attempt : recent)
+                                 if (attempt.sampling_mode == mode) {
+                                   timed += attempt.time_s > 0 ? 1 : 0;
+                                   untimed += attempt.time_s == 0 && attempt.checks > 0 ? 1 : 0;
+                                 }
+                               return timed > 0 && (untimed == 0 || timed >= kMinTimed);
+                             });
+}
+
+/// The attempts that report their cost: processor time, or checks.
+std::vector<LogCost> log_costs(std::span<const JudgedAttempt> recent, bool is_by_time) {
   std::vector<LogCost> costs;
   double last_age = 0;
   for (const JudgedAttempt& attempt : recent) {
-    if (attempt.checks == 0)
+    const double cost = is_by_time ? attempt.time_s : static_cast<double>(attempt.checks);
+    if (cost <= 0)
       continue;
     const auto age = static_cast<double>(attempt.age);
-    costs.push_back({.value = std::log(static_cast<double>(attempt.checks)),
+    costs.push_back({.value = std::log(cost),
                      .effect = attempt.sampling_mode == SamplingMode::Guided ? -0.5 : 0.5,
                      .is_censored = !attempt.solved,
                      .gap = costs.empty() ? 0 : std::max(0.0, last_age - age),
@@ -99,14 +114,17 @@ double CostRatio::quantile(double deviates) const {
 }
 
 CostRatio compare_costs(std::span<const JudgedAttempt> recent) {
-  std::vector<LogCost> costs = log_costs(recent);
+  const bool is_by_time = compares_times(recent);
+  std::vector<LogCost> costs = log_costs(recent, is_by_time);
   const auto is_guided = [](const LogCost& cost) { return cost.effect < 0; };
   const auto guided = std::count_if(costs.begin(), costs.end(), is_guided);
   if (guided == 0 || guided == static_cast<std::ptrdiff_t>(costs.size()))
     return {kPriorLogRatio, kPriorVariance,
-            upper_tail_of(-kPriorLogRatio / std::sqrt(kPriorVariance)), false};
+            upper_tail_of(-kPriorLogRatio / std::sqrt(kPriorVariance))};
   const double level = bound(costs);
-  return average(costs, level);
+  CostRatio ratio = average(costs, level);
+  ratio.is_by_time = is_by_time;
+  return ratio;
 }
 
 }  // namespace kinship::evidence

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "proto/types/advice.hpp"
@@ -11,7 +12,8 @@ struct CostRatio {
   double mean = 0;
   double variance = 1;
   double guided_is_cheaper = 0.5;  ///< probability, 0 to 1
-  bool is_compared = false;  ///< whether both modes had attempts with checks; else it is the prior
+  bool is_compared = false;  ///< whether both modes had attempts with a cost; else it is the prior
+  bool is_by_time = false;   ///< processor times were compared, else collision checks
 
   /// Of the ratio itself, standard deviates from its median; as if the belief were normal.
   double quantile(double deviates) const;
@@ -20,12 +22,19 @@ struct CostRatio {
 /// The weight of an attempt halves after this many others of either mode.
 inline constexpr double kHalfLife = 400;
 
+/// Attempts with a time that a mode needs before its others, whose time is unknown, are left out.
+inline constexpr std::size_t kMinTimed = 10;
+
 /// Estimates the worth of guidance from judged attempts.
 ///
-/// The checks of an attempt are log-normal about the level of the task, which both modes share and
+/// The cost of an attempt is its processor time, scaled to a machine of speed 1: what guidance
+/// takes to compute counts, and what it saves in checks alone does not. Collision checks are
+/// compared as long as a mode has attempts without a time and fewer than kMinTimed with one.
+///
+/// The cost of an attempt is log-normal about the level of the task, which both modes share and
 /// which may wander, and the effect of guidance:
 ///
-///     log(checks) = level -+ log(ratio) / 2 + noise,   - guided, + control
+///     log(cost) = level -+ log(ratio) / 2 + noise,   - guided, + control
 ///
 /// A Kalman filter (drift_filter.hpp) follows level and effect through the attempts, so each is
 /// compared with its neighbours in time: a change that makes the task dearer for both modes moves
@@ -33,14 +42,14 @@ inline constexpr double kHalfLife = 400;
 /// with different speeds, from zero to very fast, run side by side and are averaged by how well
 /// they predicted the attempts. No attempt is dropped; an attempt's weight is 2^(-age / kHalfLife).
 ///
-/// - An unsolved attempt is censored: it would have needed its checks or more.
-/// - One report moves little: log(checks) is brought to within 3.5 robust standard deviations of
+/// - An unsolved attempt is censored: it would have cost as much or more.
+/// - One report moves little: log(cost) is brought to within 3.5 robust standard deviations of
 ///   the median of all, and to within 3 of a filter's prediction.
-/// - Attempts without checks are left out. Without any of a mode the answer is the prior: a ratio
+/// - Attempts without a cost are left out. Without any of a mode the answer is the prior: a ratio
 ///   of 1 / 0.7, give or take a factor e.
 ///
 /// Typical queries are compared (geometric means), not sums: a few very dear queries of one mode
-/// weigh no more than as many clearly dearer ones. Scaling the checks of both modes by a factor
+/// weigh no more than as many clearly dearer ones. Scaling the costs of both modes by a factor
 /// does not change the ratio.
 ///
 /// \param recent  oldest first, age falling.

@@ -1,13 +1,15 @@
 #include "proto/evidence/drift_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace kinship::evidence {
 namespace {
 
-constexpr double kPriorSpread = 0.8;       // variance of one attempt's log(checks)
+constexpr double kPriorSpread = 0.8;       // variance of one attempt's log(cost)
 constexpr double kPriorFreedom = 4;        // attempts that it is worth
 constexpr double kLevelVariance = 4;       // in units of the spread
 constexpr double kMaxLevelVariance = 100;  // after a long gap
@@ -21,11 +23,28 @@ double mean_above(double bound) {
   return std::exp(-bound * bound / 2) / std::sqrt(2 * std::numbers::pi) / upper_tail(bound);
 }
 
-/// Log density of Student's t distribution, without the scale.
-double log_student(double deviates, double freedom) {
+/// Log of the factor of Student's density.
+double log_factor(double freedom) {
   return std::lgamma((freedom + 1) / 2) - std::lgamma(freedom / 2) -
-         std::log(freedom * std::numbers::pi) / 2 -
-         (freedom + 1) / 2 * std::log1p(deviates * deviates / freedom);
+         std::log(freedom * std::numbers::pi) / 2;
+}
+
+/// Of all freedoms that the attempts of an advice lead to: most of a filter's time otherwise.
+const std::array<double, 512>& log_factors() {
+  static const std::array kFactors = [] {
+    std::array<double, 512> factors{};
+    for (std::size_t i = 1; i < factors.size(); ++i)
+      factors[i] = log_factor(static_cast<double>(i));
+    return factors;
+  }();
+  return kFactors;
+}
+
+/// Log density of Student's t distribution, without the scale. \param freedom  a whole number.
+double log_student(double deviates, double freedom) {
+  const auto whole = static_cast<std::size_t>(freedom);
+  const double factor = whole < log_factors().size() ? log_factors()[whole] : log_factor(freedom);
+  return factor - (freedom + 1) / 2 * std::log1p(deviates * deviates / freedom);
 }
 
 }  // namespace

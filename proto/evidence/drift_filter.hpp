@@ -4,7 +4,7 @@ namespace kinship::evidence {
 
 /// One attempt as input of a drift filter.
 struct LogCost {
-  double value = 0;          ///< log(checks)
+  double value = 0;          ///< log(processor time) or log(checks)
   double effect = 0;         ///< of guidance: -1/2 guided, +1/2 control
   bool is_censored = false;  ///< it would have needed more
   double gap = 0;            ///< judged attempts since the one before
@@ -15,7 +15,7 @@ struct LogCost {
 ///
 /// State (level, log ratio), observation level + effect x log ratio + noise of variance V / weight;
 /// V is learned with the state (conjugate, inverse gamma). All covariances are in units of V. A
-/// censored attempt moves the state to its mean and variance given that the checks are above a
+/// censored attempt moves the state to its mean and variance given that the cost is above a
 /// bound (moments of a truncated normal distribution).
 /// Source: West and Harrison, Bayesian Forecasting and Dynamic Models (1997), section 4.5; Johnson,
 /// Kotz and Balakrishnan, Continuous Univariate Distributions 1 (1994), section 13.10.

@@ -38,6 +38,9 @@ struct JudgedAttempt {
   bool solved = false;
   std::uint64_t checks = 0;  ///< collision checks
   std::uint32_t age = 0;     ///< judged attempts in either mode that came after it
+  /// Processor time of everything, on a machine of speed 1 (PlanningRecord: time x speed), s; 0:
+  /// unknown.
+  double time_s = 0;
 
   bool operator==(const JudgedAttempt&) const = default;
 };
@@ -48,7 +51,8 @@ inline constexpr std::tuple kFieldsOf<JudgedAttempt>{
           &JudgedAttempt::sampling_mode,
           {.max = static_cast<double>(SamplingMode::Control)}},
     Field{"solved", &JudgedAttempt::solved}, Field{"checks", &JudgedAttempt::checks},
-    Field{"age", &JudgedAttempt::age}};
+    Field{"age", &JudgedAttempt::age},
+    Field{"time_s", &JudgedAttempt::time_s, {.min = 0, .may_be_missing = true}}};
 
 /// Advice on guidance from the attempts of a (task, robot) on all machines.
 struct Advice {

@@ -46,6 +46,11 @@ struct PlanningRecord {
   double share = 0;  ///< of samples drawn from the distribution, 0 to 1
   std::optional<Digest> distribution_id;
   std::uint64_t distribution_revision = 0;
+  /// Processor time of the query with everything that guidance costs: start, goals, samples,
+  /// search, shortening, proof; 0: unknown.
+  double processor_time_s = 0;
+  /// Of the machine that planned, as evidence::machine_speed() measures it; 0: unknown.
+  double machine_speed = 0;
 };
 
 template <>
@@ -65,7 +70,13 @@ inline constexpr std::tuple kFieldsOf<PlanningRecord>{
     Field{"share", &PlanningRecord::share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"distribution_id", &PlanningRecord::distribution_id},
     Field{
-        "distribution_revision", &PlanningRecord::distribution_revision, {.may_be_missing = true}}};
+        "distribution_revision", &PlanningRecord::distribution_revision, {.may_be_missing = true}},
+    Field{"processor_time_s",
+          &PlanningRecord::processor_time_s,
+          {.min = 0, .max = 1e9, .may_be_missing = true, .mark = "processor_time_s"}},
+    Field{"machine_speed",
+          &PlanningRecord::machine_speed,
+          {.min = 0, .max = 1e6, .may_be_missing = true, .mark = "machine_speed"}}};
 
 /// One planning query of a client: solved (with a path) or not (without).
 struct Attempt {

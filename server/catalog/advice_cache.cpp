@@ -35,11 +35,12 @@ void count(const AttemptCost& cost, store::AttemptTotals& totals) {
   mode.checks_of_solved += is_solved ? checks : 0;
   if (cost.outcome == Outcome::Failed)
     return;
-  add_newest(
-      totals.recent,
-      {.judged = {.sampling_mode = cost.sampling_mode, .solved = is_solved, .checks = cost.checks},
-       .planner = cost.planner,
-       .distribution_id = cost.distribution_id});
+  add_newest(totals.recent, {.judged = {.sampling_mode = cost.sampling_mode,
+                                        .solved = is_solved,
+                                        .checks = cost.checks,
+                                        .time_s = cost.time_s},
+                             .planner = cost.planner,
+                             .distribution_id = cost.distribution_id});
 }
 
 }  // namespace
@@ -51,7 +52,8 @@ AttemptCost cost_of(const Attempt& attempt) {
           attempt.record.outcome,
           attempt.record.collision_checks,
           attempt.record.planner,
-          attempt.record.distribution_id};
+          attempt.record.distribution_id,
+          attempt.record.processor_time_s * attempt.record.machine_speed};
 }
 
 Advice AdviceCache::advise(const std::string& task, const Digest& robot, const Context& context,

@@ -26,6 +26,7 @@ struct AttemptCost {
   std::uint64_t checks = 0;
   std::string planner = {};
   std::optional<Digest> distribution_id = {};
+  double time_s = 0;  ///< see JudgedAttempt
 };
 
 AttemptCost cost_of(const Attempt& attempt);

@@ -39,7 +39,8 @@ std::string describe(const char* mode, const char* unit, const store::ModeTotals
 
 std::string describe(const evidence::CostRatio& ratio) {
   const double better = ratio.guided_is_cheaper;
-  const std::string words = "typical ratio uniform / guided " + text("%.2f", ratio.quantile(0)) +
+  const std::string words = std::string(ratio.is_by_time ? "by processor time, " : "") +
+                            "typical ratio uniform / guided " + text("%.2f", ratio.quantile(0)) +
                             text(" (90 %% %.2f", ratio.quantile(-kQuantile90)) +
                             text(" to %.2f)", ratio.quantile(kQuantile90));
   if (better >= kFullShare)
@@ -67,7 +68,9 @@ Advice advise(const store::AttemptTotals& totals, JudgedAttempts judged, double 
   }
   const evidence::CostRatio ratio = evidence::compare_costs(advice.recent);
   if (!ratio.is_compared) {
-    advice.evidence = "a mode has no attempts that report collision checks: share of the profile";
+    advice.evidence =
+        "a mode has no attempts that report processor time or collision checks: share of the "
+        "profile";
     return advice;
   }
   advice.recommended_share *=

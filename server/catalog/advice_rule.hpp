@@ -19,12 +19,12 @@ inline constexpr std::uint64_t kMinAttempts = 10;
 /// `recommended_share`, from the same belief about ratio = cost of a uniform query / cost of a
 /// guided one (evidence::compare_costs), with p = the probability that guidance is cheaper:
 ///
-///     a mode has fewer than kMinAttempts or reports no checks: profile_share
+///     a mode has fewer than kMinAttempts or reports no cost: profile_share
 ///     else: profile_share x (p - 0.4) / 0.3, between 0 and profile_share
 ///
 /// A share between the two is for the undecided case: a rule that waits for p = 0.95 would plan
 /// worse until then, in either mode. The share moves without a jump and does not depend on the
-/// speed of a planner's checks (a factor on all checks changes nothing).
+/// speed of a planner or a machine (a factor on all costs changes nothing).
 ///
 /// \param profile_share  0 to 1.
 Advice advise(const store::AttemptTotals& totals, JudgedAttempts judged, double profile_share);

@@ -36,7 +36,7 @@ struct JudgedAttempts {
 };
 
 /// Chooses the attempts: none of another context, which may guide differently, and only of one
-/// planner, because checks of two cannot be compared: the planner with most attempts of the
+/// planner, because the costs of two cannot be compared: the planner with most attempts of the
 /// context, or with most of unknown context if there are none. \param known  oldest first.
 JudgedAttempts judged_attempts(const Context& context, const Contexts& contexts,
                                std::span<const store::KnownAttempt> known);

@@ -239,8 +239,9 @@ void Service::expose_guidance(Exposition& page) const {
   expose_modes(page, pairs, &ModeEvidence::solved);
   page.family(
       "kinship_guidance_cost_ratio", Type::Gauge,
-      "Collision checks of a query without guidance / with it, the median of what the newest "
-      "attempts say; above 1 guidance saves. Missing until both modes have attempts.");
+      "Processor time (collision checks, if that is unknown) of a query without guidance / with "
+      "it, the median of what the newest attempts say; above 1 guidance saves. Missing until both "
+      "modes have attempts.");
   for (const Pair& pair : pairs)
     if (pair.ratio.is_compared)
       page.sample(pair.ratio.quantile(0), {{"task", pair.task}, {"robot", pair.robot}});

@@ -138,7 +138,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          models, mixture, json, manual, tables, types},
         {"Eigen", "CLI11"}}},
       {"client/c",
-       {{link, json, mixture, models, collision, geometry, kinematics, types}, {"Eigen"}}},
+       {{link, json, evidence, mixture, models, collision, geometry, kinematics, types},
+        {"Eigen"}}},
       {"client/library",
        {{guided, link, ompl, planning, collision, models, inverse, mixture, kinematics, types},
         {}}},
@@ -147,7 +148,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/python",
        {{guided, link, files, planning, inverse, collision, geometry, kinematics, models, mixture,
-         json, types},
+         evidence, json, types},
         {"Eigen", "pybind11"}}},
       {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json"}}},
   };

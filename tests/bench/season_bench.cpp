@@ -3,11 +3,14 @@
 // medians of a shelf task (uniform 4299 and 2726, guided 2938 and 1810) times what the case says.
 
 #include <cmath>
+#include <cstddef>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/guided/sampling_mode_choice.hpp"
+#include "robots/planning/planning_budget.hpp"
 #include "tests/bench/figure.hpp"
 
 namespace kinship::bench {
@@ -76,11 +79,38 @@ SeasonOutcome play(const Season& season) {
           outcome.guided_after_change / (kSeasons * (kQueries - kChange))};
 }
 
+/// What the choice costs a query, us of processor time, with all evidence there can be.
+/// \param slower  guided / uniform, of the time of a plan, 0.3 ms.
+double choice_us(double slower) {
+  constexpr int kChoices = 20'000, kBefore = 1000;
+  std::mt19937_64 generator(1);
+  std::lognormal_distribution<double> time_s(std::log(0.3e-3), 0.7);
+  std::vector<double> times_s(kBefore + kChoices);
+  for (double& each : times_s)
+    each = time_s(generator);
+  guided::SamplingModeChooser chooser({}, {});
+  double begin_s = 0;
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    if (i == kBefore)
+      begin_s = planning::thread_time_s();
+    const SamplingMode mode = chooser.choose(i);
+    chooser.add(mode, Outcome::Solved, 1000,
+                times_s[i] * (mode == SamplingMode::Guided ? slower : 1));
+  }
+  return (planning::thread_time_s() - begin_s) / kChoices * 1e6;
+}
+
 }  // namespace
 }  // namespace kinship::bench
 
 int main() {
   using kinship::bench::Better;
+  for (const auto& [name, slower] : {std::pair{"3", 3.0}, {"1", 1.0}, {"0.3", 0.3}})
+    kinship::bench::print({.name = "choice, guided plans " + std::string(name) + " x as long",
+                           .value = kinship::bench::choice_us(slower),
+                           .unit = "us a query",
+                           .better = Better::Lower,
+                           .budget = 2});
   for (const auto& season : kinship::bench::kCases) {
     const auto outcome = kinship::bench::play(season);
     kinship::bench::print({.name = season.name,

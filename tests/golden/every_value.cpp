@@ -42,8 +42,16 @@ Advice every_advice(Distinct& next) {
   advice.guided = every_evidence(next);
   advice.control = every_evidence(next);
   advice.recent = {
-      {.sampling_mode = SamplingMode::Control, .solved = true, .checks = next.count(), .age = 9},
-      {.sampling_mode = SamplingMode::Guided, .solved = false, .checks = next.count(), .age = 4},
+      {.sampling_mode = SamplingMode::Control,
+       .solved = true,
+       .checks = next.count(),
+       .age = 9,
+       .time_s = 9.375},
+      {.sampling_mode = SamplingMode::Guided,
+       .solved = false,
+       .checks = next.count(),
+       .age = 4,
+       .time_s = 4.375},
   };
   return advice;
 }
@@ -93,6 +101,8 @@ PlanningRecord every_record(Distinct& next) {
   record.share = next.share();
   record.distribution_id = next.id<Digest>();
   record.distribution_revision = next.count();
+  record.processor_time_s = 10'000 + record.planning_time_s;
+  record.machine_speed = 20'000 + record.planning_time_s;
   return record;
 }
 

@@ -102,6 +102,8 @@ TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
   EXPECT_EQ(totals.control.checks_squared, 3 * 1234 * 1234);
   EXPECT_EQ(totals.control.checks_of_solved, 2 * 1234);
   EXPECT_EQ(totals.guided.attempts, 0U);
+  ASSERT_EQ(totals.recent.size(), 3U);
+  EXPECT_EQ(totals.recent[0].judged.time_s, 0) << "unknown in a schema that lacks it";
   EXPECT_EQ(store_->experience("shelf")[0].retired_generation, 0U);
 }
 

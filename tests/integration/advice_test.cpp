@@ -153,6 +153,7 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
   EXPECT_EQ(advice.control->solved, control.solved);
   EXPECT_EQ(advice.recent.size(), kProblems);
   EXPECT_LT(advice.recommended_share, 0.1) << advice.evidence;
+  EXPECT_NE(advice.evidence.find("by processor time"), std::string::npos) << advice.evidence;
 
   Counts still_guided;
   for (const ProblemResult& result : plan("--guide mixture"))

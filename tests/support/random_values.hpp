@@ -117,6 +117,8 @@ class RandomValues {
     if (coin())
       record.distribution_id = digest();
     record.distribution_revision = count();
+    record.processor_time_s = share();
+    record.machine_speed = 2 * share();
     if (record.outcome == Outcome::Solved)
       attempt.path = Path(matrix(1 + below(32), 2 + below(max_waypoints)));
     return attempt;
@@ -200,7 +202,8 @@ class RandomValues {
       attempt = {.sampling_mode = coin() ? SamplingMode::Guided : SamplingMode::Control,
                  .solved = coin(),
                  .checks = count(),
-                 .age = --age};
+                 .age = --age,
+                 .time_s = share()};
     return recent;
   }
 

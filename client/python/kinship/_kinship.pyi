@@ -207,6 +207,7 @@ class Attempt:
     planner: str
     planner_options: str
     planning_time_s: float
+    processor_time_s: float
     time_limit_s: float
     collision_checks: int
     share: float
@@ -224,6 +225,7 @@ class Attempt:
         planner: str = ...,
         planner_options: str = ...,
         planning_time_s: float = ...,
+        processor_time_s: float = ...,
         time_limit_s: float = ...,
         collision_checks: int = ...,
         share: float = ...,

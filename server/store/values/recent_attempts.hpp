@@ -19,7 +19,8 @@ inline constexpr std::int64_t kMaxRecentRows = 10'000;
 class RecentAttempts {
  public:
   static constexpr std::string_view kColumns =
-      "sampling_mode, outcome, collision_checks, planner, distribution_digest ";
+      "sampling_mode, outcome, collision_checks, planner, distribution_digest, processor_time_s,"
+      " machine_speed ";
 
   bool complete() const { return std::min(guided_, control_) >= kKnownAttemptsPerMode; }
 
@@ -34,7 +35,8 @@ class RecentAttempts {
       newest_first_.push_back({.judged = {.sampling_mode = mode,
                                           .solved = outcome == Outcome::Solved,
                                           .checks = count_of(row, 2),
-                                          .age = age_},
+                                          .age = age_,
+                                          .time_s = row.column_real(5) * row.column_real(6)},
                                .planner = std::string(row.column_text(3)),
                                .distribution_id = optional_id_of<Digest>(row, 4)});
     ++age_;

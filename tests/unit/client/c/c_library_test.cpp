@@ -328,6 +328,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(sizeof(kinship_held_joint), 16U);
   EXPECT_EQ(offsetof(kinship_attempt, share), 112U);
   EXPECT_EQ(offsetof(kinship_attempt, allowed_collision_pairs), 144U);
+  EXPECT_EQ(offsetof(kinship_attempt, processor_time_s), 152U);
   EXPECT_EQ(offsetof(kinship_outbox, refused), 24U);
   EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
   EXPECT_EQ(offsetof(kinship_distribution_info, recommended_share), 40U);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "proto/evidence/machine_speed.hpp"
+
 namespace kinship::guided::attempt_record_test {
 namespace {
 
@@ -14,6 +16,7 @@ PlannedProblem solved() {
   planned.result.collision_checks = 1234;
   planned.result.shortcut_checks = 300;
   planned.result.planning_time_s = 0.5;
+  planned.result.processor_time_s = 0.75;
   planned.planner = "CBiRRT2";
   planned.result.time_limit_s = 10;
   planned.result.waypoints = Eigen::MatrixXd::Random(3, 4);
@@ -29,6 +32,8 @@ TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   EXPECT_EQ(attempt.path->waypoints(), *planned.result.waypoints);
   EXPECT_EQ(attempt.record.outcome, Outcome::Solved);
   EXPECT_EQ(attempt.record.collision_checks, 1234U);  // without those of shortcutting
+  EXPECT_EQ(attempt.record.processor_time_s, 0.75);
+  EXPECT_EQ(attempt.record.machine_speed, evidence::machine_speed());
   EXPECT_EQ(attempt.record.planner, "CBiRRT2");
   EXPECT_EQ(attempt.record.sampling_mode, SamplingMode::Uniform);
   EXPECT_EQ(attempt.task, "box_to_shelf");

@@ -70,6 +70,36 @@ TEST(SamplingModeChooser, TheCheaperArmIsTakenButForTheFloors) {
   EXPECT_DOUBLE_EQ(SamplingModeChooser(advice(60, 60, 1000, 100), {}).guided_part(), 0.02);
 }
 
+TEST(SamplingModeChooser, WhatDoesNotPayInTimeIsNotUsedHoweverManyChecksItSaves) {
+  SamplingModeChooser slow({}, {}), fast({}, {});
+  for (int i = 0; i < 60; ++i) {
+    slow.add(SamplingMode::Guided, Outcome::Solved, 100, 3e-3);
+    slow.add(SamplingMode::Control, Outcome::Solved, 1000, 1e-3);
+    fast.add(SamplingMode::Guided, Outcome::Solved, 1000, 1e-3);
+    fast.add(SamplingMode::Control, Outcome::Solved, 100, 3e-3);
+  }
+  EXPECT_DOUBLE_EQ(slow.guided_part(), 0.02);
+  EXPECT_DOUBLE_EQ(fast.guided_part(), 0.98);
+}
+
+TEST(SamplingModeChooser, ComparesWhatItKnowsAsOftenAsPlanningPaysForIt) {
+  const auto changes = [](double time_s, double worse) {
+    SamplingModeChooser chooser({}, {});
+    int count = 0;
+    for (int i = 0; i < 200; ++i) {
+      const double before = chooser.guided_part();
+      chooser.add(i % 2 == 0 ? SamplingMode::Guided : SamplingMode::Control, Outcome::Solved, 1000,
+                  (1 + 0.7 * (i % 3)) * time_s * (i % 2 == 0 ? worse : 1));
+      if (i >= 100)
+        count += chooser.guided_part() != before ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(changes(1, 1), 100) << "plans are dear";
+  EXPECT_LE(changes(1e-4, 1), 4) << "plans are cheap";
+  EXPECT_GE(changes(1e-4, 1), 2) << "a fourth more is not left unseen";
+}
+
 TEST(SamplingModeChooser, AtLeastATenthIsControlUntilTwentyAreKnown) {
   EXPECT_DOUBLE_EQ(SamplingModeChooser(advice(60, 19, 100, 1000), {}).guided_part(), 0.9);
   SamplingModeChooser chooser(advice(60, 19, 100, 1000), {});
@@ -166,7 +196,7 @@ TEST(SamplingModeChooser, WhatCouldNotBePlannedAtAllTeachesNothing) {
   chooser.add(SamplingMode::Guided, Outcome::Failed, 1);
   chooser.add(SamplingMode::Uniform, Outcome::Solved, 10);
   EXPECT_EQ(chooser.guided_part(), before);
-  chooser.add(SamplingMode::Guided, Outcome::Solved, 1);
+  chooser.add(SamplingMode::Guided, Outcome::Solved, 1, 10);
   EXPECT_NE(chooser.guided_part(), before);
 }
 

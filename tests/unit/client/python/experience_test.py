@@ -25,7 +25,8 @@ class Experience(unittest.TestCase):
         placement[:3, 3] = 1, 2, 3
         solved = attempt(self.panda, "sweep", 1)
         solved.T_task_base, solved.scene = placement, scene
-        unsolved = kinship.Attempt("sweep", self.panda, outcome="timeout", planning_time_s=10, collision_checks=99)
+        unsolved = kinship.Attempt("sweep", self.panda, outcome="timeout", planning_time_s=10, collision_checks=99,
+                                   processor_time_s=10.5)
         kinship.write_experience(self.file, [solved, unsolved], robots=[self.panda])
 
         (robot,), (first, second) = kinship.read_experience(self.file)
@@ -36,6 +37,7 @@ class Experience(unittest.TestCase):
         self.assertEqual((first.outcome, first.collision_checks, len(first.scene)), ("solved", 1000, 1))
         self.assertEqual((second.outcome, second.waypoints, second.collision_checks), ("timeout", None, 99))
         self.assertIsNone(second.T_task_base)
+        self.assertEqual((first.processor_time_s, second.processor_time_s), (0, 10.5))
 
     def test_is_the_json_lines_of_the_format(self):
         made = attempt(self.panda, "sweep", 2)
@@ -44,6 +46,12 @@ class Experience(unittest.TestCase):
         self.assertEqual(robot["robot_description"]["label"], "panda")
         self.assertEqual(line["waypoints"], sweep(2).tolist())
         self.assertEqual(line["record"]["planner"], "birrt")
+        self.assertEqual(line["record"]["machine_speed"], 0)
+        made.processor_time_s = 0.25
+        record = json.loads(made.to_json())["record"]
+        self.assertEqual(record["processor_time_s"], 0.25)
+        self.assertGreater(record["machine_speed"], 0)
+        made.processor_time_s = 0
         self.assertEqual(json.loads(made.to_json()), line)
 
     def test_labels_of_robots_in_the_file_become_digests(self):

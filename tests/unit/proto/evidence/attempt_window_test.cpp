@@ -10,10 +10,11 @@ namespace {
 TEST(AttemptWindow, AddedAttemptsMakeTheOthersOlder) {
   AttemptWindow window(
       {{SamplingMode::Control, true, 500, 3}, {SamplingMode::Guided, false, 900, 0}});
-  window.add(SamplingMode::Guided, true, 70);
-  EXPECT_EQ(window.recent(), (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 500, 4},
-                                                         {SamplingMode::Guided, false, 900, 1},
-                                                         {SamplingMode::Guided, true, 70, 0}}));
+  window.add(SamplingMode::Guided, true, 70, 0.5);
+  EXPECT_EQ(window.recent(),
+            (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 500, 4},
+                                        {SamplingMode::Guided, false, 900, 1},
+                                        {SamplingMode::Guided, true, 70, 0, 0.5}}));
 }
 
 TEST(AttemptWindow, UniformAttemptsAreNoEvidence) {

@@ -62,6 +62,59 @@ TEST(CostRatio, AttemptsThatReportNoChecksCompareNothing) {
   EXPECT_FALSE(compare_costs(even_attempts(20, 100, 20, 0).recent()).is_compared);
 }
 
+/// Modes in turn, each attempt with these checks and this time.
+AttemptWindow timed_attempts(int count, std::uint64_t guided_checks, double guided_s,
+                             std::uint64_t control_checks, double control_s) {
+  AttemptWindow window;
+  for (int i = 0; i < count; ++i) {
+    window.add(SamplingMode::Guided, true, guided_checks, guided_s);
+    window.add(SamplingMode::Control, true, control_checks, control_s);
+  }
+  return window;
+}
+
+TEST(CostRatio, GuidanceThatSavesChecksButTakesLongerIsDearer) {
+  const CostRatio ratio = compare_costs(timed_attempts(40, 500, 2e-3, 1000, 1e-3).recent());
+  EXPECT_TRUE(ratio.is_by_time);
+  EXPECT_NEAR(ratio.quantile(0), 0.5, 0.05);
+  EXPECT_LT(ratio.guided_is_cheaper, 0.01);
+}
+
+TEST(CostRatio, GuidanceThatNeedsMoreChecksButLessTimeIsCheaper) {
+  const CostRatio ratio = compare_costs(timed_attempts(40, 1000, 1e-3, 500, 2e-3).recent());
+  EXPECT_NEAR(ratio.quantile(0), 2, 0.1);
+  EXPECT_GT(ratio.guided_is_cheaper, 0.99);
+}
+
+TEST(CostRatio, ATimeWithoutChecksIsACost) {
+  EXPECT_TRUE(compare_costs(timed_attempts(12, 0, 1e-3, 500, 2e-3).recent()).is_by_time);
+}
+
+TEST(CostRatio, ChecksAreComparedUntilTenAttemptsOfEachModeHaveATime) {
+  AttemptWindow window = even_attempts(40, 500, 40, 1000);
+  const auto add_timed = [&window] {
+    window.add(SamplingMode::Guided, true, 500, 2e-3);
+    window.add(SamplingMode::Control, true, 1000, 1e-3);
+  };
+  for (std::size_t i = 1; i < kMinTimed; ++i)
+    add_timed();
+  EXPECT_FALSE(compare_costs(window.recent()).is_by_time);
+  EXPECT_GT(probability(window), 0.99);
+  add_timed();
+  EXPECT_TRUE(compare_costs(window.recent()).is_by_time);
+  EXPECT_LT(probability(window), 0.5);
+}
+
+TEST(CostRatio, OneTimedModeAloneIsComparedByChecks) {
+  AttemptWindow window;
+  for (int i = 0; i < 30; ++i) {
+    window.add(SamplingMode::Guided, true, 500, 2e-3);
+    window.add(SamplingMode::Control, true, 1000);
+  }
+  EXPECT_FALSE(compare_costs(window.recent()).is_by_time);
+  EXPECT_NEAR(compare_costs(window.recent()).quantile(0), 2, 0.1);
+}
+
 TEST(CostRatio, TheMedianComesToTheRatioOfTheCosts) {
   const CostRatio ratio = compare_costs(even_attempts(60, 1000, 60, 3000).recent());
   EXPECT_NEAR(ratio.quantile(0), 3, 0.1) << "uniform / guided";

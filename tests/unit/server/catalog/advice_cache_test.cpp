@@ -94,6 +94,43 @@ TEST_F(AdviceCacheTest, CommittedAttemptsAreAddedToTheirArm) {
   EXPECT_EQ(readings_, 1);
 }
 
+/// Of a machine of this speed.
+AttemptCost timed_cost(SamplingMode mode, double processor_time_s, double machine_speed) {
+  Attempt attempt = test::make_attempt({}, "shelf", 1);
+  attempt.record.sampling_mode = mode;
+  attempt.record.distribution_id = kDistribution;
+  attempt.record.processor_time_s = processor_time_s;
+  attempt.record.machine_speed = machine_speed;
+  return cost_of(attempt);
+}
+
+TEST_F(AdviceCacheTest, TimesOfMachinesThatDifferAreComparedAsOfOne) {
+  advise();
+  run_later();
+  for (int i = 0; i < 30; ++i) {
+    advice_.add(timed_cost(SamplingMode::Guided, 0.008, 0.25));  // a slow machine guides
+    advice_.add(timed_cost(SamplingMode::Control, 0.004, 1));    // a fast one does not
+  }
+  run_later();
+  EXPECT_DOUBLE_EQ(advise().recent.back().time_s, 0.004);
+  EXPECT_NE(advise().evidence.find("by processor time, typical ratio uniform / guided 1.9"),
+            std::string::npos)
+      << advise().evidence;
+  EXPECT_EQ(advise().recommended_share, kProfileShare);
+}
+
+TEST_F(AdviceCacheTest, ATimeOfAMachineOfUnknownSpeedIsNoTime) {
+  advise();
+  run_later();
+  for (int i = 0; i < 30; ++i) {
+    advice_.add(timed_cost(SamplingMode::Guided, 0.008, 0));
+    advice_.add(timed_cost(SamplingMode::Control, 0.004, 1));
+  }
+  run_later();
+  EXPECT_NE(advise().evidence.find("; typical ratio uniform / guided 1.0"), std::string::npos)
+      << advise().evidence << ": equal checks";
+}
+
 TEST_F(AdviceCacheTest, RecentAttemptsGoOnFromTheStoredOnes) {
   stored_.recent = {{{SamplingMode::Control, true, 700, 0}, "birrt", kDistribution}};
   advise();

@@ -15,14 +15,14 @@ constexpr double kProfileShare = 0.9;
 /// Attempts of one context as the store sums them up.
 class Ledger {
  public:
-  Ledger& add(SamplingMode mode, int count, double checks, int solved) {
+  Ledger& add(SamplingMode mode, int count, double checks, int solved, double time_s = 0) {
     store::ModeTotals& totals = mode == SamplingMode::Guided ? totals_.guided : totals_.control;
     for (int i = 0; i < count; ++i) {
       ++totals.attempts;
       ++(mode == SamplingMode::Guided ? judged_.guided : judged_.control);
       totals.solved += i < solved ? 1 : 0;
       totals.checks += checks;
-      window_.add(mode, i < solved, static_cast<std::uint64_t>(checks));
+      window_.add(mode, i < solved, static_cast<std::uint64_t>(checks), time_s);
     }
     judged_.attempts = window_.recent();
     return *this;
@@ -91,6 +91,36 @@ TEST(AdviceRule, EvidenceNamesCostsAttemptsRatioAndInterval) {
   EXPECT_NE(worse.evidence.find("worse: uniform"), std::string::npos) << worse.evidence;
 }
 
+TEST(AdviceRule, GuidanceThatNeedsFewerChecksButMoreTimeIsNotAdvised) {
+  const Advice advice = Ledger()
+                            .add(SamplingMode::Control, 30, 2000, 30, 1e-3)
+                            .add(SamplingMode::Guided, 30, 500, 30, 3e-3)
+                            .advice();
+  EXPECT_EQ(advice.recommended_share, 0);
+  EXPECT_NE(advice.evidence.find("guided 500 checks per solution in 30 attempts, control 2000 in "
+                                 "30; by processor time, typical ratio uniform / guided 0.3"),
+            std::string::npos)
+      << advice.evidence;
+  EXPECT_EQ(Ledger()
+                .add(SamplingMode::Control, 30, 500, 30, 3e-3)
+                .add(SamplingMode::Guided, 30, 2000, 30, 1e-3)
+                .advice()
+                .recommended_share,
+            kProfileShare)
+      << "and the other way round";
+}
+
+TEST(AdviceRule, AttemptsFromBeforeTimesWereReportedAreComparedByChecks) {
+  EXPECT_EQ(Ledger()
+                .add(SamplingMode::Control, 30, 2000)
+                .add(SamplingMode::Guided, 30, 500)
+                .add(SamplingMode::Guided, 5, 500, 5, 3e-3)
+                .add(SamplingMode::Control, 5, 2000, 5, 1e-3)
+                .advice()
+                .recommended_share,
+            kProfileShare);
+}
+
 TEST(AdviceRule, AnArmThatSolvedNothingIsNamedAndCostsMore) {
   const Advice advice =
       Ledger().add(SamplingMode::Guided, 30, 1000, 0).add(SamplingMode::Control, 30, 1000).advice();
@@ -103,7 +133,8 @@ TEST(AdviceRule, WithoutChecksThereIsNothingToCompare) {
   const Advice advice =
       Ledger().add(SamplingMode::Guided, 30, 0).add(SamplingMode::Control, 30, 1000).advice();
   EXPECT_EQ(advice.recommended_share, kProfileShare);
-  EXPECT_NE(advice.evidence.find("report collision checks"), std::string::npos) << advice.evidence;
+  EXPECT_NE(advice.evidence.find("report processor time or collision checks"), std::string::npos)
+      << advice.evidence;
 }
 
 TEST(AdviceRule, ShareMovesWithoutAJumpAndNeverUpAsGuidanceGetsDearer) {

@@ -144,8 +144,11 @@ TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
     made.record.collision_checks = number;
     made.record.planner = number == 5 ? "rrtc" : "birrt";
     made.record.distribution_id.reset();
-    if (number == 5)
+    made.record.processor_time_s = 0.25;
+    if (number == 5) {
       made.record.distribution_id = distribution;
+      made.record.machine_speed = 3;
+    }
     return made;
   };
   test::report(*store_, {attempt(1, SamplingMode::Control, Outcome::Solved),
@@ -158,7 +161,8 @@ TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
       store_->attempt_totals(panda_.digest, "shelf").recent,
       (std::vector<KnownAttempt>{{{SamplingMode::Control, true, 1, 2}, "birrt", {}},
                                  {{SamplingMode::Guided, false, 2, 1}, "birrt", {}},
-                                 {{SamplingMode::Guided, true, 5, 0}, "rrtc", distribution}}));
+                                 {{SamplingMode::Guided, true, 5, 0, 0.75}, "rrtc", distribution}}))
+      << "a time counts with the speed of its machine alone";
   EXPECT_TRUE(store_->attempt_totals(iiwa_.digest, "shelf").recent.empty());
 }
 
