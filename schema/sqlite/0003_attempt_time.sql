@@ -1,4 +1,4 @@
--- 0002: what a query cost in processor time, and on how fast a machine.
+-- 0003: what a query cost in processor time, and on how fast a machine.
 
 -- With everything that guidance costs; 0: unknown, as in all attempts from before.
 ALTER TABLE attempt ADD COLUMN processor_time_s REAL NOT NULL DEFAULT 0 CHECK (processor_time_s >= 0);

@@ -1,4 +1,4 @@
--- 0002: what a query cost in processor time, and on how fast a machine.
+-- 0003: what a query cost in processor time, and on how fast a machine.
 
 -- With everything that guidance costs; 0: unknown, as in all attempts from before.
 ALTER TABLE attempt ADD COLUMN processor_time_s double precision NOT NULL DEFAULT 0
