@@ -8,6 +8,7 @@
 #include "client/guided/guidance.hpp"
 #include "client/python/robot.hpp"
 #include "client/python/sampled_distribution.hpp"
+#include "robots/recall/recall_trust.hpp"
 
 namespace kinship::python {
 
@@ -38,7 +39,7 @@ class GuidanceHandle {
 
  private:
   const Digest robot_;
-  guided::RecallTrust recall_trust_;
+  recall::RecallTrust recall_trust_;
   guided::GuidanceAnswer answer_;  // but for its chooser never changed
   mutable std::mutex mutex_;       // guards the chooser
 };
