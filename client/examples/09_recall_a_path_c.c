@@ -35,7 +35,7 @@ int main(int count, char** words) {
   char folder[4096];
   kinship_robot_file arm = {.size = sizeof arm, .source = folder};
   kinship_surroundings around = {.size = sizeof around, .objects = &post, .object_count = 1};
-  kinship_request request = {sizeof request, &robot, "sweep", NULL, NULL, 60000, NULL, 0, 0};
+  kinship_request request = {sizeof request, &robot, "sweep", NULL, NULL, 60000, start, 6, 0};
   kinship_recall_query query = {sizeof query, NULL, 6,       start,        goal, 1, NULL,
                                 &post,        1,    is_free, is_line_free, NULL, 0};
   kinship_recalled recalled = {.size = sizeof recalled};

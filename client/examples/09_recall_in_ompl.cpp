@@ -31,12 +31,12 @@ int main(int count, char** words) try {
   request.T_task_base = T_task_base;
   request.experience_bytes = kDefaultExperienceBytes;
   request.rehearsed = true;  // waits until the server has made the paths
+  request.start.assign(start.begin(), start.end());
   request.deadline = std::chrono::seconds(60);
   const FetchReply reply = client.fetch(request).value_or_throw();
   std::shared_ptr<const recall::RecallGuide> guide;
   if (reply.recall && !reply.recall->paths.empty())
     guide = std::make_shared<const recall::RecallGuide>(arm.chain, *reply.recall);
-
   const auto space = ompl_planners::make_state_space(planning::planning_bounds(arm.chain, start));
   ompl::geometric::SimpleSetup setup(space);
   setup.setStateValidityChecker([&](const ob::State* state) {
@@ -46,8 +46,8 @@ int main(int count, char** words) try {
   ompl_planners::copy_to_state(start, *from.get());
   ompl_planners::copy_to_state(goal, *to.get());
   setup.setStartAndGoalStates(from, to);
-  const auto planner =
-      std::make_shared<ompl_planners::RecallPlanner>(setup.getSpaceInformation(), guide);
+  const auto& information = setup.getSpaceInformation();
+  const auto planner = std::make_shared<ompl_planners::RecallPlanner>(information, guide);
   planner->set_scene(T_task_base, scene.objects);
   setup.setPlanner(planner);
   const bool solved = setup.solve(20) == ob::PlannerStatus::EXACT_SOLUTION;

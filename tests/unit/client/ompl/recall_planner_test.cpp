@@ -230,7 +230,7 @@ TEST_F(RecallPlannerTest, NothingIsAskedWhenTheTimeIsOver) {
             ob::PlannerStatus::EXACT_SOLUTION);
   const auto& planner = dynamic_cast<const RecallPlanner&>(*asked->setup.getPlanner());
   EXPECT_EQ(planner.recalled().tries, 0U);
-  EXPECT_LE(asked->world.checks() - before, 4U * (1 + asked->posed.goals.cols()))
+  EXPECT_LE(asked->world.checks() - before, 2U * (1 + asked->posed.goals.cols()))
       << "OMPL asks for start and goals as it takes them up";
 }
 
