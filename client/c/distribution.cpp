@@ -24,6 +24,19 @@ FetchRequest read_request(const kinship_request& given) {
   return request;
 }
 
+/// The same for paths to recall.
+FetchRequest read_recall_request(const kinship_request& given) {
+  FetchRequest request = read_request(given);
+  request.experience_bytes = kDefaultExperienceBytes;
+  if (given.start != nullptr) {
+    if (given.start_dof < 1 || given.start_dof > kMaxDof)
+      throw Failure(invalid_input("request->start_dof is " + std::to_string(given.start_dof) +
+                                  ", must be 1 to " + std::to_string(kMaxDof)));
+    request.start.assign(given.start, given.start + given.start_dof);
+  }
+  return request;
+}
+
 /// Why a fetch brought no distribution.
 kinship_code explain(const FetchReply& reply, const std::string& task) {
   const auto say = [&](kinship_code code, const std::string& otherwise) {
@@ -97,6 +110,31 @@ kinship_code kinship_fetch(kinship_client* client, const kinship_request* reques
   });
 }
 
+kinship_code kinship_fetch_recall(kinship_client* client, const kinship_request* request,
+                                  kinship_recall** recall) {
+  return guarded([&] {
+    require(client, "client");
+    require(recall, "recall");
+    *recall = nullptr;
+    kinship::FetchRequest wanted = read_recall_request(read_structure(request, "request"));
+    const kinship::kinematics::Chain chain = client->chain_of(wanted.robot);
+    wanted.rehearsed = wanted.deadline.count() > 0;
+    const auto reply = client->line.fetch(wanted);
+    if (!reply)
+      return remember(reply.error());
+    if (reply->recall && !reply->recall->paths.empty()) {
+      *recall = new kinship_recall(chain, *reply->recall);
+      return KINSHIP_OK;
+    }
+    if (reply->status != kinship::FetchStatus::Ready)
+      return explain(*reply, wanted.task);
+    if (!reply->rehearsal || reply->rehearsal->is_complete)
+      return remember(KINSHIP_NO_EXPERIENCE, "no paths to recall for task '" + wanted.task + "'");
+    return remember(KINSHIP_PENDING,
+                    "paths to recall for task '" + wanted.task + "' are still being made");
+  });
+}
+
 void kinship_distribution_free(kinship_distribution* distribution) { delete distribution; }
 
 kinship_code kinship_distribution_describe(const kinship_distribution* distribution,
@@ -139,8 +177,14 @@ kinship_code kinship_follower_open(kinship_client* client, const kinship_request
     require(client, "client");
     require(follower, "follower");
     *follower = nullptr;
-    *follower =
-        new kinship_follower{client->line.follow(read_request(read_structure(request, "request")))};
+    const kinship_request given = read_structure(request, "request");
+    if (given.with_recall == 0) {
+      *follower = new kinship_follower{client->line.follow(read_request(given)), {}};
+      return KINSHIP_OK;
+    }
+    const kinship::FetchRequest wanted = read_recall_request(given);
+    kinship::kinematics::Chain chain = client->chain_of(wanted.robot);
+    *follower = new kinship_follower{client->line.follow(wanted), std::move(chain)};
     return KINSHIP_OK;
   });
 }
@@ -163,6 +207,24 @@ kinship_code kinship_follower_newer(kinship_follower* follower, const kinship_di
     if (is_same(newest, known))
       return remember(KINSHIP_PENDING, "the distribution that is held is the newest");
     *distribution = new kinship_distribution{newest};
+    return KINSHIP_OK;
+  });
+}
+
+kinship_code kinship_follower_recall(kinship_follower* follower, const kinship_recall* held,
+                                     kinship_recall** recall) {
+  return guarded([&] {
+    require(follower, "follower");
+    require(recall, "recall");
+    *recall = nullptr;
+    if (!follower->chain)
+      return remember(KINSHIP_INVALID_INPUT, "the follower's request said no with_recall");
+    const std::shared_ptr<const kinship::RecallLibrary> newest = follower->value->recall();
+    if (!newest)
+      return remember(KINSHIP_PENDING, "no paths to recall have come yet");
+    if (held != nullptr && held->guide.library().revision == newest->revision)
+      return remember(KINSHIP_PENDING, "the paths that are held are the newest");
+    *recall = new kinship_recall(*follower->chain, *newest);
     return KINSHIP_OK;
   });
 }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,13 +17,34 @@
 #include "proto/types/recorded_scene.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/edge_prover.hpp"
+#include "robots/kinematics/chain.hpp"
 #include "robots/models/loaded_robot.hpp"
+#include "robots/recall/recall_guide.hpp"
+#include "robots/recall/recall_trust.hpp"
 
 /// Definitions of the handles of kinship.h; their names follow C.
 // NOLINTBEGIN(readability-identifier-naming)
 struct kinship_client {
   explicit kinship_client(const kinship::link::ClientOptions& options) : line(options) {}
   kinship::link::Client line;
+
+  void keep(const kinship::kinematics::Chain& chain) {
+    const std::scoped_lock lock(mutex);
+    chains.insert_or_assign(chain.digest(), chain);
+  }
+  /// \throws Failure(NotFound) if the client did not register the robot.
+  kinship::kinematics::Chain chain_of(const kinship::Digest& robot) {
+    const std::scoped_lock lock(mutex);
+    const auto found = chains.find(robot);
+    if (found == chains.end())
+      throw kinship::Failure(kinship::ErrorCode::NotFound,
+                             "robot " + robot.short_hex() + " was not registered by this client");
+    return found->second;
+  }
+
+ private:
+  std::mutex mutex;                                              // guards the chains
+  std::map<kinship::Digest, kinship::kinematics::Chain> chains;  // of robots that it registered
 };
 
 struct kinship_distribution {
@@ -30,6 +53,15 @@ struct kinship_distribution {
 
 struct kinship_follower {
   std::unique_ptr<kinship::link::Follower> value;
+  std::optional<kinship::kinematics::Chain> chain;  // with recall
+};
+
+struct kinship_recall {
+  kinship_recall(const kinship::kinematics::Chain& chain, const kinship::RecallLibrary& library)
+      : guide(chain, library) {}
+  const kinship::recall::RecallGuide guide;
+  std::mutex mutex;  // guards the trust
+  kinship::recall::RecallTrust trust;
 };
 
 struct kinship_sampler {

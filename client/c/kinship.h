@@ -1,7 +1,7 @@
 /** \file kinship.h
  * Kinship for C and for whatever calls C: register a robot, report paths, fetch or follow the
- * distribution that the fleet's experience gives it, draw configurations from it; without a server
- * prove that edges touch nothing.
+ * distribution that the fleet's experience gives it, draw configurations from it; recall whole
+ * paths; without a server prove that edges touch nothing.
  *
  * - Functions that can fail return a kinship_code; kinship_error_text() then says in words what
  * went wrong in the last call of this thread, with the thing, its value and the limit. What they
@@ -250,6 +250,11 @@ typedef struct kinship_request {
   const double* T_task_base; /**< where this robot stands; NULL: used as identity */
   const char* profile;       /**< NULL: "default" */
   uint32_t deadline_ms;      /**< 0: what is there, within the client's timeout */
+  /** Where queries of the robot usually begin, joint units: what other robots recorded is planned
+   * from there for kinship_recall; NULL: the server looks for a start. */
+  const double* start;
+  size_t start_dof; /**< of start */
+  int with_recall;  /**< not 0: the follower holds what kinship_follower_recall() gives, too */
 } kinship_request;
 
 /** Waits until the distribution is made, up to the deadline.
@@ -399,6 +404,74 @@ KINSHIP_API kinship_code kinship_world_edge_free(kinship_world* world, const dou
 KINSHIP_API kinship_code kinship_world_path_free(kinship_world* world, const double* waypoints,
                                                  size_t count, size_t dof, double clearance_m,
                                                  kinship_proof* proof);
+
+/* ----------------------------------------------------------------------------------------------
+ * recall */
+
+/** Whole paths of a robot for a task, to be moved onto a query and tried before any search. It
+ * learns from its tries how far to trust them, else it never changes. */
+typedef struct kinship_recall kinship_recall;
+
+/** Waits until the server has planned the recorded queries again, up to the request's deadline.
+ * \param request  its robot was registered by this client: the paths are moved by its kinematics.
+ * \return as kinship_fetch(); KINSHIP_PENDING while the server still makes the first paths,
+ * KINSHIP_NO_EXPERIENCE if it has none, e.g. as no scenes were reported, KINSHIP_NOT_FOUND if the
+ * client did not register the robot. */
+KINSHIP_API kinship_code kinship_fetch_recall(kinship_client* client,
+                                              const kinship_request* request,
+                                              kinship_recall** recall);
+/** The newest paths of a follower whose request said `with_recall`, a handle of its own. Never
+ * waits. \param held  those that the caller has; NULL: any will do. \return KINSHIP_OK with paths
+ * that differ from `held`, KINSHIP_PENDING without. */
+KINSHIP_API kinship_code kinship_follower_recall(kinship_follower* follower,
+                                                 const kinship_recall* held,
+                                                 kinship_recall** recall);
+KINSHIP_API void kinship_recall_free(kinship_recall* recall);
+
+/** A query, and the caller's collision checker, which is called by the calling thread alone. */
+typedef struct kinship_recall_query {
+  size_t size;
+  const double* T_task_base; /**< where the robot stands; NULL: used as identity */
+  size_t dof;
+  const double* start;       /**< dof numbers, joint units */
+  const double* goals;       /**< dof numbers each, one after the other; any of them will do */
+  size_t goal_count;         /**< 0: any configuration at T_task_goal */
+  const double* T_task_goal; /**< of the transfer frame, in the task's frame; else not looked at */
+  /** The scene: paths are moved with the furniture that is named as in the reports. Only names and
+   * poses count; what is held is not looked at. NULL: none is known. */
+  const kinship_object* objects;
+  size_t object_count;
+  /** Whether the robot may be at a configuration of dof numbers, within the limits of its joints:
+   * 1 yes, 0 no; below 0 gives up. */
+  int (*is_free)(void* user, const double* q, size_t dof);
+  /** The same of the straight line between two that are free. NULL: it is if is_free says so of
+   * configurations at most `step` apart. */
+  int (*is_line_free)(void* user, const double* from, const double* to, size_t dof);
+  void* user;  /**< the first argument of both */
+  double step; /**< between checked configurations, joint units; 0: 0.05 */
+} kinship_recall_query;
+
+/** Waypoints that a recalled path has at most. */
+#define KINSHIP_RECALL_WAYPOINTS 32
+
+typedef struct kinship_recalled {
+  size_t size;
+  int is_recalled;       /**< 1: there is a path; 0: none was free, or none worth a try: search */
+  int is_straight_line;  /**< 1: the straight line was free, which takes no experience */
+  size_t waypoint_count; /**< 0 without a path */
+  uint64_t tries;        /**< paths that were tried */
+  uint64_t checks;       /**< calls of is_free */
+} kinship_recalled;
+
+/** Tries paths on a query, the most promising first, as long as that is cheaper in the mean than a
+ * search. A path begins in the start, ends in a goal or at T_task_goal, and is straight between its
+ * waypoints; the callbacks said of each of its configurations or lines that they are free.
+ * \param waypoints  the path, dof numbers each, start first; untouched without one.
+ * \param room       configurations that fit there, at least KINSHIP_RECALL_WAYPOINTS.
+ * \param recalled   set with KINSHIP_OK, whether there is a path or not. */
+KINSHIP_API kinship_code kinship_recall_path(kinship_recall* recall,
+                                             const kinship_recall_query* query, double* waypoints,
+                                             size_t room, kinship_recalled* recalled);
 
 /* NOLINTEND(readability-identifier-naming,readability-function-size) */
 #ifdef __cplusplus

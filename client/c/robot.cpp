@@ -94,13 +94,14 @@ kinematics::RobotModel read_file(const kinship_robot_file& given) {
   return model;
 }
 
-kinship_code register_with(link::Client& line, const kinematics::RobotModel& model,
+kinship_code register_with(kinship_client& client, const kinematics::RobotModel& model,
                            kinship_robot& robot, size_t* dof) {
   const Digest digest = model.chain.digest();
   std::ranges::copy(digest.bytes, robot.digest);
   if (dof != nullptr)
     *dof = static_cast<size_t>(model.chain.dof());
-  const auto reply = line.register_robot(model);
+  client.keep(model.chain);
+  const auto reply = client.line.register_robot(model);
   if (!reply)
     return remember(reply.error());
   return reply->status == RegisterStatus::Refused ? remember(KINSHIP_REFUSED, reply->message)
@@ -132,7 +133,7 @@ kinship_code kinship_register(kinship_client* client, const kinship_robot_descri
   return guarded([&] {
     require(client, "client");
     require(robot, "robot");
-    return register_with(client->line,
+    return register_with(*client,
                          kinship::kinematics::read_model(
                              read_description(read_structure(description, "description")))
                              .value_or_throw(),
@@ -145,6 +146,6 @@ kinship_code kinship_register_file(kinship_client* client, const kinship_robot_f
   return guarded([&] {
     require(client, "client");
     require(robot, "robot");
-    return register_with(client->line, read_file(read_structure(file, "file")), *robot, dof);
+    return register_with(*client, read_file(read_structure(file, "file")), *robot, dof);
   });
 }

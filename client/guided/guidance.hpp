@@ -15,6 +15,7 @@
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/recall/recall_trust.hpp"
 
 namespace kinship::guided {
 
@@ -91,7 +92,7 @@ class GuidanceCache {
   std::map<Key, GuidanceAnswer> answers_;
   KnownExperience known_;                        // of all placements
   std::optional<SamplingModeChooser> sampling_;  // of all placements: same task, same robot
-  RecallTrust recall_trust_;
+  recall::RecallTrust recall_trust_;
   bool server_missing_ = false;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -72,23 +71,6 @@ class SamplingModeChooser {
   double guided_is_cheaper_ = 0;    // probability, when the modes were compared last
   std::size_t added_ = 0;           // attempts since then
   double planned_s_ = 0;            // time that these took
-};
-
-/// How far the chances hold that a library of paths to recall tells: by what the tries of this
-/// client were to solve, and solved.
-class RecallTrust {
- public:
-  /// Factor of each chance, 0 to 1.
-  double value() const { return std::min(1.0, (recalled_ + 1) / (expected_ + 1)); }
-
-  /// \param expected  chance that one of a query's tries works, 0 to 1.
-  void add(double expected, bool is_recalled) {
-    expected_ += expected;
-    recalled_ += is_recalled ? 1 : 0;
-  }
-
- private:
-  double expected_ = 0, recalled_ = 0;
 };
 
 /// A seed that is equal for equal queries (name, start, goal, seed) and differs between others; it

@@ -2,9 +2,39 @@
 
 #include <string>
 
+#include "client/guided/problem_mismatch.hpp"
 #include "proto/types/enum_text.hpp"
+#include "robots/planning/path_vertices.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/recall/recall.hpp"
 
 namespace kinship::python {
+namespace {
+
+/// \throws Failure(InvalidInput) as GuidanceHandle::recall().
+recall::Query query_of(const recall::RecallGuide& guide, const Problem& problem) {
+  const kinematics::Chain& chain = guide.warper().chain();
+  const std::string name = "problem '" + problem.name + "': ";
+  if (const auto mismatch = guided::find_mismatch(chain, problem))
+    throw Failure(invalid_input(name + mismatch->text));
+  if (problem.T_task_start)
+    throw Failure(invalid_input(name + "recall begins at a configuration, not at a pose"));
+  if (problem.constraint)
+    throw Failure(invalid_input(name + "recalled paths keep no constraint"));
+  recall::Query query;
+  query.T_task_base = problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  query.bounds = planning::planning_bounds(chain, problem.start);
+  query.start = problem.start;
+  query.goals.resize(chain.dof(), 0);
+  if (problem.T_task_goal)
+    query.T_base_goal = query.T_task_base.inverse() * *problem.T_task_goal;
+  else
+    query.goals = planning::all_turned_into(query.bounds, chain, problem.goal_configurations);
+  query.T_task_anchors = recall::find_anchors(guide.library().anchors, problem.scene.objects);
+  return query;
+}
+
+}  // namespace
 
 std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
     const SampledDistribution& distribution) {
@@ -54,6 +84,21 @@ SamplingMode GuidanceHandle::choose(const Problem& problem) const {
 double GuidanceHandle::recall_trust() const {
   const std::scoped_lock lock(mutex_);
   return recall_trust_.value();
+}
+
+std::optional<Eigen::MatrixXd> GuidanceHandle::recall(const Problem& problem,
+                                                      const planning::IsFree& is_free,
+                                                      double step) {
+  if (!guidance().recall)
+    return std::nullopt;
+  recall::RecallSummary summary =
+      recall::recall(*guidance().recall, query_of(*guidance().recall, problem), is_free,
+                     {.step = step, .trust = recall_trust()});
+  const std::scoped_lock lock(mutex_);
+  recall_trust_.add(summary.expected, summary.waypoints && !summary.is_straight_line);
+  if (!summary.waypoints)
+    return std::nullopt;
+  return planning::sparse_vertices(*summary.waypoints, step);
 }
 
 void GuidanceHandle::add(const guided::PlannedProblem& planned) {

@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "client/guided/guidance.hpp"
 #include "client/python/robot.hpp"
 #include "client/python/sampled_distribution.hpp"
+#include "robots/planning/is_free.hpp"
+#include "robots/recall/recall_trust.hpp"
 
 namespace kinship::python {
 
@@ -34,13 +37,21 @@ class GuidanceHandle {
   double guided_part() const;
   SamplingMode choose(const Problem& problem) const;
   double recall_trust() const;
+
+  /// Tries whole stored paths on a problem, however they are rated beside other guides.
+  /// \return dof x n; nothing if none was free, or there are none.
+  /// \throws Failure(InvalidInput) if the problem does not fit the robot, begins at a pose, or has
+  /// a
+  ///         constraint.
+  std::optional<Eigen::MatrixXd> recall(const Problem& problem, const planning::IsFree& is_free,
+                                        double step);
   void add(const guided::PlannedProblem& planned);
 
  private:
   const Digest robot_;
-  guided::RecallTrust recall_trust_;
+  recall::RecallTrust recall_trust_;
   guided::GuidanceAnswer answer_;  // but for its chooser never changed
-  mutable std::mutex mutex_;       // guards the chooser
+  mutable std::mutex mutex_;       // guards chooser and trust
 };
 
 }  // namespace kinship::python

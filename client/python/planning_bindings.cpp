@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -164,6 +165,43 @@ auto word(Enum ProblemResult::*member) {
   return [member](const Plan& self) { return std::string(to_text(self.planned.result.*member)); };
 }
 
+/// Python's checker of configurations, (n, dof) at once, and of whole paths.
+/// \throws std::invalid_argument if it answers with another number of answers.
+planning::IsFree checker_of(const py::function& free, const py::object& path_free) {
+  const planning::IsFree::Ahead ahead = [free](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+    const auto answers = py::array_t<bool, py::array::forcecast>::ensure(free(to_rows(qs)));
+    if (!answers || answers.ndim() != 1 || answers.shape(0) != qs.cols())
+      throw std::invalid_argument("recall: free answers not with one bool for each of " +
+                                  std::to_string(qs.cols()) + " configurations");
+    const auto is_free = answers.unchecked<1>();
+    Eigen::Index count = 0;
+    while (count < qs.cols() && is_free(count))
+      ++count;
+    return count;
+  };
+  const planning::IsFree::One one = [ahead](const Eigen::VectorXd& q) { return ahead(q) == 1; };
+  if (path_free.is_none())
+    return {one, ahead};
+  return {one, ahead, {}, [path_free](const auto& from, const auto& to) {
+            Eigen::MatrixXd path(from.rows(), from.cols() + 1);
+            path << from, to.rightCols(1);
+            const bool is_free = path_free(to_rows(path)).template cast<bool>();
+            return planning::IsFree::Lines(
+                static_cast<std::size_t>(from.cols()),
+                is_free ? std::optional(std::numeric_limits<double>::infinity()) : std::nullopt);
+          }};
+}
+
+std::optional<Array> recall(GuidanceHandle& self, const Problem& problem, const py::function& free,
+                            const py::object& path_free, double step) {
+  if (!(step >= guided::kLeastResolution && step <= guided::kLargestResolution))
+    throw Failure(invalid_input("step is " + number_text(step) + ", must be from " +
+                                number_text(guided::kLeastResolution) + " to " +
+                                number_text(guided::kLargestResolution)));
+  const auto path = self.recall(problem, checker_of(free, path_free), step);
+  return path ? std::optional(to_rows(*path)) : std::nullopt;
+}
+
 void bind_guidance(py::module_& module) {
   py::class_<GuidanceHandle, SharedGuidance>(
       module, "Guidance",
@@ -222,7 +260,19 @@ void bind_guidance(py::module_& module) {
                 sources.push_back(path.source.hex());
             return sources;
           },
-          "Digests of the robots that took them, way by way.");
+          "Digests of the robots that took them, way by way.")
+      .def("recall", recall, py::arg("problem"), py::arg("free"), py::arg("path_free") = py::none(),
+           py::arg("step") = guided::PlanSettings{}.resolution,
+           R"(Tries whole stored paths on a problem with a collision checker of one's own: an answer
+without a planner. The most promising first, as long as that is cheaper in the mean than a search.
+
+problem    begins at a configuration; of its scene only names and poses are looked at
+free       of (n, dof): (n,) of bool, such as World.free
+path_free  of the waypoints of a path, (n, dof): bool, such as World.path_free
+step       between the configurations that are asked of free, joint units; with path_free they are
+           the waypoints
+
+Returns the path, (n, dof), start first, straight in between; None: nothing is recalled, search.)");
 }
 
 void bind_outcome(py::class_<Plan>& plan) {

@@ -62,4 +62,15 @@ std::optional<Eigen::VectorXd> turned_into(const Eigen::Matrix2Xd& bounds,
   return turned;
 }
 
+Eigen::MatrixXd all_turned_into(const Eigen::Matrix2Xd& bounds, const kinematics::Chain& chain,
+                                const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  const std::vector<bool> turning = turning_joints(chain);
+  Eigen::MatrixXd kept(qs.rows(), qs.cols());
+  Eigen::Index count = 0;
+  for (const auto& q : qs.colwise())
+    if (const auto turned = turned_into(bounds, turning, q))
+      kept.col(count++) = *turned;
+  return kept.leftCols(count);
+}
+
 }  // namespace kinship::planning

@@ -31,4 +31,9 @@ std::optional<Eigen::VectorXd> turned_into(const Eigen::Matrix2Xd& bounds,
                                            const std::vector<bool>& turning,
                                            const Eigen::Ref<const Eigen::VectorXd>& q);
 
+/// Those of some configurations that have a turn within the bounds of a plan, moved there.
+/// \param bounds, qs  2 x dof, dof x n. \return dof x m, m <= n.
+Eigen::MatrixXd all_turned_into(const Eigen::Matrix2Xd& bounds, const kinematics::Chain& chain,
+                                const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
 }  // namespace kinship::planning

@@ -10,6 +10,7 @@
 #include "client/guided/scene_record.hpp"
 #include "client/ompl/guided_state_sampler.hpp"
 #include "client/ompl/ompl_planner.hpp"
+#include "client/ompl/recall_planner.hpp"
 #include "client/ompl/region_state_space.hpp"
 #include "client/ompl/state_space.hpp"
 #include "robots/collision/collision_world.hpp"
@@ -25,3 +26,5 @@
 #include "robots/planning/planning_bounds.hpp"
 #include "robots/planning/repetition_roadmap.hpp"
 #include "robots/planning/shortcut.hpp"
+#include "robots/recall/recall.hpp"
+#include "robots/recall/recall_trust.hpp"

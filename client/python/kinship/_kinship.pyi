@@ -1,6 +1,6 @@
 """The C++ libraries of Kinship; import kinship instead. Docstrings are in the module itself."""
 import os
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -267,6 +267,8 @@ class Guidance:
     def ways(self) -> List[_Floats]: ...
     @property
     def way_sources(self) -> List[str]: ...
+    def recall(self, problem: Problem, free: Callable[[_Floats], ArrayLike],
+               path_free: Optional[Callable[[_Floats], bool]] = None, step: float = 0.05) -> Optional[_Floats]: ...
 
 class Plan:
     @property

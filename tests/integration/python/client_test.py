@@ -161,6 +161,47 @@ class Planning(WithServer):
         guidance = self.client.guidance("rehearsed", self.ur10e, deadline=120, rehearsed=True)
         self.assertRegex(guidance.message, "rehearsed on [0-9]+ recorded queries: guide ")
 
+    def around_a_post(self, seed):
+        """Both a little elsewhere for each seed: the post, and the goal behind it."""
+        draws = np.random.default_rng(seed).uniform(-1, 1, 7)
+        scene = kinship.Scene()
+        scene.add_cylinder("post", [0.75 + 0.05 * draws[0], 0.1 * draws[1], 0.5, 0, 0, 0, 1], 0.05, 1.0)
+        goal = np.array(self.GOAL) + 0.1 * np.append(draws[2:], 0)
+        return kinship.Problem(f"post {seed}", self.START, goal, scene=scene, seed=seed)
+
+    def test_whole_paths_are_recalled_by_a_checker_of_ones_own(self):
+        self.client.register(self.ur10e)
+        for seed in range(8):
+            plan = kinship.plan(self.ur10e, self.around_a_post(seed))
+            self.assertTrue(plan.solved, plan.reason)
+            self.client.report(plan.attempt("recalled"))
+        self.client.flush(60)
+        guidance = self.client.guidance("recalled", self.ur10e, deadline=120, rehearsed=True)
+        found = {"checked": 0, "proven": 0}
+        for problem in map(self.around_a_post, range(100, 106)):
+            world = kinship.World.of_problem(self.ur10e, problem)
+            asked = []
+            checked = guidance.recall(problem, lambda qs: asked.append(qs) or world.free(qs), step=0.1)
+            if checked is not None:
+                found["checked"] += 1
+                steps = np.concatenate([np.linspace(a, b, 1 + int(np.ceil(np.linalg.norm(b - a) / 0.1)))
+                                        for a, b in zip(checked, checked[1:])])
+                gaps = np.linalg.norm(steps[:, None] - np.concatenate(asked)[None], axis=2).min(axis=1)
+                self.assertLess(gaps.max(), 1e-6, "each configuration was asked")
+            proven = guidance.recall(problem, world.free, world.path_free)
+            if proven is not None:
+                found["proven"] += 1
+                np.testing.assert_array_equal(proven[[0, -1]], [self.START, problem.goal_configurations[0]])
+                self.assertTrue(world.path_free(proven))
+            self.assertIsNone(guidance.recall(problem, world.free, lambda path: False))
+        self.assertGreater(min(found.values()), 0, found)
+        with self.assertRaisesRegex(ValueError, "free answers not with one bool for each of"):
+            guidance.recall(problem, lambda qs: True)
+        with self.assertRaises(ZeroDivisionError):
+            guidance.recall(problem, lambda qs: 1 // 0)
+        with self.assertRaisesRegex(kinship.InvalidInput, "joints"):
+            guidance.recall(kinship.Problem("five", self.START[1:], self.GOAL[1:]), world.free)
+
     def test_without_experience_there_is_no_guidance(self):
         self.client.register(self.ur10e)
         with self.assertRaisesRegex(kinship.NoExperience, "never_done"):

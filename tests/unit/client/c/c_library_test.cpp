@@ -128,6 +128,33 @@ TEST_F(CLibraryOffline, AFetchEndsAtItsDeadlineWithoutADistribution) {
   kinship_follower_close(follower);
 }
 
+TEST_F(CLibraryOffline, PathsAreRecalledForARobotThatTheClientRegistered) {
+  kinship_request request{};
+  request.size = sizeof request;
+  request.robot = &robot_;
+  request.task = "sweep";
+  request.deadline_ms = 50;
+  request.with_recall = 1;
+  kinship_recall* recall = nullptr;
+  kinship_follower* follower = nullptr;
+  EXPECT_EQ(kinship_fetch_recall(client_, &request, &recall), KINSHIP_NOT_FOUND);
+  EXPECT_EQ(kinship_follower_open(client_, &request, &follower), KINSHIP_NOT_FOUND);
+  EXPECT_NE(std::string(kinship_error_text()).find("was not registered by this client"),
+            std::string::npos);
+  EXPECT_EQ(kinship_register(client_, &description_, &robot_, nullptr), KINSHIP_UNAVAILABLE);
+  EXPECT_EQ(kinship_fetch_recall(client_, &request, &recall), KINSHIP_UNAVAILABLE);
+  ASSERT_EQ(kinship_follower_open(client_, &request, &follower), KINSHIP_OK);
+  EXPECT_EQ(kinship_follower_recall(follower, nullptr, &recall), KINSHIP_PENDING);
+  kinship_follower_close(follower);
+  request.with_recall = 0;
+  ASSERT_EQ(kinship_follower_open(client_, &request, &follower), KINSHIP_OK);
+  expect_refused(kinship_follower_recall(follower, nullptr, &recall), "with_recall");
+  kinship_follower_close(follower);
+  request.start = waypoints_;
+  expect_refused(kinship_fetch_recall(client_, &request, &recall), "start_dof is 0");
+  EXPECT_EQ(recall, nullptr);
+}
+
 TEST_F(CLibraryOffline, WhatBreaksARuleIsRefusedWithNameAndValue) {
   expect_refused(kinship_report(nullptr, &attempt_), "client is NULL");
   expect_refused(kinship_report(client_, nullptr), "attempt is NULL");
@@ -331,10 +358,13 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_attempt, processor_time_s), 152U);
   EXPECT_EQ(offsetof(kinship_outbox, refused), 24U);
   EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
+  EXPECT_EQ(offsetof(kinship_request, with_recall), 64U);
   EXPECT_EQ(offsetof(kinship_distribution_info, recommended_share), 40U);
   EXPECT_EQ(sizeof(kinship_robot), 32U);
   EXPECT_EQ(offsetof(kinship_surroundings, allowed_collision_pairs), 40U);
   EXPECT_EQ(offsetof(kinship_proof, least_clearance_m), 56U);
+  EXPECT_EQ(offsetof(kinship_recall_query, step), 96U);
+  EXPECT_EQ(offsetof(kinship_recalled, checks), 32U);
 }
 
 TEST_F(CLibraryOffline, AShorterStructureOfAnOlderCallerIsRead) {

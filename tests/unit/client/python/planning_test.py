@@ -65,6 +65,9 @@ class Paths(OfAUr10e):
         self.assertGreater(plan.tracks_followed, 0)
         with self.assertRaisesRegex(kinship.errors.InvalidInput, "guide 'ways' needs the experience"):
             kinship.Guidance.alone(self.robot, "ways")
+        self.assertIsNone(alone.recall(self.problem, lambda qs: self.fail("nothing is there to be tried")))
+        with self.assertRaisesRegex(kinship.errors.InvalidInput, "step is 0, must be from"):
+            alone.recall(self.problem, lambda qs: [True] * len(qs), step=0)
 
     def test_are_the_same_for_equal_seeds_alone(self):
         first, again, other = (kinship.plan(self.robot, self.problem, seed=seed) for seed in (5, 5, 6))

@@ -120,5 +120,16 @@ TEST(TurnedInto, LeavesWhatLiesWithinAndNeverTurnsOtherJoints) {
   EXPECT_FALSE(turned_into(bounds, {true, false}, Eigen::Vector2d(1, 2 + 2 * M_PI)));
 }
 
+TEST(TurnedInto, OfManyThoseAreLeftThatHaveATurnThere) {
+  const kinematics::Chain chain = arm(M_PI, JointType::Continuous);
+  Eigen::Matrix2Xd bounds(2, 2);
+  bounds << -1, -1, 1, 1;
+  Eigen::MatrixXd qs(2, 3);
+  qs << 0, 0, 2 * M_PI, 0.5, M_PI, 0;
+  Eigen::MatrixXd left(2, 2);
+  left << 0, 0, 0.5, 0;
+  EXPECT_TRUE(all_turned_into(bounds, chain, qs).isApprox(left, 1e-12));
+}
+
 }  // namespace
 }  // namespace kinship::planning::planning_bounds_test

@@ -11,6 +11,7 @@
 
 #include "robots/collision/collision_world.hpp"
 #include "robots/geometry/link_shapes.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/planning_bounds.hpp"
 #include "robots/recall/library_maker.hpp"
