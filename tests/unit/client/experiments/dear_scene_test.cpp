@@ -51,38 +51,48 @@ TEST_P(EveryDearKind, HasOtherMeasuresEachTime) {
   EXPECT_EQ(goals.size(), 20U);
 }
 
+/// Start and goals are free and upright where they must be, and each line between them collides.
+void expect_dear(const Study& study, const models::LoadedRobot& robot, const Problem& problem) {
+  SCOPED_TRACE(problem.name + " of " + robot.description.label);
+  collision::CollisionWorld world(
+      robot.chain, robot.shapes,
+      {*problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions});
+  EXPECT_FALSE(world.collides(problem.start));
+  const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, problem.start);
+  planning::GoalOptions options;
+  options.max_configurations = study.settings.max_goals;
+  options.seed = problem.seed;
+  const Eigen::MatrixXd goals =
+      planning::goal_configurations(
+          robot.chain, problem.T_task_base->inverse() * *problem.T_task_goal, bounds,
+          [&](const Eigen::VectorXd& q) { return !world.collides(q); }, options)
+          .configurations;
+  EXPECT_GT(goals.cols(), 0);
+  for (const auto& goal : goals.colwise()) {
+    const int steps = static_cast<int>(std::ceil((goal - problem.start).norm() / 0.05));
+    int colliding = 0;
+    for (int i = 0; i <= steps; ++i)
+      colliding += world.collides(problem.start + (goal - problem.start) * i / steps);
+    EXPECT_GT(colliding, 0) << goal.transpose();
+  }
+  if (!problem.constraint)
+    return;
+  const planning::RegionConstraint region(robot.chain, *problem.constraint, *problem.T_task_base,
+                                          bounds);
+  EXPECT_TRUE(region.holds(problem.start));
+  for (const auto& goal : goals.colwise())
+    EXPECT_TRUE(region.holds(goal));
+}
+
 TEST_P(EveryDearKind, BeginsFreeHasGoalsAndNoStraightLineToThem) {
+  constexpr std::uint32_t kInstances = 5;
   const Study& study = find_study(study_name(GetParam()));
   ASSERT_GE(study.robots.size(), 2U);
   for (const StudyRobot& placed : study.robots) {
     const models::LoadedRobot robot = loaded(placed);
-    const Problem problem = study.make_instances(robot, placed)(kSeed, 0);
-    collision::CollisionWorld world(
-        robot.chain, robot.shapes,
-        {*problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions});
-    EXPECT_FALSE(world.collides(problem.start)) << placed.model;
-    const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, problem.start);
-    const planning::RegionConstraint region(
-        robot.chain, problem.constraint.value_or(planning::upright_region(10)),
-        *problem.T_task_base, bounds);
-    EXPECT_TRUE(region.holds(problem.start)) << placed.model;
-    planning::GoalOptions options;
-    options.max_configurations = study.settings.max_goals;
-    options.seed = problem.seed;
-    const Eigen::MatrixXd goals =
-        planning::goal_configurations(
-            robot.chain, problem.T_task_base->inverse() * *problem.T_task_goal, bounds,
-            [&](const Eigen::VectorXd& q) { return !world.collides(q); }, options)
-            .configurations;
-    EXPECT_GT(goals.cols(), 0) << placed.model;
-    for (const auto& goal : goals.colwise()) {
-      EXPECT_TRUE(region.holds(goal)) << placed.model;
-      const int steps = static_cast<int>(std::ceil((goal - problem.start).norm() / 0.05));
-      int colliding = 0;
-      for (int i = 0; i <= steps; ++i)
-        colliding += world.collides(problem.start + (goal - problem.start) * i / steps);
-      EXPECT_GT(colliding, 0) << placed.model << ": " << goal.transpose();
-    }
+    const DrawInstance draw = study.make_instances(robot, placed);
+    for (std::uint32_t index = 0; index < kInstances; ++index)
+      expect_dear(study, robot, draw(kSeed, index));
   }
 }
 
