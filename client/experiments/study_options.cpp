@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <vector>
@@ -11,8 +13,10 @@
 #include "client/experiments/python_program.hpp"
 #include "client/experiments/studies/fleet.hpp"
 #include "client/experiments/studies/instance_draws.hpp"
+#include "proto/files/output_file.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/failure.hpp"
 #include "proto/types/rehearsal.hpp"
 
 namespace kinship::experiments {
@@ -94,8 +98,10 @@ void add_other_tasks(CLI::App& command, StudyOptions& options) {
       ->excludes(tunes);
   CLI::Option* const problems =
       command
-          .add_option("--problems", options.problems_of,
-                      "write the test instances of this robot for kinship-plan, on standard output")
+          .add_option(
+              "--problems", options.problems_of,
+              "write the test instances of this robot for kinship-plan, on standard output; point "
+              "clouds that they name go to OUT/clouds")
           ->excludes(tunes);
   command
       .add_option("--set", options.set, "instances that are written: others than test instances")
@@ -131,14 +137,46 @@ void run_in_python(const StudyOptions& options) {
   become_python("run_study.py", *options.command, more);
 }
 
+/// Writes the point clouds of a problem, which names their files from here on.
+void write_clouds(const std::filesystem::path& folder, Problem& problem) {
+  for (SceneCloud& cloud : problem.scene.clouds) {
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path file = std::filesystem::absolute(folder / cloud.cloud.file);
+    files::OutputFile points(file, std::cout);
+    for (const auto& p : cloud.cloud.voxels->colwise())
+      points.stream() << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+    points.keep();
+    cloud.cloud.file = "file://" + file.string();
+  }
+}
+
 void write_instances(const Study& study, const StudyOptions& options,
                      const std::vector<StudyMember>& fleet, std::ostream& out) {
   const std::size_t robot = find_member(fleet, options.problems_of);
   const std::uint32_t usual = options.is_quick ? kQuickInstances : study.test_instances;
   const std::uint32_t count = options.instances > 0 ? options.instances : usual;
   const std::uint64_t seed = seed_of(parse_instance_set(options.set), robot);
-  for (std::uint32_t index = 0; index < count; ++index)
-    out << json::to_json(fleet[robot].draw(seed, index)) << '\n';
+  const std::filesystem::path folder = options.command->get_option("--out")->as<std::string>();
+  for (std::uint32_t index = 0; index < count; ++index) {
+    Problem problem = fleet[robot].draw(seed, index);
+    write_clouds(folder / "clouds", problem);
+    out << json::to_json(problem) << '\n';
+  }
+}
+
+/// The studies of a name; where a robot is meant, those of a family that have it.
+/// \throws Failure(NotFound) if none has it.
+std::vector<const Study*> studies_meant(const StudyOptions& options) {
+  std::vector<const Study*> meant = find_studies(options.study);
+  if (meant.size() > 1 && !options.problems_of.empty())
+    std::erase_if(meant, [&](const Study* const study) {
+      return std::ranges::find(study->robots, options.problems_of, &StudyRobot::model) ==
+             study->robots.end();
+    });
+  if (meant.empty())
+    throw Failure(ErrorCode::NotFound,
+                  "no study of '" + options.study + "' has a robot '" + options.problems_of + "'");
+  return meant;
 }
 
 }  // namespace
@@ -163,7 +201,7 @@ void add_study_commands(CLI::App& app, StudyOptions& options) {
 void run_study_command(const StudyOptions& options, std::istream& in, std::ostream& out) {
   if (!options.describes && options.problems_of.empty())
     run_in_python(options);
-  for (const Study* const study : find_studies(options.study)) {
+  for (const Study* const study : studies_meant(options)) {
     const std::vector<StudyMember> fleet = load_fleet(*study, options.models);
     if (options.describes)
       out << describe_study(*study, fleet);

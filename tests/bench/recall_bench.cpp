@@ -2,13 +2,18 @@
 // configurations, preparation, search. Beside it uniform planning, and the retreat, which needs no
 // experience; both by the same steps.
 //
-//   recall_bench STUDY [ROBOT...] [--set tuning|test]
+//   recall_bench STUDY [ROBOT...] [--set tuning|test] [--uniform]
+//
+// --uniform: uniform planning alone: how dear a study is. A constrained study, whose paths are not
+// recalled, is planned uniformly and by the retreat.
 //
 // own: the robot's own learning instances, solved uniformly. first day: the learning instances of
-// another robot, the next one of the study, of which it knows scenes and the hand at the goal; it
-// begins where it usually begins. Where no path is free, the retreat plans.
+// another robot, the next one of the study, of which it knows scenes and the hand at start and
+// goal; it begins where it usually begins, or with its hand where the other's was if that is not
+// free. Where no path is free, the retreat plans.
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <random>
@@ -23,6 +28,7 @@
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/guided_sampler.hpp"
 #include "robots/planning/path_vertices.hpp"
+#include "robots/planning/region_constraint.hpp"
 #include "robots/planning/shortcut.hpp"
 #include "robots/recall/library_maker.hpp"
 #include "robots/recall/recall.hpp"
@@ -33,7 +39,6 @@
 namespace kinship::bench {
 namespace {
 
-constexpr std::uint64_t kMaxChecks = 200'000;
 constexpr std::uint64_t kSeeds = 2;
 
 struct Robot {
@@ -106,7 +111,7 @@ class Queries {
     planning::BirrtOptions options;
     options.step = study_.settings.resolution;
     options.overshoot = study_.settings.overshoot;
-    options.max_checks = kMaxChecks;
+    options.max_checks = study_.settings.max_checks;
     options.time_limit = std::chrono::seconds(600);
     std::mt19937_64 generator(seed);
     const planning::TrackQuery query{item.T_task_base, item.bounds, item.problem.start, goals};
@@ -150,14 +155,29 @@ Uuid uuid_of(std::size_t index) {
   return uuid;
 }
 
+/// A record that another robot told: where the usual start is not free, with the hand where that
+/// robot's began.
+Problem with_free_start(const Robot& robot, const experiments::Study& study, Problem record) {
+  Item item(robot, record, study.settings.resolution);
+  if (!record.T_task_start || item.is_free(record.start))
+    return record;
+  const auto found = planning::start_configuration(
+      robot.planned.chain, robot.planned.solver, item.T_task_base.inverse() * *record.T_task_start,
+      record.goal_configurations, item.is_free);
+  if (found.q)
+    record.start = *found.q;
+  return record;
+}
+
 /// \param records  problems, of this robot or another one that solved them
 std::optional<RecallLibrary> make_library(const Robot& robot, const experiments::Study& study,
                                           const std::vector<Problem>& records, bool is_own) {
   std::vector<recall::PosedQuery> posed;
   const Queries queries(robot, study);
   for (std::size_t i = 0; i < records.size(); ++i) {
-    Item item(robot, records[i], study.settings.resolution);
-    recall::PosedQuery query{uuid_of(i), {}, item.surroundings, item.bounds, records[i].start, {}};
+    Item item(robot, with_free_start(robot, study, records[i]), study.settings.resolution);
+    recall::PosedQuery query{uuid_of(i),         {}, item.surroundings, item.bounds,
+                             item.problem.start, {}};
     query.goals = item.find_goals(robot, study.settings.max_goals);
     query.constraint = records[i].constraint;
     if (query.goals.cols() == 0 || !item.is_free(query.start))
@@ -185,6 +205,15 @@ struct Compared {
 
 void print_as(const std::string& name, const RecallLibrary& library, const Compared& compared);
 
+/// What planning costs, whatever it is guided by.
+void add_costs(Item& item, Costs& costs,
+               const std::function<std::optional<Eigen::MatrixXd>()>& plan) {
+  const std::uint64_t before = item.world.checks();
+  const double from_s = thread_cpu_s();
+  const auto path = plan();
+  costs.add(static_cast<double>(item.world.checks() - before), thread_cpu_s() - from_s, path);
+}
+
 void compare(const Robot& robot, const experiments::Study& study, const std::string& name,
              const std::vector<Problem>& records, const std::vector<Problem>& tests, bool is_own) {
   Compared compared;
@@ -201,17 +230,10 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
     for (const Problem& problem : tests) {
       Item item(robot, problem, study.settings.resolution);
-      const auto timed = [&](Costs& costs, auto run) {
-        const std::uint64_t before = item.world.checks();
-        const double from_s = thread_cpu_s();
-        const auto path = run();
-        costs.add(static_cast<double>(item.world.checks() - before), thread_cpu_s() - from_s, path);
-      };
-      timed(compared.uniform,
-            [&] { return queries.search(item, Guide::None, problem.seed + seed).waypoints; });
-      timed(compared.retreat,
-            [&] { return queries.search(item, Guide::Retreat, problem.seed + seed).waypoints; });
-      timed(compared.recalled, [&] {
+      for (const Guide way : {Guide::None, Guide::Retreat})
+        add_costs(item, way == Guide::None ? compared.uniform : compared.retreat,
+                  [&] { return queries.search(item, way, problem.seed + seed).waypoints; });
+      add_costs(item, compared.recalled, [&]() -> std::optional<Eigen::MatrixXd> {
         const double from_s = thread_cpu_s();
         auto summary = queries.recall(item, guide);
         compared.tries += summary.tries;
@@ -252,6 +274,34 @@ void print_as(const std::string& name, const RecallLibrary& library, const Compa
          .note = note});
 }
 
+/// How dear queries are without experience, by uniform planning or the retreat.
+void print_dearness(const Robot& robot, const experiments::Study& study, const std::string& name,
+                    const std::vector<Problem>& tests, Guide guide) {
+  Costs costs;
+  std::size_t within_1_s = 0;
+  const Queries queries(robot, study);
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
+    for (const Problem& problem : tests) {
+      Item item(robot, problem, study.settings.resolution);
+      const int solved = costs.solved;
+      add_costs(item, costs,
+                [&] { return queries.search(item, guide, problem.seed + seed).waypoints; });
+      if (costs.solved > solved && costs.time_s.back() <= 1)
+        ++within_1_s;
+    }
+  char note[200];
+  std::snprintf(note, sizeof note,
+                "median %.2f, 95 %% %.2f ms; checks: mean %.0f, median %.0f; solved %d, within 1 s "
+                "%zu of %zu",
+                1e3 * percentile(costs.time_s, 0.5), 1e3 * percentile(costs.time_s, 0.95),
+                Costs::mean(costs.checks), percentile(costs.checks, 0.5), costs.solved, within_1_s,
+                costs.checks.size());
+  print({.name = name + (guide == Guide::None ? " uniform" : " retreat"),
+         .value = 1e3 * Costs::mean(costs.time_s),
+         .unit = "ms",
+         .note = note});
+}
+
 /// The robots of a study.
 class Fleet {
  public:
@@ -267,10 +317,17 @@ class Fleet {
     }
   }
 
-  /// Own experience, and that of the next robot, on a set of instances.
-  void compare_all(std::size_t robot, experiments::InstanceSet set) const {
+  /// Own experience, and that of the next robot, on a set of instances; or uniform planning
+  /// alone.
+  void compare_all(std::size_t robot, experiments::InstanceSet set, bool is_uniform) const {
     const std::string name = study_.name + " " + study_.robots[robot].model;
     const auto tests = draw(robot, set);
+    if (is_uniform || study_.is_constrained) {
+      print_dearness(*robots_[robot], study_, name, tests, Guide::None);
+      if (!is_uniform)
+        print_dearness(*robots_[robot], study_, name, tests, Guide::Retreat);
+      return;
+    }
     compare(*robots_[robot], study_, name + " own", draw(robot, experiments::InstanceSet::Learning),
             tests, true);
     const std::size_t other = (robot + 1) % robots_.size();
@@ -289,14 +346,19 @@ class Fleet {
     return problems;
   }
 
-  /// A record of another robot as it is for one that stands and starts as in a problem of its own.
+  /// A record of another robot as it is for one that stands and starts as in a problem of its
+  /// own.
   static Problem as_told(const Problem& record, const Robot& recorder, Problem own) {
     own.scene = record.scene;
     own.seed = record.seed;
+    const Eigen::Isometry3d T_task_base =
+        record.T_task_base.value_or(Eigen::Isometry3d::Identity());
+    own.T_task_start =
+        T_task_base * kinematics::T_base_transfer(recorder.planned.chain, record.start);
     own.T_task_goal = record.T_task_goal;
     if (!own.T_task_goal)
       own.T_task_goal =
-          record.T_task_base.value_or(Eigen::Isometry3d::Identity()) *
+          T_task_base *
           kinematics::T_base_transfer(recorder.planned.chain, record.goal_configurations.col(0));
     own.goal_configurations.resize(0, 0);
     return own;
@@ -312,6 +374,7 @@ class Fleet {
 int main(int argc, char** argv) {
   using namespace kinship;
   std::vector<std::string> words(argv + 1, argv + argc);
+  const bool is_uniform = std::erase(words, "--uniform") > 0;
   auto set = experiments::InstanceSet::Tuning;
   if (const auto at = std::ranges::find(words, "--set"); at != words.end()) {
     set = experiments::parse_instance_set(at[1]);
@@ -322,6 +385,6 @@ int main(int argc, char** argv) {
     for (std::size_t robot = 0; robot < study->robots.size(); ++robot)
       if (words.size() == 1 || std::ranges::find(words.begin() + 1, words.end(),
                                                  study->robots[robot].model) != words.end())
-        fleet.compare_all(robot, set);
+        fleet.compare_all(robot, set, is_uniform);
   }
 }

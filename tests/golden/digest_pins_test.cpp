@@ -14,8 +14,9 @@ namespace {
 
 TEST(DigestPins, Robots) {
   std::string lines;
-  for (const char* const name : {"iiwa14", "iiwa7", "panda", "planar_5r_a", "planar_5r_b",
-                                 "planar_7r_c", "sara_like", "sawyer", "ur10e"})
+  for (const char* const name :
+       {"iiwa14", "iiwa14_lift", "iiwa7", "panda", "panda_lift", "planar_5r_a", "planar_5r_b",
+        "planar_7r_c", "sara_like", "sawyer", "ur10e"})
     lines += std::string(name) + " " + test::model_chain(name).digest().hex() + "\n";
   test::expect_pinned("digest/robots.txt", lines);
 }

@@ -57,7 +57,8 @@ TEST_P(InverseOfModel, SolvesNearlyEveryReachablePose) {
 
 INSTANTIATE_TEST_SUITE_P(Models, InverseOfModel,
                          testing::Values("panda", "iiwa14", "iiwa7", "ur10e", "sawyer", "sara_like",
-                                         "planar_5r_a", "planar_5r_b", "planar_7r_c"),
+                                         "planar_5r_a", "planar_5r_b", "planar_7r_c", "panda_lift",
+                                         "iiwa14_lift"),
                          [](const auto& instance) { return instance.param; });
 
 }  // namespace

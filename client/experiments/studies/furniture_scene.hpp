@@ -36,6 +36,10 @@ struct Furniture {
 
 Furniture make_furniture(FurnitureKind kind);
 
+/// Five cobots before the furniture, each at its home: elbow bent, the hand before it at the height
+/// of its shoulder or lower.
+std::vector<StudyRobot> cobots_at_home();
+
 /// Of the study and its task, e.g. "furniture_tall_shelf".
 std::string_view study_name(FurnitureKind kind);
 

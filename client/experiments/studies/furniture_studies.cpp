@@ -16,25 +16,6 @@ Eigen::Isometry3d before_furniture(double height_m, double back_m) {
   return Eigen::Isometry3d(Eigen::Translation3d(-back_m, 0, height_m));
 }
 
-/// Each at its home: elbow bent, the hand before it at the height of its shoulder or lower.
-std::vector<StudyRobot> cobots_at_home() {
-  return {{.model = "sara_like",
-           .T_task_base = before_furniture(0.35, 0.1),
-           .start = Eigen::VectorXd{{0, -0.3, 0, -1.9, 0, 1.2, 0}}},
-          {.model = "iiwa14",
-           .T_task_base = before_furniture(0.35, 0.1),
-           .start = Eigen::VectorXd{{0, -0.3, 0, -1.9, 0, 1.2, 0}}},
-          {.model = "ur10e",
-           .T_task_base = before_furniture(0.5, 0.2),
-           .start = Eigen::VectorXd{{0, -2.2, 2.2, -1.57, -1.57, 0}}},
-          {.model = "panda",
-           .T_task_base = before_furniture(0.35, 0.1),
-           .start = Eigen::VectorXd{{0, -0.785, 0, -2.356, 0, 1.571, 0.785}}},
-          {.model = "sawyer",
-           .T_task_base = before_furniture(0.4, 0.1),
-           .start = Eigen::VectorXd{{0, -1.18, 0, 2.18, 0, 0.57, 3.3161}}}};
-}
-
 Study furniture_study(FurnitureKind kind, std::string purpose) {
   Study study;
   study.name = study_name(kind);
@@ -54,6 +35,24 @@ Study furniture_study(FurnitureKind kind, std::string purpose) {
 }
 
 }  // namespace
+
+std::vector<StudyRobot> cobots_at_home() {
+  return {{.model = "sara_like",
+           .T_task_base = before_furniture(0.35, 0.1),
+           .start = Eigen::VectorXd{{0, -0.3, 0, -1.9, 0, 1.2, 0}}},
+          {.model = "iiwa14",
+           .T_task_base = before_furniture(0.35, 0.1),
+           .start = Eigen::VectorXd{{0, -0.3, 0, -1.9, 0, 1.2, 0}}},
+          {.model = "ur10e",
+           .T_task_base = before_furniture(0.5, 0.2),
+           .start = Eigen::VectorXd{{0, -2.2, 2.2, -1.57, -1.57, 0}}},
+          {.model = "panda",
+           .T_task_base = before_furniture(0.35, 0.1),
+           .start = Eigen::VectorXd{{0, -0.785, 0, -2.356, 0, 1.571, 0.785}}},
+          {.model = "sawyer",
+           .T_task_base = before_furniture(0.4, 0.1),
+           .start = Eigen::VectorXd{{0, -1.18, 0, 2.18, 0, 0.57, 3.3161}}}};
+}
 
 std::vector<Study> furniture_studies() {
   return {

@@ -39,7 +39,8 @@ std::uint64_t seed_of(InstanceSet set, std::size_t robot) {
 const std::vector<Study>& studies() {
   static const std::vector<Study> kStudies = [] {
     std::vector<Study> all = planar_studies();
-    for (std::vector<Study> more : {cobot_studies(), furniture_studies(), kitting_studies()})
+    for (std::vector<Study> more :
+         {cobot_studies(), furniture_studies(), kitting_studies(), dear_studies()})
       std::ranges::move(more, std::back_inserter(all));
     return all;
   }();

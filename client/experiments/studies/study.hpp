@@ -72,6 +72,9 @@ std::vector<Study> furniture_studies();
 /// `kitting`: five cobots put parts from a worktable into the ten compartments of a rack.
 std::vector<Study> kitting_studies();
 
+/// The family `dear`: tasks whose uniform planning takes long, a study for each kind.
+std::vector<Study> dear_studies();
+
 /// Every study, by name.
 const std::vector<Study>& studies();
 

@@ -25,6 +25,10 @@ Eigen::VectorXd ready(const std::string& name) {
     return test_support::angles({0, -1.57, 1.57, -1.57, -1.57, 0});
   if (name == "sawyer")
     return test_support::angles({0, -1.18, 0, 2.18, 0, 0.57, 3.3161});
+  if (name == "panda_lift")
+    return test_support::angles({0.2, 0, -0.785, 0, -2.356, 0, 1.571, 0.785});
+  if (name == "iiwa14_lift")
+    return test_support::angles({0.2, 0, 0.5, 0, -1.5, 0, 1.1, 0});
   return test_support::angles({0, 0.5, 0, -1.5, 0, 1.1, 0});
 }
 
@@ -72,8 +76,8 @@ TEST_P(Model, HitsAPlateAtHalfItsHeight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, Model,
-                         testing::Values("panda", "iiwa14", "iiwa7", "ur10e", "sawyer",
-                                         "sara_like"));
+                         testing::Values("panda", "iiwa14", "iiwa7", "ur10e", "sawyer", "sara_like",
+                                         "panda_lift", "iiwa14_lift"));
 
 INSTANTIATE_TEST_SUITE_P(Robots, ModelOfCapsules,
                          testing::Values("panda", "iiwa14", "iiwa7", "ur10e", "sara_like",

@@ -155,6 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
         model("iiwa7", "spherical wrist 5-6-7; lock q3; closed form, 8 branches per lock"),
         model("sara_like", "spherical wrist 5-6-7; lock q3; closed form, 8 branches per lock"),
         model("panda", "spherical shoulder 1-2-3; lock q"),
+        model("iiwa14_lift", "spherical wrist 6-7-8; lock q1, q"),
         model("planar_5r_a", "planar arm; lock q"), model("planar_7r_c", "planar arm; lock q"),
         Arm{"industrial", test::arms::industrial, "spherical wrist 4-5-6; closed form, 8 branches"},
         Arm{"hollow_wrist", test::arms::hollow_wrist, "spherical wrist 4-5-6; closed form, 8"},
@@ -234,6 +235,11 @@ TEST(DescribeStructure, SaysNearlyAndByHowMuch) {
   EXPECT_EQ(words.find("nearly parallel axes 2-3-4 (off by "), 0U) << words;
   EXPECT_NE(words.find("closed form of the nominal chain and polish, 8 branches"),
             std::string::npos);
+}
+
+TEST(DescribeStructure, LocksALiftBelowAnArm) {
+  EXPECT_TRUE(describe_structure(test::model_chain("panda_lift"))
+                  .starts_with("spherical shoulder 2-3-4; lock q1, q7; closed form"));
 }
 
 TEST(DescribeStructure, SaysThatThereIsNoClosedForm) {

@@ -133,16 +133,26 @@ Eigen::Isometry3d ur10e_dh(const Eigen::VectorXd& q) {
                                                                q);
 }
 
+/// On a lift whose first joint goes up from 0.3 m.
+template <Eigen::Isometry3d (*arm)(const Eigen::VectorXd&)>
+Eigen::Isometry3d on_lift(const Eigen::VectorXd& q) {
+  return shift(0, 0, 0.3 + q[0]) * arm(q.tail(q.size() - 1));
+}
+
 struct Model {
   std::string name;
   Eigen::Isometry3d (*expected)(const Eigen::VectorXd&);  ///< pose of the tip, from another source
   double tolerance;  ///< the URDFs of UR10e and Sawyer round their angles
 };
 
-const std::vector<Model> kSamplingModes = {
-    {"panda", panda_dh, 1e-12},       {"iiwa14", iiwa14_dh, 1e-12},
-    {"iiwa7", iiwa7_dh, 1e-12},       {"ur10e", ur10e_dh, 3e-9},
-    {"sawyer", sawyer_by_axes, 2e-5}, {"sara_like", sara_like_dh, 1e-12}};
+const std::vector<Model> kSamplingModes = {{"panda", panda_dh, 1e-12},
+                                           {"iiwa14", iiwa14_dh, 1e-12},
+                                           {"iiwa7", iiwa7_dh, 1e-12},
+                                           {"ur10e", ur10e_dh, 3e-9},
+                                           {"sawyer", sawyer_by_axes, 2e-5},
+                                           {"sara_like", sara_like_dh, 1e-12},
+                                           {"panda_lift", on_lift<panda_dh>, 1e-12},
+                                           {"iiwa14_lift", on_lift<iiwa14_dh>, 1e-12}};
 const std::vector<Model> kPlanarArms = {{"planar_5r_a", planar_5r_a, 1e-12},
                                         {"planar_5r_b", planar_5r_b, 1e-12},
                                         {"planar_7r_c", planar_7r_c, 1e-12}};

@@ -91,9 +91,9 @@ TEST_F(Ur10eTwin, OtherNamesAndMoreDigitsAreTheSameArm) {
 }
 
 TEST(ModelArms, AreAllDifferent) {
-  const std::vector<std::string> names = {"panda",       "iiwa14",      "iiwa7",
-                                          "ur10e",       "sawyer",      "sara_like",
-                                          "planar_5r_a", "planar_5r_b", "planar_7r_c"};
+  const std::vector<std::string> names = {"panda",       "iiwa14",     "iiwa7",       "ur10e",
+                                          "sawyer",      "sara_like",  "planar_5r_a", "planar_5r_b",
+                                          "planar_7r_c", "panda_lift", "iiwa14_lift"};
   std::vector<Chain> chains;
   for (const std::string& name : names)
     chains.push_back(test::model_chain(name));
