@@ -30,6 +30,7 @@ constexpr double kUsualTryChecks = 40;   // where none was measured
 constexpr std::size_t kMostModes = 4;
 constexpr std::uint64_t kPlans = 3;   // uniform ones of a query, of which the shortest is kept
 constexpr double kAnotherGoal = 0.1;  // joint units, from the goal reached
+constexpr double kLeastClearance_m = 0.004;  // where there is no room for the others
 
 std::vector<std::uint8_t> no_bits(const RecallLibrary& library) {
   return std::vector<std::uint8_t>(
@@ -227,7 +228,12 @@ void LibraryMaker::solve(std::size_t query) {
   solved.goal = raw.rightCols<1>();
   posed_of_.push_back(query);
   library_.queries.push_back(std::move(solved));
+  const std::size_t before = library_.paths.size();
   add_clear_paths(posed, raw, options_.clearances_m);
+  if (library_.paths.size() == before)
+    add_clear_paths(posed, raw, {&kLeastClearance_m, 1});
+  if (library_.paths.size() == before)
+    add_path(raw);
 
   const Eigen::VectorXd from_goal =
       (posed.goals.colwise() - library_.queries.back().goal).colwise().norm();
@@ -254,9 +260,14 @@ void LibraryMaker::add_clear_paths(const PosedQuery& posed, const Eigen::MatrixX
                                    .constraint = larger.constraint_or_null()};
     std::mt19937_64 generator(library_.paths.size());
     if (const auto clear = clear_path(raw, larger.is_free, posed.bounds, options, generator))
-      library_.paths.push_back(
-          {static_cast<std::uint32_t>(library_.queries.size() - 1), equal_parts(*clear)});
+      add_path(*clear);
   }
+}
+
+/// Of the newest query.
+void LibraryMaker::add_path(const Eigen::MatrixXd& path) {
+  library_.paths.push_back(
+      {static_cast<std::uint32_t>(library_.queries.size() - 1), equal_parts(path)});
 }
 
 /// Chooses the anchors, and tries every mode on a few queries.

@@ -36,7 +36,7 @@ struct LibraryMakerOptions {
   double step = 0.1;                             ///< between checked configurations, joint units
   std::vector<double> clearances_m{0.01, 0.02};  ///< of paths, one path each
   int branches = 2;                      ///< other goals of a query that a path is planned to
-  std::uint64_t max_checks = 20'000;     ///< of one plan
+  std::uint64_t max_checks = 60'000;     ///< of one plan
   std::size_t max_paths = 256;           ///< of the library
   double max_phase_s = 60;               ///< processor time of each of three phases
   std::function<void()> before = [] {};  ///< called before each check; may throw to end the work
@@ -71,6 +71,7 @@ class LibraryMaker {
   Eigen::MatrixXd shortest(const std::vector<Eigen::MatrixXd>& answers, World& world) const;
   void add_clear_paths(const PosedQuery& posed, const Eigen::MatrixXd& raw,
                        std::span<const double> clearances_m);
+  void add_path(const Eigen::MatrixXd& path);
   void begin_probe();
   void probe(std::size_t query);
   void begin_tries();

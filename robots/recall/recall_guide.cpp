@@ -18,7 +18,8 @@ namespace {
 constexpr double kRadian_m = 0.3;   // see planning::pose_distance_m
 constexpr double kYawWeight = 0.3;  // of a turn of the whole arm, which changes little
 constexpr int kBins = 16;
-constexpr std::size_t kMostRanked = 64;  // paths in a mode, for one goal
+constexpr std::size_t kMostRanked = 64,
+                      kFewestRanked = 16;  // paths in a mode: of all goals; of one
 constexpr double kLeastAlike = 0.02;
 constexpr double kFarStart = 2;  // joint units: no path starts so near as to tell what it is worth
 
@@ -268,7 +269,7 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
     if (query.without != library.queries[i].report && weight > kLeastAlike)
       group.alike.push_back({i, weight});
   }
-  std::vector<Candidate> candidates;
+  std::vector<std::pair<double, std::size_t>> paths;
   for (std::size_t path = 0; path < library.paths.size(); ++path) {
     if (query.without == library.queries[library.paths[path].query].report)
       continue;
@@ -276,15 +277,16 @@ void Ranking::add_goal(const Query& query, Eigen::Index goal) {
         metric_ == RecallGuide::Metric::Poses
             ? distances[library.paths[path].query]
             : guide_.distances(metric_, guide_.path_ends_[path], ends);
+    paths.emplace_back(from.together(least_start), path);
+  }
+  const std::size_t goals = static_cast<std::size_t>(std::max<Eigen::Index>(query.goals.cols(), 1));
+  const std::size_t most = std::max(kMostRanked / goals, kFewestRanked) / library.modes.size() + 1;
+  const std::size_t kept = std::min(most, paths.size());
+  std::ranges::partial_sort(paths, paths.begin() + static_cast<std::ptrdiff_t>(kept));
+  for (std::size_t i = 0; i < kept; ++i)
     for (std::size_t mode = 0; mode < library.modes.size(); ++mode)
       if (guide_.is_usable(query, mode))
-        candidates.push_back({path, mode, goal, from.together(least_start)});
-  }
-  const std::size_t kept = std::min(kMostRanked, candidates.size());
-  std::ranges::partial_sort(candidates, candidates.begin() + static_cast<std::ptrdiff_t>(kept), {},
-                            &Candidate::distance);
-  for (std::size_t i = 0; i < kept; ++i)
-    group.ranked.push_back({candidates[i]});
+        group.ranked.push_back({{paths[i].second, mode, goal, paths[i].first}});
   rank(group);
   groups_.push_back(std::move(group));
 }
