@@ -23,10 +23,10 @@
 namespace kinship::recall {
 namespace {
 
-constexpr std::size_t kProbed = 16;      // queries by which modes are chosen
-constexpr std::size_t kTriedPaths = 96;  // on a query; clients rank 64
-constexpr double kWorthKeeping = 0.6;    // of the best mode's success
-constexpr double kUsualTryChecks = 40;   // where none was measured
+constexpr std::size_t kProbed = 16;       // queries by which modes are chosen
+constexpr std::size_t kTriedPaths = 128;  // on a query; RecallGuide learns from 64 of them
+constexpr double kWorthKeeping = 0.6;     // of the best mode's success
+constexpr double kUsualTryChecks = 40;    // where none was measured
 constexpr std::size_t kMostModes = 4;
 constexpr std::uint64_t kPlans = 3;   // uniform ones of a query, of which the shortest is kept
 constexpr double kAnotherGoal = 0.1;  // joint units, from the goal reached
@@ -202,6 +202,7 @@ void LibraryMaker::solve(std::size_t query) {
   const std::uint64_t seed = split_mixed((query + 1) * kSplitMixStep);
   const planning::PlanSummary found = plan(posed, world, posed.goals, Guide::None, seed);
   const planning::PlanSummary backed = plan(posed, world, posed.goals, Guide::Retreat, seed);
+  planned_ += found.collision_checks > 0 ? 1 : 0;
   planned_s_ += found.planning_time_s;
   uniform_checks_ += static_cast<double>(found.collision_checks);
   retreat_checks_ += static_cast<double>(backed.collision_checks);
@@ -418,9 +419,9 @@ void LibraryMaker::finish() {
         if (bit_of(library_.reaches, from))
           set_bit(kept.reaches, to);
       }
-  if (!queries_.empty())
+  if (planned_ > 0)
     kept.search_checks =
-        std::min(uniform_checks_, 2 * retreat_checks_) / static_cast<double>(queries_.size());
+        std::min(uniform_checks_, 2 * retreat_checks_) / static_cast<double>(planned_);
   kept.try_checks = kUsualTryChecks;
   if (failed_ > 0 && planned_s_ > 0)
     kept.try_checks = failed_s_ / static_cast<double>(failed_) * uniform_checks_ / planned_s_;

@@ -95,6 +95,7 @@ class LibraryMaker {
   Phase phase_ = Phase::Solve;
   double spent_s_ = 0;  // processor time of the phase
   std::size_t next_ = 0;
+  std::size_t planned_ = 0;  // queries, with a search
   double uniform_checks_ = 0, retreat_checks_ = 0, planned_s_ = 0;
   double failed_s_ = 0;  // of tries that failed
   std::size_t failed_ = 0;

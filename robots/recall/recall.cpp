@@ -60,16 +60,22 @@ bool are_lines_proven(const Eigen::MatrixXd& path, const planning::IsFree& is_fr
   return true;
 }
 
-/// The same along a constraint that the waypoints hold.
+/// Whether the ways along a constraint are free between waypoints that hold it, and are free.
 bool are_lines_free(const Eigen::MatrixXd& path, const planning::IsFree& is_free,
                     planning::RegionConstraint& constraint, double step, RecallSummary& summary) {
   auto way = planning::ConstrainedStepper(step, constraint).way_through(path);
   if (!way)
     return false;
+  std::vector<bool> is_asked(static_cast<std::size_t>(way->cols()));
+  for (Eigen::Index i = 0, line = 0; i < way->cols() && line < path.cols(); ++i)
+    if (way->col(i) == path.col(line)) {
+      is_asked[static_cast<std::size_t>(i)] = true;
+      ++line;
+    }
   Asked asked(is_free, summary.collision_checks);
   planning::MiddlesFirst middles(way->cols() - 1);
   for (Eigen::Index next = middles.next(); next != 0; next = middles.next())
-    if (!asked.add(way->col(next)))
+    if (!is_asked[static_cast<std::size_t>(next)] && !asked.add(way->col(next)))
       return false;
   if (!asked.are_free() || (is_free.proves_edges() && !are_lines_proven(*way, is_free, summary)))
     return false;
@@ -151,9 +157,9 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
          summary.collision_checks < options.max_checks;
        candidate = ranking.next(options.step)) {
     ++summary.tries;
-    missed *= 1 - ranking.chance();
     auto warp = guide.warp(query, *candidate);
     if (!warp || !is_goal_free(*warp, is_free, summary)) {
+      missed *= 1 - ranking.chance();
       ranking.fail_at_goal();
       continue;
     }
@@ -164,6 +170,7 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
       if (summary.is_straight_line)
         break;
     }
+    missed *= 1 - ranking.chance();
     if (is_way_free(*warp, is_free, options.step, summary))
       break;
     ranking.fail();

@@ -40,8 +40,9 @@ bool is_goal_free(const Warp& warp, const planning::IsFree& is_free, RecallSumma
 bool is_way_free(Warp& warp, const planning::IsFree& is_free, double step, RecallSummary& summary);
 
 /// Tries whole paths on a query, the most promising first, as long as that is cheaper in the mean
-/// than a search. A path is checked at few configurations first, then between these. Starts with
-/// the straight line. Equal arguments, equal answers.
+/// than a search. A path is checked at few configurations first, then between these. The straight
+/// line to the first free goal is tried before its path, but under a constraint. Equal arguments,
+/// equal answers.
 /// \param query  start and goals need not be free.
 RecallSummary recall(const RecallGuide& guide, const Query& query, const planning::IsFree& is_free,
                      const RecallOptions& options);

@@ -20,6 +20,7 @@ constexpr double kYawWeight = 0.3;  // of a turn of the whole arm, which changes
 constexpr int kBins = 16;
 constexpr std::size_t kMostRanked = 64,
                       kFewestRanked = 16;  // paths in a mode: of all goals; of one
+constexpr std::size_t kLearnedPaths = 64;  // of a query: farther ones may not have been tried
 constexpr double kLeastAlike = 0.02;
 constexpr double kFarStart = 2;  // joint units: no path starts so near as to tell what it is worth
 
@@ -130,9 +131,7 @@ void RecallGuide::learn(Metric metric) {
   std::vector<double> nearest;
   for (std::size_t query = 0; query < ends_.size(); ++query) {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t path = 0; path < paths_.size(); ++path) {
-      if (answers(path, query))
-        continue;
+    for (const std::size_t path : nearest_paths(metric, query, kLearnedPaths)) {
       pairs.push_back({distances(metric, path_ends_[path], ends_[query]).together(), query, path});
       least = std::min(least, pairs.back().distance);
     }

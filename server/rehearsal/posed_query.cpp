@@ -1,6 +1,8 @@
 #include "server/rehearsal/posed_query.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "proto/types/split_mix.hpp"
@@ -69,13 +71,17 @@ Starts find_starts(const kinematics::Chain& chain, const Eigen::Isometry3d& T_ta
   Starts starts{usual, kOneIn * places.size() >= count && places.size() > 1};
   if (!starts.are_recorded || !is_start(chain, usual))
     return starts;
-  std::vector<double> spread;  // of the places, from the first one
-  for (const Eigen::Isometry3d& place : places)
-    spread.push_back(distance(places.front())(place));
-  std::ranges::nth_element(spread, spread.begin() + std::ssize(spread) / 2);
+  double spread = std::numeric_limits<double>::infinity();  // of the places, about the middle one
+  for (const Eigen::Isometry3d& place : places) {
+    std::vector<double> to_others;
+    std::ranges::transform(places, std::back_inserter(to_others), distance(place));
+    const auto middle = to_others.begin() + std::ssize(to_others) / 2;
+    std::ranges::nth_element(to_others, middle);
+    spread = std::min(spread, *middle);
+  }
   const Eigen::Isometry3d T_task_usual = T_task_base * kinematics::T_base_transfer(chain, usual);
   starts.are_recorded = std::ranges::any_of(places, [&](const Eigen::Isometry3d& place) {
-    return distance(T_task_usual)(place) <= spread[spread.size() / 2];
+    return distance(T_task_usual)(place) <= spread;
   });
   return starts;
 }
@@ -100,9 +106,10 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
       recorded.own ? std::optional<Eigen::VectorXd>(recorded.own->waypoints.col(0))
       : !starts.are_recorded && is_start(robot.chain, starts.usual) && is_free(starts.usual)
           ? std::optional<Eigen::VectorXd>(starts.usual)
-          : find_start(
-                robot.chain, T_base_task * recorded.T_task_start, is_free, starts.usual,
-                branch == Branch::Drawn ? std::optional(drawn_for(recorded.path)) : std::nullopt);
+          : find_start(robot.chain, T_base_task * recorded.T_task_start, is_free, starts.usual,
+                       starts.are_recorded && branch == Branch::Drawn
+                           ? std::optional(drawn_for(recorded.path))
+                           : std::nullopt);
   if (!start || !is_free(*start))
     return std::nullopt;
   const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, *start);

@@ -31,11 +31,11 @@ struct Starts {
 /// Of free configurations with the hand at a recorded start.
 enum class Branch {
   Usual,  ///< nearest to the usual start; where that is not known, to the middle of the joints
-  Drawn   ///< any one; equal for equal queries
+  Drawn   ///< where starts are the recorded ones, any one; equal for equal queries
 };
 
 /// Whether a robot begins as the others did: their hands begin at many places, and its usual start
-/// is among these.
+/// is among these, or not known.
 /// \param T_task_base  of the robot's base in the task frame.
 /// \param usual        see Starts.
 Starts find_starts(const kinematics::Chain& chain, const Eigen::Isometry3d& T_task_base,

@@ -102,12 +102,12 @@ SharedRehearsal RehearsalScheduler::ask(const RehearsalKey& key) {
   return known;
 }
 
-/// Its own rehearsal, or that of the nearest placement.
+/// Its own complete rehearsal, or that of the nearest placement, or its own so far.
 SharedRehearsal RehearsalScheduler::known_to(const Entry& entry) const {
-  if (entry.known)
+  if (entry.known && entry.known->is_complete)
     return entry.known;
   const Entry* const near = nearest(entry.key);
-  return near != nullptr ? near->known : nullptr;
+  return near != nullptr ? near->known : entry.known;
 }
 
 /// The entry of an equal key at the nearest other placement that has been rehearsed.
@@ -120,7 +120,7 @@ const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey&
   const Entry* found = nullptr;
   double least = kNear_m;
   for (const auto& [id, entry] : entries_) {
-    if (!entry.known || entry.is_lost || entry.kind != kind)
+    if (!entry.known || !entry.known->is_complete || entry.is_lost || entry.kind != kind)
       continue;
     const double distance = planning::pose_distance_m(place(entry.key), place(key));
     if (distance <= least) {
@@ -148,7 +148,8 @@ void RehearsalScheduler::wait(const RehearsalKey& key, TimePoint deadline, const
     if (!is_stopping_ && options_.processor_fraction > 0) {
       Entry& entry = use(key);
       known = known_to(entry);
-      waits = entry.is_working && !(known && !entry.known) && waiters_ < options_.max_waiters;
+      const bool is_served = known && known != entry.known;  // by another placement's
+      waits = entry.is_working && !is_served && waiters_ < options_.max_waiters;
       if (waits) {
         entry.waiters.push_back({deadline, done});
         ++waiters_;

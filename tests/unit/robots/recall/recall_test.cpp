@@ -138,6 +138,17 @@ TEST_P(Recalls, UnderAConstraintTheWholePathKeepsIt) {
   EXPECT_GT(solved, 0) << "else nothing was compared";
 }
 
+TEST_P(Recalls, AStraightLineTellsNothingOfThePaths) {
+  int straight = 0;
+  for (Fresh& each : fresh()) {
+    const RecallSummary found =
+        recall(guide_, each.query, planning::IsFree([](const auto&) { return true; }), kOptions);
+    EXPECT_EQ(found.expected, 0);
+    straight += found.is_straight_line ? 1 : 0;
+  }
+  EXPECT_GT(straight, 0);
+}
+
 TEST_P(Recalls, EachConfigurationOfThePathWasAsked) {
   int solved = 0;
   for (Fresh& each : fresh()) {

@@ -169,6 +169,33 @@ TEST_F(RecalledPaths, AnotherPlacementIsServedByTheNearestRehearsedOne) {
   EXPECT_EQ(rehearsals.ask(key_at(ur10e_)), nullptr) << "another robot's are of no use";
 }
 
+TEST_F(RecalledPaths, APlacementKeepsWhatServesItUntilItsOwnIsComplete) {
+  report_sweeps(24);
+  RehearsalSchedulerOptions options = quick();
+  options.max_queries = 24;  // enough for a first result of a few
+  options.processor_fraction = 1;
+  std::promise<void> done;
+  options.log = [&, count = 0](std::string_view) mutable {
+    if (++count == 2)
+      done.set_value();
+  };
+  RehearsalScheduler rehearsals(parts_, options);
+  const RehearsalKey first = key_at(panda_), near = key_at(panda_, 0.5);
+  const SharedRehearsal known = wait(rehearsals, first);
+  ASSERT_TRUE(known && rehearsals.library(first));
+  rehearsals.ask(near);
+  rehearsals.ask(near);
+  std::future<void> is_done = done.get_future();
+  int asked = 0;
+  do {
+    const SharedRehearsal served = rehearsals.ask(near);
+    EXPECT_TRUE(served && served->is_complete);
+    EXPECT_TRUE(rehearsals.library(near));
+    ++asked;
+  } while (is_done.wait_for(1ms) != std::future_status::ready && !HasFailure());
+  EXPECT_GT(asked, 1);
+}
+
 TEST_F(RecalledPaths, TheSecondRequestRehearsesAPlacementForItself) {
   report_sweeps(3);
   std::promise<void> first_done, second_done;

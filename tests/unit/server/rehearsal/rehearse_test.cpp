@@ -88,8 +88,10 @@ TEST_F(Rehearse, ARobotBeginsAsTheOthersIfTheirStartsSpreadAndItsOwnIsAmongThem)
   EXPECT_FALSE(
       find_starts(robot(panda_)->chain, at_task, queries_for(panda_).queries, {}).are_recorded)
       << "all are its own";
+  recorded.front().T_task_start.translation().x() += 5;
+  EXPECT_FALSE(are_recorded(Eigen::VectorXd::Zero(6))) << "one far off says nothing";
   for (RecordedQuery& query : recorded)
-    query.T_task_start = recorded.front().T_task_start;
+    query.T_task_start = recorded.back().T_task_start;
   EXPECT_FALSE(are_recorded(among->query.start)) << "the others begin at home";
 }
 

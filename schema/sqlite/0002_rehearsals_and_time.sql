@@ -1,4 +1,6 @@
--- 0002: rehearsals with their libraries of paths to recall, the newest of each distribution: they
+-- 0002: what rehearsals found, and what queries cost.
+
+-- Rehearsals with their libraries of paths to recall, the newest of each distribution: they
 -- are made anew where one is missing or damaged, and refer to no row.
 CREATE TABLE rehearsal (
   id          INTEGER PRIMARY KEY,  -- grows
@@ -11,3 +13,9 @@ CREATE TABLE rehearsal (
   payload     BLOB NOT NULL  -- server/store/values/rehearsal_blob.cpp
 ) STRICT;
 CREATE INDEX rehearsal_by_digest ON rehearsal (digest);
+
+-- What a query cost in processor time, with everything that guidance costs; 0: unknown, as in all
+-- attempts from before.
+ALTER TABLE attempt ADD COLUMN processor_time_s REAL NOT NULL DEFAULT 0 CHECK (processor_time_s >= 0);
+-- To the reference machine, as its client measured it (proto/evidence/machine_speed); 0: unknown.
+ALTER TABLE attempt ADD COLUMN machine_speed REAL NOT NULL DEFAULT 0 CHECK (machine_speed >= 0);
