@@ -171,7 +171,7 @@ TEST_F(RecallPlannerTest, NoPathHasAMotionThatTheValidatorRefuses) {
   for (auto& asked : fresh()) {
     const RecallPlanner& planner = asked->plan_by(patient_guide());
     asked->information()->setMotionValidator(std::make_shared<NoMotion>(asked->information()));
-    ob::IterationTerminationCondition few(2000);
+    ob::IterationTerminationCondition few(20'000);
     EXPECT_NE(asked->setup.solve(few), ob::PlannerStatus::EXACT_SOLUTION);
     EXPECT_FALSE(planner.recalled().waypoints);
     EXPECT_GT(planner.recalled().tries, 0U);
@@ -246,7 +246,7 @@ TEST_F(RecallPlannerTest, TrustsPathsLessThatDoNotHoldUnlessItIsTold) {
   EXPECT_EQ(trust(), 1);
   for (int times = 0; times < 3; ++times) {
     asked->setup.clear();
-    ob::IterationTerminationCondition few(2000);
+    ob::IterationTerminationCondition few(20'000);
     asked->setup.solve(few);
   }
   EXPECT_LT(trust(), 0.6);
