@@ -89,10 +89,17 @@ bool needs_server(const GuidanceOptions& wanted) {
   return !wanted.guide || needs_experience(*wanted.guide);
 }
 
+/// The rehearsal's; as long as it has none, what costs less than all guides together.
+Guide guide_by(const Rehearsal* rehearsal, bool are_ways) {
+  if (rehearsal != nullptr && !rehearsal->costs.empty())
+    return rehearsal->guide;
+  return are_ways ? Guide::RecallRetreatWays : Guide::All;
+}
+
 /// Guidance by the distribution, the experience, or both; with neither by the robot alone.
 GuidanceAnswer answer_with(const Distribution* distribution, KnownExperience known,
                            const Rehearsal* rehearsal, const GuidanceOptions& wanted) {
-  const Guide guide = wanted.guide.value_or(rehearsal != nullptr ? rehearsal->guide : Guide::All);
+  const Guide guide = wanted.guide.value_or(guide_by(rehearsal, known.ways != nullptr));
   SamplingModeOptions sampling = wanted.sampling;
   if (guide == Guide::None)
     sampling.guided_fraction = 0;

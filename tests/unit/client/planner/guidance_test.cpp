@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tests/support/planar_arm.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
@@ -90,6 +91,25 @@ TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
   EXPECT_EQ(tail({0.5, 0.025}), "share 0.50, 2.5 % of the queries uniform as control");
   EXPECT_EQ(tail({0.5, {}}), "share 0.50, the first query guided with probability 0.64");
   EXPECT_EQ(tail({0.0, {}}), "uniform");
+}
+
+TEST(FetchGuidance, TakesTheRehearsedGuideAndUntilThereIsOneLeavesTheMixtureOut) {
+  const kinematics::Chain chain = test::PlanarArm{{0.5, 0.5}}.chain();
+  const KnownExperience ways{std::make_shared<planning::ExperienceGuide>(chain, TaskExperience{}),
+                             nullptr};
+  FetchReply reply = ready();
+  const auto guide = [&](const KnownExperience& known) {
+    return fetch_guidance([&](const FetchRequest&) { return Result<FetchReply>(reply); }, wanted(),
+                          placement(0), known)
+        .guidance->guide;
+  };
+  EXPECT_EQ(guide(ways), Guide::RecallRetreatWays);
+  EXPECT_EQ(guide({}), Guide::All) << "the mixture is all there is";
+  reply.rehearsal.emplace().message = "no recorded query can be planned";
+  EXPECT_EQ(guide(ways), Guide::RecallRetreatWays);
+  reply.rehearsal->costs.push_back({.guide = Guide::Mixture});
+  reply.rehearsal->guide = Guide::Mixture;
+  EXPECT_EQ(guide(ways), Guide::Mixture);
 }
 
 TEST(FetchGuidance, AsksForTaskRobotPlacementProfileAndSelection) {
