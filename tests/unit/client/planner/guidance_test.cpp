@@ -94,7 +94,7 @@ TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
 }
 
 TEST(FetchGuidance, TakesTheRehearsedGuideAndUntilThereIsOneLeavesTheMixtureOut) {
-  const kinematics::Chain chain = test::PlanarArm{{0.5, 0.5}}.chain();
+  const kinematics::Chain chain = kinship::test::PlanarArm{{0.5, 0.5}}.chain();
   const KnownExperience ways{std::make_shared<planning::ExperienceGuide>(chain, TaskExperience{}),
                              nullptr};
   FetchReply reply = ready();
