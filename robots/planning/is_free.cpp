@@ -47,9 +47,9 @@ IsFree proven_in(collision::EdgeProver& prover, const collision::EdgeProofOption
       [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& from,
                                   const Eigen::Ref<const Eigen::MatrixXd>& to) {
         prepare();
-        std::vector<std::optional<double>> lines;
+        IsFree::Lines lines;
         for (const collision::EdgeProof& proof : prover.prove_all(from, to, options))
-          lines.push_back(proof.is_free() ? std::optional(proof.least_clearance_m) : std::nullopt);
+          lines.push_back(proof.is_free());
         return lines;
       }};
 }

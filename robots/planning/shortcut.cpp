@@ -71,7 +71,7 @@ class StraightWay {
     return true;
   }
   bool is_proven(const IsFree& is_free) const {
-    return is_free.edges(from_, to_).front().has_value();
+    return is_free.edges(from_, to_).front();
   }
   Eigen::Index parts() const { return parts_; }
   /// \param i  0 to parts()
