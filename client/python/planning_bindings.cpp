@@ -196,9 +196,7 @@ planning::IsFree checker_of(const py::function& free, const py::object& path_fre
             Eigen::MatrixXd path(from.rows(), from.cols() + 1);
             path << from, to.rightCols(1);
             const bool is_free = path_free(to_rows(path)).template cast<bool>();
-            return planning::IsFree::Lines(
-                static_cast<std::size_t>(from.cols()),
-                is_free);
+            return planning::IsFree::Lines(static_cast<std::size_t>(from.cols()), is_free);
           }};
 }
 
@@ -303,9 +301,8 @@ void bind_outcome(py::class_<Plan>& plan) {
                              "Of shortening the path, afterwards.")
       .def_property_readonly("proven", result(&ProblemResult::proven),
                              "Whether nothing touches between the waypoints, surely.")
-      .def_property_readonly(
-          "path_length", measured(&ProblemResult::path_length),
-          "In joint units; like the next two, None if not solved.")
+      .def_property_readonly("path_length", measured(&ProblemResult::path_length),
+                             "In joint units; like the next two, None if not solved.")
       .def_property_readonly("hand_length", measured(&ProblemResult::hand_length_m),
                              "Of the way of the transfer frame, m.")
       .def_property_readonly(

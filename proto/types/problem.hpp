@@ -55,7 +55,7 @@ struct ProblemResult {
   std::optional<double> hand_length_m = {};    ///< of the way of the transfer frame
   /// Of what moves from the obstacles, where the path is looked at; 0.1 if nothing is nearer.
   std::optional<double> least_clearance_m = {};
-  std::optional<Digest> distribution_id;       ///< present if there was guidance, used or not
+  std::optional<Digest> distribution_id;  ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
   SamplingMode sampling_mode =
       SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform on request

@@ -25,7 +25,7 @@ struct RecallSummary {
   std::uint64_t collision_checks = 0;
   std::uint64_t tries = 0;
   bool is_straight_line = false;  ///< the straight line to the first goal tried was free
-  double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
+  double expected = 0;            ///< chance that one of the tries works, by the ranking, 0 to 1
 };
 
 /// Whether a path's goal is free, and keeps the constraint. \param summary  out: checks are added.

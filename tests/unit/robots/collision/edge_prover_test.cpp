@@ -151,7 +151,7 @@ TEST(EdgeProver, TheLeastClearanceIsThatOfTheObstacles) {
   EXPECT_NEAR(prover.least_clearance_m(turn), gap_m, 0.02 * gap_m);
   EXPECT_EQ(prover.least_clearance_m(angles({M_PI, 0})), kLargestRoom_m);
   EXPECT_EQ(prover.least_clearance_m(angles({0.1, 0})), 0);
-  CollisionWorld folded = folded_over_ball(0.004);
+  CollisionWorld folded = folded_over_ball(0.0005);
   EXPECT_EQ(EdgeProver(folded).least_clearance_m(angles({0, M_PI / 2, M_PI / 2})), kLargestRoom_m)
       << "own links are no obstacles";
   EXPECT_EQ(world.checks(), 0U);
