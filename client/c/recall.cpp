@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -90,7 +89,7 @@ planning::IsFree read_checker(const kinship_recall_query& given) {
               const Eigen::VectorXd begin = from.col(i), end = to.col(i);
               if (!is_yes(given.is_line_free(given.user, begin.data(), end.data(), given.dof)))
                 break;
-              lines[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
+              lines[static_cast<std::size_t>(i)] = true;
             }
             return lines;
           }};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <exception>
 #include <limits>
 #include <optional>
@@ -229,8 +228,6 @@ class Planning {
     result.not_planned.reset();
     result.found_by = summary.is_straight_line ? FoundBy::StraightLine : FoundBy::Recalled;
     result.proven = is_free_.proves_edges();
-    if (result.proven && std::isfinite(summary.least_clearance_m))
-      result.least_clearance_m = summary.least_clearance_m;
     result.waypoints = vertices(*summary.waypoints, settings_.resolution);
     planned.outcome = Outcome::Solved;
     if (recorder_ != nullptr)
@@ -375,8 +372,6 @@ class Planning {
     }
     result.waypoints = std::move(proven.waypoints);
     result.proven = is_free_.proves_edges();
-    if (result.proven && std::isfinite(proven.least_clearance_m))
-      result.least_clearance_m = proven.least_clearance_m;
   }
 
   Eigen::MatrixXd vertices(const Eigen::MatrixXd& waypoints, double step) const {

@@ -4,7 +4,6 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/PathGeometric.h>
 
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -124,7 +123,7 @@ planning::IsFree RecallPlanner::what_is_free(const ob::PlannerTerminationConditi
               copy_to_state(to.col(i), *states->to.get());
               if (!si_->checkMotion(states->from.get(), states->to.get()))
                 break;
-              lines[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
+              lines[static_cast<std::size_t>(i)] = true;
             }
             return lines;
           }};

@@ -11,6 +11,7 @@
 
 #include "client/guided/attempt_record.hpp"
 #include "client/guided/geometry_warnings.hpp"
+#include "client/guided/path_measures.hpp"
 #include "client/guided/scene_record.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
@@ -173,6 +174,7 @@ class Run {
     guided::PlannedProblem planned =
         guided::plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
                              streams_.searches != nullptr ? &recorder_ : nullptr);
+    guided::measure_path(robot_, problem, planned.result);
     for (const std::string& warning : warnings_.find(problem, planned))
       streams_.messages << "warning: " << warning << '\n';
     for (const std::string& moved : planned.moved)

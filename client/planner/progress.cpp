@@ -1,10 +1,13 @@
 #include "client/planner/progress.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <numeric>
 #include <ostream>
 #include <string>
 
 #include "proto/types/duration_text.hpp"
+#include "proto/types/enum_text.hpp"
 
 namespace kinship::planner {
 namespace {
@@ -29,6 +32,17 @@ std::string guidance_text(const ProblemResult& result) {
   return result.guidance_reason.empty() ? "uniform" : "uniform: " + result.guidance_reason;
 }
 
+/// "1.20 m, median 1.15 m"
+std::string mean_text(std::vector<double> values, double scale, int digits,
+                      const std::string& unit) {
+  const auto text = [&](double value) { return with_digits(scale * value, digits) + unit; };
+  std::ranges::sort(values);
+  const std::size_t count = values.size();
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  return text(sum / static_cast<double>(count)) + ", median " +
+         text((values[(count - 1) / 2] + values[count / 2]) / 2);
+}
+
 }  // namespace
 
 void Progress::add(const ProblemResult& result, bool attempted) {
@@ -44,6 +58,12 @@ void Progress::add(const ProblemResult& result, bool attempted) {
     ++(result.sampling_mode == SamplingMode::Guided    ? guided_
        : result.sampling_mode == SamplingMode::Control ? control_
                                                        : uniform_);
+  }
+  if (result.path_length && result.hand_length_m && result.least_clearance_m) {
+    Measures& measures = measures_.at(static_cast<std::size_t>(result.sampling_mode));
+    measures.lengths.push_back(*result.path_length);
+    measures.hands_m.push_back(*result.hand_length_m);
+    measures.clearances_m.push_back(*result.least_clearance_m);
   }
   if (!terminal_ && done_ * kLines / total_ == lines_before)
     return;
@@ -71,10 +91,19 @@ void Progress::finish() {
     stream_ << "; " << unplanned_.size() << " could not be planned (" << unplanned_.reasons()
             << "):\n";
     unplanned_.write_first(stream_);
-    stream_ << std::flush;
   } else {
-    stream_ << std::endl;
+    stream_ << '\n';
   }
+  write_measures();
+  stream_ << std::flush;
+}
+
+void Progress::write_measures() const {
+  for (std::size_t mode = 0; mode < measures_.size(); ++mode)
+    if (const Measures& of = measures_[mode]; !of.lengths.empty())
+      stream_ << "paths " << to_text(static_cast<SamplingMode>(mode)) << ": length "
+              << mean_text(of.lengths, 1, 2, "") << "; hand's " << mean_text(of.hands_m, 1, 2, " m")
+              << "; least clearance " << mean_text(of.clearances_m, 1e3, 1, " mm") << '\n';
 }
 
 std::string result_text(const ProblemResult& result) {

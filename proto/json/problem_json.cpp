@@ -74,6 +74,8 @@ constexpr std::tuple kEffort{
     Field{"shortcut_checks", &ProblemResult::shortcut_checks, {.may_be_missing = true}},
     Field{"projections", &ProblemResult::projections},
     Field{"proven", &ProblemResult::proven, {.may_be_missing = true}},
+    Field{"path_length", &ProblemResult::path_length, {.min = 0, .may_be_missing = true}},
+    Field{"hand_length_m", &ProblemResult::hand_length_m, {.min = 0, .may_be_missing = true}},
     Field{
         "least_clearance_m", &ProblemResult::least_clearance_m, {.min = 0, .may_be_missing = true}},
     Field{"refuted_edges", &ProblemResult::refuted_edges, {.may_be_missing = true}},

@@ -42,9 +42,6 @@ struct ProblemResult {
   std::uint64_t shortcut_checks = 0;  ///< of shortening the path, after planning
   std::uint64_t projections = 0;
   bool proven = false;  ///< solved, and proven free of collision between the waypoints too
-  /// Of a proven path: the least distance measured on it, m; missing: no obstacle was near enough
-  /// to be measured.
-  std::optional<double> least_clearance_m = {};
   /// Edges that were free at the tested configurations but collide in between: planned again.
   std::uint64_t refuted_edges = 0;
   double planning_time_s = 0;  ///< without goal configurations and shortcutting
@@ -54,7 +51,11 @@ struct ProblemResult {
   std::optional<Eigen::VectorXd> start = {};   ///< dof: where planning began; missing: it did not
   std::optional<NotPlanned> not_planned = {};  ///< why no search was begun; missing: a search was
   std::optional<Eigen::MatrixXd> waypoints;    ///< dof x n
-  std::optional<Digest> distribution_id;       ///< present if there was guidance, used or not
+  std::optional<double> path_length = {};      ///< joint units; like the next two, of `waypoints`
+  std::optional<double> hand_length_m = {};    ///< of the way of the transfer frame
+  /// Of what moves from the obstacles, where the path is looked at; 0.1 if nothing is nearer.
+  std::optional<double> least_clearance_m = {};
+  std::optional<Digest> distribution_id;  ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
   SamplingMode sampling_mode =
       SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform on request

@@ -64,10 +64,13 @@ void EdgeProver::begin(const Eigen::Ref<const Eigen::MatrixXd>& qs,
   clearances_ = {options.clearance_m, std::min(options.clearance_m, kOwnClearance_m)};
 }
 
+bool EdgeProver::is_own(const BodyPair& pair) const {
+  return world_.bodies_[pair.first].kind != BodyKind::Obstacle &&
+         world_.bodies_[pair.second].kind != BodyKind::Obstacle;
+}
+
 double EdgeProver::clearance_m(const BodyPair& pair) const {
-  const bool is_own = world_.bodies_[pair.first].kind != BodyKind::Obstacle &&
-                      world_.bodies_[pair.second].kind != BodyKind::Obstacle;
-  return is_own ? clearances_.moving_m : clearances_.standing_m;
+  return is_own(pair) ? clearances_.moving_m : clearances_.standing_m;
 }
 
 EdgeProof EdgeProver::prove(const Eigen::Ref<const Eigen::VectorXd>& from,
@@ -375,12 +378,16 @@ bool EdgeProver::is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q) 
     doubtful_ = pairs_;
   kinematics::joint_poses(world_.robot_.parts().chain, q, world_.T_base_joints_);
   return std::ranges::all_of(doubtful_, [&](const BodyPair& pair) {
-    for (const std::size_t index : {pair.first, pair.second})
-      if (const Body& body = world_.bodies_[index]; body.joint >= 0)
-        world_.T_base_bodies_[index] =
-            world_.T_base_joints_[static_cast<std::size_t>(body.joint)] * body.T_joint_body;
+    place(pair);
     return placed_distance_m(pair) > clearance_m(pair);
   });
+}
+
+void EdgeProver::place(const BodyPair& pair) {
+  for (const std::size_t index : {pair.first, pair.second})
+    if (const Body& body = world_.bodies_[index]; body.joint >= 0)
+      world_.T_base_bodies_[index] =
+          world_.T_base_joints_[static_cast<std::size_t>(body.joint)] * body.T_joint_body;
 }
 
 double EdgeProver::placed_distance_m(const BodyPair& pair) const {
@@ -390,6 +397,31 @@ double EdgeProver::placed_distance_m(const BodyPair& pair) const {
   const double clearance = clearance_m(pair), cheap_m = cheap_distance_m(a, T_a, b, T_b);
   return cheap_m > clearance ? cheap_m
                              : close_distance_m(a, T_a, b, T_b, clearance + kMotionRounding_m);
+}
+
+double EdgeProver::least_clearance_m(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  begin(qs, {.clearance_m = kLargestRoom_m});
+  grown_m_.setZero();
+  double& least_m = clearances_.standing_m;  // what is farther is not looked at
+  for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
+    const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
+    const LaneAnswer answer = world_.lanes_.ask_grown(qs.middleCols(first, count), grown_m_,
+                                                      clearances_, /*is_ahead=*/false);
+    for (int lane = 0; lane < static_cast<int>(count); ++lane) {
+      if ((answer.maybe >> lane & 1U) == 0)
+        continue;
+      if ((answer.surely >> lane & 1U) != 0 || !world_.lanes_.doubtful_pairs(lane, doubtful_))
+        doubtful_ = pairs_;
+      kinematics::joint_poses(world_.robot_.parts().chain, qs.col(first + lane),
+                              world_.T_base_joints_);
+      for (const BodyPair& pair : doubtful_)
+        if (!is_own(pair)) {
+          place(pair);
+          least_m = std::min(least_m, placed_distance_m(pair));
+        }
+    }
+  }
+  return least_m;
 }
 
 std::vector<NearPair> EdgeProver::find_near(const Eigen::Ref<const Eigen::VectorXd>& q,

@@ -109,6 +109,12 @@ class EdgeProver {
   std::vector<NearPair> find_near(const Eigen::Ref<const Eigen::VectorXd>& q,
                                   const EdgeProofOptions& options = {});
 
+  /// Least distance of what moves from the obstacles at some configurations, m, as closely as
+  /// EdgeProof has it; kLargestRoom_m if nothing is nearer.
+  /// \param qs  dof x n, joint units
+  /// \throws as above.
+  double least_clearance_m(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
  private:
   /// The distance of a pair at a configuration, as far as it is known.
   struct Distance {
@@ -139,6 +145,7 @@ class EdgeProver {
 
   /// Checks the arguments and sets the clearances.
   void begin(const Eigen::Ref<const Eigen::MatrixXd>& qs, const EdgeProofOptions& options);
+  bool is_own(const BodyPair& pair) const;         ///< whether none of the two is an obstacle
   double clearance_m(const BodyPair& pair) const;  ///< required of a pair
   /// Checks the edges by the lanes, part by part; open parts become pieces.
   void ask_lanes();
@@ -166,6 +173,8 @@ class EdgeProver {
   Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool clear);
   /// Whether all pairs in doubt keep the clearance. \param lane  q's, of the last question
   bool is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q);
+  /// Moves the bodies of a pair to the world's poses of joints.
+  void place(const BodyPair& pair);
   /// Distance of a pair at the world's poses, close if it may be too near.
   double placed_distance_m(const BodyPair& pair) const;
   void look_at(Piece piece);  ///< by value: the list grows

@@ -31,27 +31,26 @@ IsFree free_in(collision::CollisionWorld& world, std::function<void()> before) {
 IsFree proven_in(collision::EdgeProver& prover, const collision::EdgeProofOptions& options,
                  std::function<void()> before) {
   const auto prepare = calls(std::move(before));
-  return {
-      [&prover, options, prepare](const Eigen::VectorXd& q) {
-        prepare();
-        return prover.clear_ahead(q, options) == 1;
-      },
-      [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-        prepare();
-        return prover.clear_ahead(qs, options);
-      },
-      [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-        prepare();
-        return prover.near_ahead(qs, options);
-      },
-      [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& from,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& to) {
-        prepare();
-        std::vector<std::optional<double>> lines;
-        for (const collision::EdgeProof& proof : prover.prove_all(from, to, options))
-          lines.push_back(proof.is_free() ? std::optional(proof.least_clearance_m) : std::nullopt);
-        return lines;
-      }};
+  return {[&prover, options, prepare](const Eigen::VectorXd& q) {
+            prepare();
+            return prover.clear_ahead(q, options) == 1;
+          },
+          [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+            prepare();
+            return prover.clear_ahead(qs, options);
+          },
+          [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+            prepare();
+            return prover.near_ahead(qs, options);
+          },
+          [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& from,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& to) {
+            prepare();
+            IsFree::Lines lines;
+            for (const collision::EdgeProof& proof : prover.prove_all(from, to, options))
+              lines.push_back(proof.is_free());
+            return lines;
+          }};
 }
 
 }  // namespace kinship::planning

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <concepts>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,9 +21,8 @@ class IsFree {
   /// \param qs  dof x n. \return how many, from the first on, have the same answer (free or
   ///            blocked) before one differs; later ones are not checked, or without effect.
   using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
-  /// Least clearance of each of some straight lines, m, if it had to be measured, else infinity;
-  /// nothing for a line that is not free.
-  using Lines = std::vector<std::optional<double>>;
+  /// Whether each of some straight lines is free.
+  using Lines = std::vector<bool>;
   /// \param from, to  dof x n: the ends of the lines, a column each
   using Edges = std::function<Lines(const Eigen::Ref<const Eigen::MatrixXd>& from,
                                     const Eigen::Ref<const Eigen::MatrixXd>& to)>;
@@ -55,18 +52,18 @@ class IsFree {
   /// Whether lines are proven, and edges() decides.
   bool proves_edges() const { return static_cast<bool>(edges_); }
 
-  /// As Edges; infinity if lines are not proven. Counts no check.
+  /// As Edges; all are if lines are not proven. Counts no check.
   Lines edges(const Eigen::Ref<const Eigen::MatrixXd>& from,
               const Eigen::Ref<const Eigen::MatrixXd>& to) const {
     if (edges_)
       return edges_(from, to);
-    return Lines(static_cast<std::size_t>(from.cols()), std::numeric_limits<double>::infinity());
+    return Lines(static_cast<std::size_t>(from.cols()), true);
   }
 
   /// Whether all lines between the columns of a way are free.
   bool way_is_free(const Eigen::Ref<const Eigen::MatrixXd>& way) const {
     const auto lines = edges(way.leftCols(way.cols() - 1), way.rightCols(way.cols() - 1));
-    return std::ranges::all_of(lines, [](const auto& line) { return line.has_value(); });
+    return std::ranges::all_of(lines, std::identity());
   }
 
   /// The same with another proof of lines.

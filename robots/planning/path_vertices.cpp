@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "robots/kinematics/forward_kinematics.hpp"
+
 namespace kinship::planning {
 namespace {
 
@@ -113,6 +115,14 @@ double path_length(const Eigen::Ref<const Eigen::MatrixXd>& waypoints) {
   for (Eigen::Index i = 1; i < waypoints.cols(); ++i)
     length += (waypoints.col(i) - waypoints.col(i - 1)).norm();
   return length;
+}
+
+double hand_length_m(const kinematics::Chain& chain, const Eigen::MatrixXd& waypoints) {
+  const Eigen::MatrixXd dense = densified(waypoints, kMeasuredStep);
+  Eigen::MatrixXd way(3, dense.cols());
+  for (Eigen::Index i = 0; i < dense.cols(); ++i)
+    way.col(i) = kinematics::T_base_transfer(chain, dense.col(i)).translation();
+  return path_length(way);
 }
 
 }  // namespace kinship::planning

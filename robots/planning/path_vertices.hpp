@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "robots/kinematics/chain.hpp"
+
 namespace kinship::planning {
 
 /// Number of equal parts of at most `step` that a distance is cut into.
@@ -38,5 +40,12 @@ Eigen::MatrixXd middles_first(const Eigen::MatrixXd& line);
 
 /// Length of a path, joint units.
 double path_length(const Eigen::Ref<const Eigen::MatrixXd>& waypoints);
+
+/// Steps in which a path is measured, joint units.
+inline constexpr double kMeasuredStep = 0.05;
+
+/// Length of the way of the transfer frame along a path, m, in chords of kMeasuredStep.
+/// \param waypoints  dof x n, n >= 1
+double hand_length_m(const kinematics::Chain& chain, const Eigen::MatrixXd& waypoints);
 
 }  // namespace kinship::planning

@@ -18,8 +18,7 @@ constexpr int kMostShortenings = 6;  // before a path is proven first, and then 
 using Lines = IsFree::Lines;
 
 std::uint64_t refuted_among(const Lines& lines) {
-  return static_cast<std::uint64_t>(
-      std::ranges::count_if(lines, [](const auto& line) { return !line.has_value(); }));
+  return static_cast<std::uint64_t>(std::ranges::count(lines, false));
 }
 
 /// Lines and the answers for them.
@@ -27,7 +26,7 @@ class KnownLines {
  public:
   struct Line {
     Eigen::VectorXd from, to;
-    std::optional<double> clearance_m;  // nothing: refuted
+    bool is_free;  // else refuted
   };
 
   /// \return null if nothing is known.
@@ -41,10 +40,10 @@ class KnownLines {
   /// A line that is known to be refuted is; all others count as free.
   Lines by_what_is_known(const Eigen::Ref<const Eigen::MatrixXd>& from,
                          const Eigen::Ref<const Eigen::MatrixXd>& to) const {
-    Lines said(static_cast<std::size_t>(from.cols()), 0.0);
+    Lines said(static_cast<std::size_t>(from.cols()), true);
     for (Eigen::Index i = 0; i < from.cols(); ++i)
       if (const Line* const known = find(from.col(i), to.col(i)))
-        said[static_cast<std::size_t>(i)] = known->clearance_m;
+        said[static_cast<std::size_t>(i)] = known->is_free;
     return said;
   }
 
@@ -87,10 +86,8 @@ class Proving {
     keep(shorten_(whole, is_free_));
     // Shortcuts are proven from end to end, but a line that is left of one, or of two, may come
     // nearer than the clearance where it is looked at now: then it stays unshortened.
-    if (!judge(lines(proven_.waypoints))) {
+    if (!is_free_.way_is_free(proven_.waypoints))
       proven_.waypoints = whole;
-      judge(lines(whole));
-    }
     return proven_;
   }
 
@@ -106,14 +103,6 @@ class Proving {
     proven_.projections += shortened.projections;
   }
 
-  /// \return whether none is refuted.
-  bool judge(const Lines& lines) {
-    proven_.least_clearance_m = std::numeric_limits<double>::infinity();
-    for (const auto& line : lines)
-      proven_.least_clearance_m = std::min(proven_.least_clearance_m, line.value_or(0));
-    return refuted_among(lines) == 0;
-  }
-
   /// Shortens without refuted lines, until all is proven. \return whether it came to that; not if
   /// the path itself is refuted.
   bool shorten_what_holds(const Eigen::MatrixXd& waypoints) {
@@ -125,8 +114,8 @@ class Proving {
       const std::uint64_t refuted = known.prove(proven_.waypoints, is_free_);
       proven_.refuted_edges += refuted;
       const Eigen::Index count = proven_.waypoints.cols() - 1;
-      if (judge(known.by_what_is_known(proven_.waypoints.leftCols(count),
-                                       proven_.waypoints.rightCols(count))))
+      if (refuted_among(known.by_what_is_known(proven_.waypoints.leftCols(count),
+                                               proven_.waypoints.rightCols(count))) == 0)
         return true;
       if (refuted == 0)  // only lines refuted before, which are no shortcuts
         break;

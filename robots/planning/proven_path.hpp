@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <random>
 
@@ -36,8 +35,6 @@ std::optional<Eigen::MatrixXd> detour(const Eigen::VectorXd& from, const Eigen::
 struct ProvenPath {
   Eigen::MatrixXd waypoints;     ///< dof x n, each line between two proven; empty if there is none
   NoPath reason = NoPath::None;  ///< why there is none
-  /// Least clearance of its lines by IsFree::edges, m.
-  double least_clearance_m = std::numeric_limits<double>::infinity();
   std::uint64_t refuted_edges = 0;  ///< lines that are not free though their checks were
   std::uint64_t shortcut_checks = 0;
   std::uint64_t collision_checks = 0;  ///< of replanning

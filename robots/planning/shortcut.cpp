@@ -70,9 +70,7 @@ class StraightWay {
     parts_ = count_of_parts((to_ - from_).norm(), step_);
     return true;
   }
-  bool is_proven(const IsFree& is_free) const {
-    return is_free.edges(from_, to_).front().has_value();
-  }
+  bool is_proven(const IsFree& is_free) const { return is_free.edges(from_, to_).front(); }
   Eigen::Index parts() const { return parts_; }
   /// \param i  0 to parts()
   void write(Eigen::Index i, Eigen::Ref<Eigen::VectorXd> q) const {

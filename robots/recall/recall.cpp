@@ -1,7 +1,6 @@
 #include "robots/recall/recall.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -45,17 +44,11 @@ class Asked {
 /// Whether the lines of a path are proven free.
 bool are_lines_proven(const Eigen::MatrixXd& path, const planning::IsFree& is_free,
                       RecallSummary& summary) {
-  double least_m = std::numeric_limits<double>::infinity();
   for (Eigen::Index at = 0; at + 1 < path.cols(); at += planning::kTogether) {
     const Eigen::Index lines = std::min<Eigen::Index>(planning::kTogether, path.cols() - 1 - at);
-    for (const auto& line :
-         is_free.edges(path.middleCols(at, lines), path.middleCols(at + 1, lines))) {
-      if (!line)
-        return false;
-      least_m = std::min(least_m, *line);
-    }
+    if (!is_free.way_is_free(path.middleCols(at, lines + 1)))
+      return false;
   }
-  summary.least_clearance_m = least_m;
   summary.waypoints = path;
   return true;
 }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "robots/planning/is_free.hpp"
@@ -26,9 +25,7 @@ struct RecallSummary {
   std::uint64_t collision_checks = 0;
   std::uint64_t tries = 0;
   bool is_straight_line = false;  ///< the straight line to the first goal tried was free
-  /// Of a proven path: see planning::IsFree::Lines, m.
-  double least_clearance_m = std::numeric_limits<double>::infinity();
-  double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
+  double expected = 0;            ///< chance that one of the tries works, by the ranking, 0 to 1
 };
 
 /// Whether a path's goal is free, and keeps the constraint. \param summary  out: checks are added.
@@ -36,7 +33,7 @@ bool is_goal_free(const Warp& warp, const planning::IsFree& is_free, RecallSumma
 
 /// Whether a path with a free goal is free: it is computed and checked at few waypoints first, then
 /// at all, then between these.
-/// \param summary  out: checks are added; if it is free, its waypoints and clearance.
+/// \param summary  out: checks are added; if it is free, its waypoints.
 bool is_way_free(Warp& warp, const planning::IsFree& is_free, double step, RecallSummary& summary);
 
 /// Tries whole paths on a query, the most promising first, as long as that is cheaper in the mean

@@ -22,12 +22,12 @@
 
 #include "client/experiments/studies/fleet.hpp"
 #include "client/experiments/studies/study.hpp"
+#include "client/guided/path_measures.hpp"
 #include "client/guided/plan_problem.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/guided_sampler.hpp"
-#include "robots/planning/path_vertices.hpp"
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/shortcut.hpp"
 #include "robots/recall/library_maker.hpp"
@@ -83,17 +83,12 @@ struct Item {
   std::optional<planning::RegionConstraint> constraint;
 };
 
+/// What planning cost, and the paths, query by query.
 struct Costs {
-  std::vector<double> checks, time_s, lengths;
+  std::vector<double> checks, time_s;
+  std::vector<ProblemResult> paths;  // measured; without measures if unsolved
   int solved = 0;
 
-  void add(double its_checks, double its_time_s, const std::optional<Eigen::MatrixXd>& path) {
-    checks.push_back(its_checks);
-    time_s.push_back(its_time_s);
-    solved += path ? 1 : 0;
-    if (path)
-      lengths.push_back(planning::path_length(*path));
-  }
   static double mean(const std::vector<double>& values) {
     double sum = 0;
     for (const double value : values)
@@ -206,12 +201,18 @@ struct Compared {
 void print_as(const std::string& name, const RecallLibrary& library, const Compared& compared);
 
 /// What planning costs, whatever it is guided by.
-void add_costs(Item& item, Costs& costs,
+void add_costs(const Robot& robot, Item& item, Costs& costs,
                const std::function<std::optional<Eigen::MatrixXd>()>& plan) {
   const std::uint64_t before = item.world.checks();
   const double from_s = thread_cpu_s();
-  const auto path = plan();
-  costs.add(static_cast<double>(item.world.checks() - before), thread_cpu_s() - from_s, path);
+  ProblemResult path;
+  path.waypoints = plan();
+  costs.time_s.push_back(thread_cpu_s() - from_s);
+  costs.checks.push_back(static_cast<double>(item.world.checks() - before));
+  costs.solved += path.waypoints ? 1 : 0;
+  guided::measure_path(robot.planned, item.problem, path);
+  path.waypoints.reset();
+  costs.paths.push_back(std::move(path));
 }
 
 void compare(const Robot& robot, const experiments::Study& study, const std::string& name,
@@ -231,9 +232,9 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
     for (const Problem& problem : tests) {
       Item item(robot, problem, study.settings.resolution);
       for (const Guide way : {Guide::None, Guide::Retreat})
-        add_costs(item, way == Guide::None ? compared.uniform : compared.retreat,
+        add_costs(robot, item, way == Guide::None ? compared.uniform : compared.retreat,
                   [&] { return queries.search(item, way, problem.seed + seed).waypoints; });
-      add_costs(item, compared.recalled, [&]() -> std::optional<Eigen::MatrixXd> {
+      add_costs(robot, item, compared.recalled, [&]() -> std::optional<Eigen::MatrixXd> {
         const double from_s = thread_cpu_s();
         auto summary = queries.recall(item, guide);
         compared.tries += summary.tries;
@@ -249,23 +250,46 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
   print_as(name, *library, compared);
 }
 
+/// "3.12 (2.98) of 5.40 (5.01)": mean and median of a measure, of the queries that both solved.
+std::string measure_text(const Costs& one, const Costs& other,
+                         std::optional<double> ProblemResult::*measure, double scale) {
+  std::vector<double> ones, others;
+  for (std::size_t i = 0; i < one.paths.size(); ++i)
+    if (one.paths[i].*measure && other.paths[i].*measure) {
+      ones.push_back(scale * *(one.paths[i].*measure));
+      others.push_back(scale * *(other.paths[i].*measure));
+    }
+  if (ones.empty())
+    return "-";
+  char text[80];
+  std::snprintf(text, sizeof text, "%.2f (%.2f) of %.2f (%.2f)", Costs::mean(ones), median(ones),
+                Costs::mean(others), median(others));
+  return text;
+}
+
 void print_as(const std::string& name, const RecallLibrary& library, const Compared& compared) {
   const auto& [uniform, retreat, recalled, hits, tries, hit_s, expected, made_s] = compared;
   const auto ratio = [](const std::vector<double>& a, const std::vector<double>& b, double at) {
     return at < 0 ? Costs::mean(a) / Costs::mean(b) : percentile(a, at) / percentile(b, at);
   };
   const double count = static_cast<double>(recalled.checks.size());
-  char note[400];
+  const auto measured = [&](std::optional<double> ProblemResult::*measure, double scale) {
+    return measure_text(compared.recalled, compared.uniform, measure, scale);
+  };
+  char note[600];
   std::snprintf(
       note, sizeof note,
       "uniform / recalled: mean %.2f, median %.2f, 95 %% %.2f, checks %.2f; retreat %.2f; "
-      "recalled %.0f %% (expected %.0f %%) in %.3f ms, %.1f tries; length %.2f of %.2f; "
-      "solved %d of %d; library of %zu paths for %zu queries, %zu modes, made in %.1f s",
+      "recalled %.0f %% (expected %.0f %%) in %.3f ms, %.1f tries; of uniform's, unshortened, "
+      "mean (median): length %s, hand's %s m, least clearance %s mm; solved %d of %d; library of "
+      "%zu paths for %zu queries, %zu modes, made in %.1f s",
       ratio(uniform.time_s, recalled.time_s, -1), ratio(uniform.time_s, recalled.time_s, 0.5),
       ratio(uniform.time_s, recalled.time_s, 0.95), ratio(uniform.checks, recalled.checks, -1),
       ratio(uniform.time_s, retreat.time_s, -1), 100.0 * hits / count, 100.0 * expected / count,
       1e3 * hit_s / std::max(hits, 1), static_cast<double>(tries) / count,
-      Costs::mean(recalled.lengths), Costs::mean(uniform.lengths), recalled.solved, uniform.solved,
+      measured(&ProblemResult::path_length, 1).c_str(),
+      measured(&ProblemResult::hand_length_m, 1).c_str(),
+      measured(&ProblemResult::least_clearance_m, 1e3).c_str(), recalled.solved, uniform.solved,
       library.paths.size(), library.queries.size(), library.modes.size(), made_s);
   print({.name = name,
          .value = 1e3 * Costs::mean(recalled.time_s),
@@ -284,7 +308,7 @@ void print_dearness(const Robot& robot, const experiments::Study& study, const s
     for (const Problem& problem : tests) {
       Item item(robot, problem, study.settings.resolution);
       const int solved = costs.solved;
-      add_costs(item, costs,
+      add_costs(robot, item, costs,
                 [&] { return queries.search(item, guide, problem.seed + seed).waypoints; });
       if (costs.solved > solved && costs.time_s.back() <= 1)
         ++within_1_s;

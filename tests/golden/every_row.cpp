@@ -100,6 +100,8 @@ ProblemResult every_problem_result() {
   result.share = next.share() / 2;
   result.gate_fired = true;
   result.proven = true;
+  result.path_length = 3.5;
+  result.hand_length_m = 1.75;
   result.least_clearance_m = 0.0625;
   result.refuted_edges = 3;
   result.track_share = 0.25;

@@ -11,6 +11,7 @@ from typing import Any
 from .wilcoxon import Wilcoxon, wilcoxon
 
 Result = dict[str, Any]  # a line of a result file
+MEASURES = {"length": "path_length", "hand_m": "hand_length_m", "clearance_m": "least_clearance_m"}  # of a path, and as lines name them
 _NEEDED = {"name": str, "solved": bool, "collision_checks": int, "planning_time_s": (int, float)}
 
 
@@ -37,7 +38,7 @@ class Figures:
     """What one planner did on the problems that both answered.
 
     Means count an unsolved attempt with what it had used when it gave up (a lower bound); medians count it as worse than any solved
-    one, so a median is infinite if half are unsolved.
+    one, so a median is infinite if half are unsolved. Measures of paths are over the problems that both solved, NaN if none tells.
     """
 
     solved: int
@@ -46,6 +47,12 @@ class Figures:
     median_checks: float
     mean_time_s: float
     median_time_s: float
+    mean_length: float  # joint units
+    median_length: float
+    mean_hand_m: float  # the hand's way
+    median_hand_m: float
+    mean_clearance_m: float  # the least on a path
+    median_clearance_m: float
 
 
 class Comparison:
@@ -65,7 +72,9 @@ class Comparison:
         self.proven_by_one = sum(first["solved"] and second["solved"] and first.get("proven", False) != second.get("proven", False)
                                  for first, second in planned)
         sides = [[pair[side] for pair in planned] for side in (0, 1)]
-        self.uniform, self.guided = (_figures(side) for side in sides)
+        solved = [pair for pair in planned if all(each["solved"] for each in pair)]
+        self.both_solved = len(solved)
+        self.uniform, self.guided = (_figures(results, _measured(solved, side)) for side, results in enumerate(sides))
         self.uses_experience = any(map(_uses_experience, sides[1]))
         self.checks_test, self.time_test = (wilcoxon(*(_ranked(side, what) for side in sides))
                                             for what in ("collision_checks", "planning_time_s"))
@@ -115,13 +124,23 @@ def _uses_experience(result: Result) -> bool:
     return any(part not in ("none", "retreat") for part in guide.split("+"))
 
 
-def _figures(results: Sequence[Result]) -> Figures:
+def _measured(pairs: Sequence[tuple[Result, Result]], side: int) -> dict[str, float]:
+    """Means and medians of one side's paths, of the pairs of which both tell."""
+    figures = {}
+    for name, what in MEASURES.items():
+        values = [pair[side][what] for pair in pairs if all(each.get(what) is not None for each in pair)]
+        figures[f"mean_{name}"], figures[f"median_{name}"] = ((statistics.fmean(values), statistics.median(values)) if values
+                                                              else (math.nan, math.nan))
+    return figures
+
+
+def _figures(results: Sequence[Result], measured: dict[str, float]) -> Figures:
     def mean(what: str) -> float:
         return sum(result[what] for result in results) / len(results)
 
     return Figures(sum(result["solved"] for result in results), sum(map(_draws, results)), mean("collision_checks"),
                    statistics.median(_ranked(results, "collision_checks")), mean("planning_time_s"),
-                   statistics.median(_ranked(results, "planning_time_s")))
+                   statistics.median(_ranked(results, "planning_time_s")), **measured)
 
 
 def worth(comparison: Comparison, also: Sequence[tuple[str, Comparison]], what: str) -> float:

@@ -6,7 +6,7 @@ from .comparison import Comparison, worth
 
 Also = Sequence[tuple[str, Comparison]]  # what else was compared with uniform planning, by name
 _HEAD = ("", "uniform", "guided", "ratio", "p")
-_ALSO_HEAD = ("", "solved", "checks", "ratio", "time", "ratio")
+_ALSO_HEAD = ("", "solved", "checks", "ratio", "time", "ratio", "length", "hand's", "clearance")
 _FIRST_TOLD = 3  # of what was not planned
 
 
@@ -31,6 +31,19 @@ def ratio_text(ratio: float) -> str:
     return "-" if math.isnan(ratio) else f"{ratio:.2f}"
 
 
+def length_text(value: float) -> str:
+    """Of a path, joint units. What nobody measured is "-", here and below."""
+    return "-" if math.isnan(value) else f"{value:.2f}"
+
+
+def metres_text(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.2f} m"
+
+
+def millimetres_text(value_m: float) -> str:
+    return "-" if math.isnan(value_m) else f"{1000 * value_m:.1f} mm"
+
+
 def p_text(p: float) -> str:
     return f"{p:.1e}" if p < 1e-3 else f"{p:.4f}"
 
@@ -46,13 +59,20 @@ def rows(comparison: Comparison) -> list[tuple[str, ...]]:
             row("collision checks, mean", "mean_checks", count_text, p_text(comparison.checks_test.p)),
             row("collision checks, median", "median_checks", count_text),
             row("planning time, mean", "mean_time_s", duration_text, p_text(comparison.time_test.p)),
-            row("planning time, median", "median_time_s", duration_text)]
+            row("planning time, median", "median_time_s", duration_text),
+            row("path length, mean", "mean_length", length_text),
+            row("path length, median", "median_length", length_text),
+            row("hand's length, mean", "mean_hand_m", metres_text),
+            row("hand's length, median", "median_hand_m", metres_text),
+            row("least clearance, mean", "mean_clearance_m", millimetres_text),
+            row("least clearance, median", "median_clearance_m", millimetres_text)]
 
 
 def also_rows(also: Also) -> list[tuple[str, ...]]:
-    """Means and their ratios."""
+    """Means, and ratios of the first two."""
     return [(name, f"{each.guided.solved}/{each.pairs}", count_text(each.guided.mean_checks), ratio_text(each.ratio("mean_checks")),
-             duration_text(each.guided.mean_time_s), ratio_text(each.ratio("mean_time_s"))) for name, each in also]
+             duration_text(each.guided.mean_time_s), ratio_text(each.ratio("mean_time_s")), length_text(each.guided.mean_length),
+             metres_text(each.guided.mean_hand_m), millimetres_text(each.guided.mean_clearance_m)) for name, each in also]
 
 
 def worth_text(comparison: Comparison, also: Also) -> str:
@@ -73,6 +93,7 @@ def notes(comparison: Comparison) -> list[str]:
         "differ).": True,
         "An unsolved attempt counts in a mean with what it had used when it gave up: that mean is a lower bound. In a median it is worse "
         "than all that are solved.": min(uniform.solved, guided.solved) < pairs,
+        f"Lengths and clearance are of the {comparison.both_solved} problems that both solved.": comparison.both_solved < pairs,
         f"Only {guided.with_guidance} of the {pairs} guided attempts had guided samples.": guided.with_guidance < pairs,
         f"{uniform.with_guidance} of the uniform attempts had guided samples.": uniform.with_guidance > 0,
         f"Of {comparison.proven_by_one} pairs of paths one is proven and the other is not (--resolution): they are not asked the same, in "
@@ -103,7 +124,7 @@ def table(comparison: Comparison, also: Also) -> str:
              *notes(comparison), *_first_not_planned(comparison)]
     if also:
         lines += ["", "The same problems, means and the ratio of uniform planning to each:", "",
-                  *(line(cells, (20, 9, 9, 9, 11, 9)) for cells in (_ALSO_HEAD, *also_rows(also)))]
+                  *(line(cells, (20, 9, 9, 9, 11, 9, 9, 9, 11)) for cells in (_ALSO_HEAD, *also_rows(also)))]
         if said := worth_text(comparison, also):
             lines += ["", said]
     return "\n".join(lines) + "\n"

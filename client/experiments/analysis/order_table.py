@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .markdown import table
+from .markdown import NOTHING, table
 
 FIRST = 10  # queries that have next to nothing to go by
 MAX_TOTAL, MAX_FIRST = 0.5, 1.1  # guided / uniform
@@ -64,10 +64,11 @@ def orders_of(rows: Sequence[dict[str, Any]]) -> list[Order]:
 def order_table(orders: Sequence[Order]) -> str:
     """Guided / uniform by processor time of planning, milliseconds of each, and what planned the queries."""
     head = ["order", "solved", "total", "first ten", "checks", "worst, ms", "mean, ms", "median, ms", "p95, ms", "recall tries", "line, ms",
-            "server, s", "<planned by"]
+            "server, s", "length", "hand's, m", "least clearance, mm", "<planned by"]
     notes = (f"Guided / uniform by processor time of planning: at most {MAX_TOTAL} in total, {MAX_FIRST} for the first ten; *worst*: how far a query "
              f"went beyond {WORST} x uniform, at most {MAX_WORST_MS} ms.\n*line*: processor time in which the client asks and reports, a query; "
-             "*server*: kinshipd's in all.\n")
+             "*server*: kinshipd's in all.\n*length*, the hand's, and the least clearance of paths: means and medians of the queries that both "
+             "solved.\n")
     return table(head, map(_row, orders)) + notes
 
 
@@ -104,7 +105,15 @@ def _row(order: Order) -> list[str]:
     return [order.name, solved, _ratio(order.sides("cpu_s")), _ratio(order.sides("cpu_s", _first)), _ratio(order.sides("checks")),
             f"{order.worst_ms:.1f}", _both_ms(order.sides("cpu_s", np.mean)), _both_ms(order.sides("cpu_s", np.median)),
             _both_ms(order.sides("cpu_s", _tail)), f"{order.values('guided', 'recall_tries').sum():.0f}", f"{order.line_ms:.2f}",
-            f"{order.rows[-1]['server_s']:.1f}", order.guides]
+            f"{order.rows[-1]['server_s']:.1f}", _paths(order, "length", 2), _paths(order, "hand_length", 2),
+            _paths(order, "clearance", 1, 1000), order.guides]
+
+
+def _paths(order: Order, quantity: str, digits: int, scale: float = 1) -> str:
+    """Means, and medians in brackets, over the queries that both solved; nothing where rows do not tell it."""
+    told = [[row[way].get(quantity) for way in _WAYS] for row in order.rows if all(row[way]["solved"] for way in _WAYS)]
+    sides = np.array([pair for pair in told if None not in pair], dtype=float).T * scale
+    return " / ".join(f"{side.mean():.{digits}f} ({np.median(side):.{digits}f})" for side in sides) or NOTHING
 
 
 def _figures(order: Order) -> list[dict[str, Any]]:

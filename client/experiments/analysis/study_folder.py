@@ -23,6 +23,8 @@ class Cell:
     lengths: np.ndarray  # of paths, joint units; NaN if unsolved
     gated: np.ndarray | None = None  # 1 where the gate sent a guided query to uniform planning; NaN: not recorded
     shares: np.ndarray | None = None  # of guided samples; NaN: not recorded
+    hand_lengths: np.ndarray | None = None  # the hand's ways, m; NaN: unsolved or not recorded, as below
+    clearances: np.ndarray | None = None  # the least on each path, m
 
     def solved_text(self) -> str:
         return f"{int(self.solved.sum())}/{self.solved.size}"
@@ -88,4 +90,6 @@ class StudyFolder:
                     solved=table(lambda row: row["solved"]),
                     lengths=table(lambda row: row["length"] if row["solved"] else np.nan),
                     gated=table(lambda row: float(row.get("gate_fired", np.nan))),
-                    shares=table(lambda row: float(row.get("guided_share", np.nan))))
+                    shares=table(lambda row: float(row.get("guided_share", np.nan))),
+                    hand_lengths=table(lambda row: np.float64(row.get("hand_length"))),
+                    clearances=table(lambda row: np.float64(row.get("clearance"))))

@@ -131,6 +131,25 @@ def pair_rows(pairs: Iterable[Comparison]) -> list[list[str]]:
     return rows
 
 
+PATH_HEAD = ["robot", "<experience of", "paths", "length: uniform", "guided", "hand's, m: uniform", "guided",
+             "least clearance, mm: uniform", "guided"]
+
+
+def path_rows(pairs: Iterable[Comparison]) -> list[list[str]]:
+    """The columns of PATH_HEAD: mean and median over the queries that both solved, of what both rows tell."""
+    rows = []
+    for pair in pairs:
+        both = pair.uniform.solved & pair.guided.solved
+        row = [pair.guided.robot, source_of(pair.guided), str(int(both.sum()))]
+        for name, scale, digits in (("lengths", 1, 2), ("hand_lengths", 1, 2), ("clearances", 1000, 1)):
+            sides = [getattr(cell, name) for cell in (pair.uniform, pair.guided)]
+            told = None if any(side is None for side in sides) else both & ~np.isnan(sides[0]) & ~np.isnan(sides[1])
+            row += [f"{scale * side[told].mean():.{digits}f}, {scale * np.median(side[told]):.{digits}f}"
+                    if told is not None and told.any() else NOTHING for side in sides]
+        rows.append(row)
+    return rows
+
+
 def significance_text(pairs: Sequence[Comparison]) -> str:
     """How many of the differences hold when their number is considered."""
     def holding(name: str) -> int:

@@ -146,7 +146,8 @@
     byId("alone-text").textContent =
       `The same ${several(instances, "instance")} and seeds once more, not reported. Mixture and ways are made of what the other robots reported; ` +
       `retreat backs the hand out of its goal and needs no experience. Ratio: uniform planning to it, above 1 it helps. ${data.worth}`;
-    fillTable(byId("alone-table"), [["guided by", "solved", "checks, mean", "ratio", "planning time, mean", "ratio"], ...data.also]);
+    fillTable(byId("alone-table"), [["guided by", "solved", "checks, mean", "ratio", "planning time, mean", "ratio", "path length, mean",
+      "hand's", "least clearance, mean"], ...data.also]);
   }
 
   /// Bars of means with their intervals; a row has planner, mean, low, high and label.

@@ -105,11 +105,11 @@ def answer(member: Member, cell: Cell, instance: Instance, seed: int) -> dict[st
     if cell.oracle_deviation is not None:
         guidance = oracle(member, instance.problem, own_seed, cell.options, cell.oracle_deviation)
     plan = kinship.plan(member.robot, instance.problem, guidance, seed=own_seed, sampling_mode="guided" if guidance else "", **cell.options)
-    length = 0.0 if plan.waypoints is None else float(np.linalg.norm(np.diff(plan.waypoints, axis=0), axis=1).sum())
     row = row_of((member.label, cell.name, instance.name, seed), solved=plan.solved, checks=plan.collision_checks,
-                 cpu_s=plan.processor_time_s, length=length)
+                 cpu_s=plan.processor_time_s, length=plan.path_length or 0.0)
     row |= {"distribution": cell.distribution, "goal_checks": plan.goal_checks, "projections": plan.projections,
-            "gate_fired": plan.gate_fired, "guided_share": plan.share, "track_share": plan.track_share, "found_by": plan.found_by}
+            "gate_fired": plan.gate_fired, "guided_share": plan.share, "track_share": plan.track_share, "found_by": plan.found_by,
+            "hand_length": plan.hand_length, "clearance": plan.least_clearance}
     return row | {"guide": plan.guide} if guidance else row
 
 

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import kinship
-import numpy as np
 
 from .files import LineFile, to_line
 from .learning import SHORTCUT_CHECKS, running_kinshipd
@@ -127,9 +126,9 @@ def run_order(order: Order, wanted: OrderOptions) -> Iterator[dict[str, Any]]:
 
 def outcome(plan: kinship.Plan) -> dict[str, Any]:
     """Of a query, as its row tells it."""
-    length = 0.0 if plan.waypoints is None else float(np.linalg.norm(np.diff(plan.waypoints, axis=0), axis=1).sum())
-    return {"solved": plan.solved, "cpu_s": plan.processor_time_s, "checks": plan.collision_checks, "length": length,
-            "mode": plan.sampling_mode, "guide": plan.guide, "found_by": plan.found_by, "recall_tries": plan.recall_tries}
+    return {"solved": plan.solved, "cpu_s": plan.processor_time_s, "checks": plan.collision_checks, "length": plan.path_length or 0.0,
+            "hand_length": plan.hand_length, "clearance": plan.least_clearance, "mode": plan.sampling_mode,
+            "guide": plan.guide, "found_by": plan.found_by, "recall_tries": plan.recall_tries}
 
 
 def processor_time_s(process: int) -> float:

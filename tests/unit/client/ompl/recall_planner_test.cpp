@@ -11,7 +11,6 @@
 #include <ompl/geometric/planners/rrt/RRT.h>
 #include <ompl/util/Console.h>
 
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -152,9 +151,7 @@ TEST_F(RecallPlannerTest, RecallsAsTheLibraryDoesInThisScene) {
         for (Eigen::Index i = 0; i < from.cols(); ++i) {
           copy_to_state(from.col(i), *first.get());
           copy_to_state(to.col(i), *second.get());
-          lines.push_back(information->checkMotion(first.get(), second.get())
-                              ? std::optional(std::numeric_limits<double>::infinity())
-                              : std::nullopt);
+          lines.push_back(information->checkMotion(first.get(), second.get()));
         }
         return lines;
       });

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <variant>
 
+#include "client/guided/path_measures.hpp"
+#include "robots/collision/edge_prover.hpp"
 #include "tests/unit/client/planner/plan_problem_answers.hpp"
 
 namespace kinship::guided::plan_problem_test {
@@ -17,8 +20,37 @@ TEST(PlanProblemProven, APathIsProvenUnlessStepsAreAskedFor) {
   const ProblemResult stepped = planned(wall_problem(), by_steps).result;
   ASSERT_TRUE(stepped.solved);
   EXPECT_FALSE(stepped.proven);
-  EXPECT_FALSE(stepped.least_clearance_m);
   EXPECT_EQ(stepped.refuted_edges, 0U);
+}
+
+TEST(PlanProblemProven, APathIsMeasuredAlikeWhetherProvenOrNot) {
+  const Problem problem = wall_problem();
+  const PlannedRobot robot = planar_robot();
+  collision::CollisionWorld world(robot.solids, {placement_of(problem), problem.scene, {}, {}});
+  collision::EdgeProver prover(world);
+  PlanSettings by_steps;
+  by_steps.clearance_m = 0;
+  for (const PlanSettings& settings : {PlanSettings(), by_steps}) {
+    ProblemResult result = planned(problem, settings).result;
+    ASSERT_TRUE(result.solved);
+    EXPECT_FALSE(result.path_length) << "of its own accord nobody measures";
+    measure_path(robot, problem, result);
+    EXPECT_EQ(result.path_length, planning::path_length(*result.waypoints));
+    EXPECT_EQ(result.hand_length_m, planning::hand_length_m(robot.chain, *result.waypoints));
+    double nearest_m = 0.1;
+    const Eigen::MatrixXd dense = planning::densified(*result.waypoints, planning::kMeasuredStep);
+    for (const auto& q : dense.colwise())
+      for (const collision::NearPair& pair : prover.find_near(q, {.clearance_m = nearest_m}))
+        if (pair.first == "wall" || pair.second == "wall")
+          nearest_m = std::min(nearest_m, pair.clearance_m);
+    EXPECT_NEAR(result.least_clearance_m.value(), nearest_m, 0.02 * nearest_m);
+  }
+}
+
+TEST(PlanProblemProven, WithoutAPathNothingIsMeasured) {
+  ProblemResult result;
+  measure_path(planar_robot(), wall_problem(), result);
+  EXPECT_FALSE(result.path_length || result.hand_length_m || result.least_clearance_m);
 }
 
 /// Between the start and the goal stands a plate that is thinner than a step.

@@ -89,6 +89,8 @@ TEST_F(PlanRun, AnswersEveryLineInOrderAlsoABrokenOne) {
   ASSERT_EQ(results_.size(), 3U);
   EXPECT_EQ(results_[0].name, "first");
   EXPECT_TRUE(results_[0].solved);
+  EXPECT_TRUE(results_[0].path_length && results_[0].hand_length_m);
+  EXPECT_GT(results_[0].least_clearance_m, 0);
   EXPECT_FALSE(results_[1].solved);
   EXPECT_NE(results_[1].reason.find("line 2"), std::string::npos);
   EXPECT_EQ(results_[2].name, "third");

@@ -59,6 +59,31 @@ TEST(Progress, EndsWithTheSums) {
             std::string::npos);
 }
 
+TEST(Progress, TellsWhatThePathsOfEachModeMeasure) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 5);
+  ProblemResult result = solved("a", 100);
+  const auto add = [&](double length, double hand_m, double clearance_m) {
+    result.path_length = length;
+    result.hand_length_m = hand_m;
+    result.least_clearance_m = clearance_m;
+    progress.add(result, true);
+  };
+  add(4, 1, 0.002);
+  result.sampling_mode = SamplingMode::Guided;
+  add(1, 0.5, 0.004);
+  add(2, 0.75, 0.01);
+  add(6, 2.5, 0.1);
+  progress.add(ProblemResult(), true);
+  progress.finish();
+  EXPECT_TRUE(stream.str().ends_with(
+      "\npaths guided: length 3.00, median 2.00; hand's 1.25 m, median 0.75 m; least clearance "
+      "38.0 mm, median 10.0 mm\n"
+      "paths uniform: length 4.00, median 4.00; hand's 1.00 m, median 1.00 m; least clearance "
+      "2.0 mm, median 2.0 mm\n"))
+      << stream.str();
+}
+
 TEST(Progress, TellsHowManyTheGatePlannedUniformly) {
   std::ostringstream stream;
   Progress progress(stream, false, 2);

@@ -56,6 +56,22 @@ class Paths(OfAUr10e):
         self.assertTrue(kinship.World.of_problem(self.robot, self.problem).free(np.concatenate(steps)).all())
         self.assertFalse(kinship.World.of_problem(self.robot, self.problem).free(np.linspace(START, GOAL, 40)).all())
 
+    def test_are_measured_however_they_were_planned(self):
+        problem = kinship.Problem("around", START, GOAL, scene=post(0.33), seed=5)
+        for how in ({}, {"resolution": 0.05}):
+            plan = kinship.plan(self.robot, problem, **how)
+            self.assertAlmostEqual(plan.path_length, np.linalg.norm(np.diff(plan.waypoints, axis=0), axis=1).sum())
+            hands = [self.robot.fk(q, frame="transfer")[:3, 3] for q in (START, GOAL)]
+            self.assertGreater(plan.hand_length, np.linalg.norm(hands[1] - hands[0]))
+            self.assertLess(plan.least_clearance, 0.1)
+            wider = kinship.Problem("wider", START, GOAL, scene=post(0.331 + 1.02 * plan.least_clearance))
+            steps = [np.linspace(a, b, 2 + int(np.linalg.norm(b - a) / 0.05)) for a, b in zip(plan.waypoints, plan.waypoints[1:])]
+            self.assertFalse(kinship.World.of_problem(self.robot, wider).free(np.concatenate(steps)).all())
+        far = kinship.plan(self.robot, kinship.Problem("open", START, GOAL))
+        self.assertEqual(far.least_clearance, 0.1)
+        none = kinship.plan(self.robot, self.problem, max_checks=1)
+        self.assertEqual((none.path_length, none.hand_length, none.least_clearance), (None, None, None))
+
     def test_retreat_without_experience(self):
         alone = kinship.Guidance.alone(self.robot)
         self.assertEqual((alone.guide, alone.guided_part, alone.distribution_id), ("retreat", 1, None))

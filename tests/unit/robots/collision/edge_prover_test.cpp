@@ -139,5 +139,23 @@ TEST(EdgeProver, FindsAllThatIsTooNear) {
   EXPECT_EQ(pairs[1].clearance_m, 0);
 }
 
+TEST(EdgeProver, TheLeastClearanceIsThatOfTheObstacles) {
+  const double gap_m = 0.03;
+  Surroundings surroundings = around(box_at("box", 0.75, 0.05 + kRadius_m + gap_m));
+  surroundings.scene.objects.push_back(box_at("farther", 0.75, -0.05 - kRadius_m - 0.09));
+  CollisionWorld world = world_with(surroundings);
+  EdgeProver prover(world);
+  Eigen::MatrixXd turn(2, 2 * kLanes);  // ends where it is nearest
+  turn << Eigen::RowVectorXd::LinSpaced(turn.cols(), -0.05, 0),
+      Eigen::RowVectorXd::Zero(turn.cols());
+  EXPECT_NEAR(prover.least_clearance_m(turn), gap_m, 0.02 * gap_m);
+  EXPECT_EQ(prover.least_clearance_m(angles({M_PI, 0})), kLargestRoom_m);
+  EXPECT_EQ(prover.least_clearance_m(angles({0.1, 0})), 0);
+  CollisionWorld folded = folded_over_ball(0.0005);
+  EXPECT_EQ(EdgeProver(folded).least_clearance_m(angles({0, M_PI / 2, M_PI / 2})), kLargestRoom_m)
+      << "own links are no obstacles";
+  EXPECT_EQ(world.checks(), 0U);
+}
+
 }  // namespace
 }  // namespace kinship::collision::edge_prover_test

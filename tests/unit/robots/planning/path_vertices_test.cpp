@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+
+#include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::planning::path_vertices_test {
 namespace {
@@ -66,6 +69,15 @@ TEST(SparseVertices, DropRepetitionsButKeepTwoEnds) {
   EXPECT_EQ(sparse_vertices(still, kStep).cols(), 2);
   const Eigen::MatrixXd path = (Eigen::MatrixXd(1, 4) << 0, 0.1, 0.1, 0.2).finished();
   EXPECT_EQ(sparse_vertices(path, kStep), (Eigen::MatrixXd(1, 2) << 0, 0.2).finished());
+}
+
+TEST(PathLengths, OfJointsAndOfTheHandAreTheirOwn) {
+  Eigen::MatrixXd path(3, 3);
+  path << 0, M_PI / 2, M_PI / 2, 0, 0, 1, 0, 0, 0;
+  const kinematics::Chain arm = collision::test_support::toy_chain(3);  // 0.5 m between joints
+  EXPECT_NEAR(path_length(path), M_PI / 2 + 1, 1e-12);
+  EXPECT_NEAR(hand_length_m(arm, path), M_PI / 2 + 0.5, 1e-3);
+  EXPECT_EQ(hand_length_m(arm, path.leftCols(1)), 0);
 }
 
 TEST(PathVertices, RefuseNoWaypointAndNoStep) {

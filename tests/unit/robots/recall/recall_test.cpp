@@ -203,7 +203,6 @@ TEST_P(Recalls, WithAProverThePathIsProven) {
     collision::CollisionWorld again(made_shelf().cell.solids, each.posed.surroundings);
     collision::EdgeProver other(again);
     EXPECT_TRUE(planning::proven_in(other, kProof).way_is_free(*found.waypoints));
-    EXPECT_GT(found.least_clearance_m, 0);
   }
   EXPECT_GT(solved, 0) << "else nothing was proven";
 }

@@ -3,6 +3,7 @@
 
 expected.json holds what the C++ that did this before had for the same results (commit e4c9d21).
 """
+import dataclasses
 import json
 import math
 import pathlib
@@ -229,6 +230,24 @@ class TestProgram(CopiedStudy):
         own = study.cells("pooled.jsonl")
         self.assertTrue(all(pair.uniform.checks.mean() == own[pair.guided.robot, "uniform"].checks.mean() for pair in pairs))
         self.assertNotEqual(report.results_text(study), older)
+
+    def test_paths_are_told_of_the_queries_that_both_solved(self) -> None:
+        def cell_of(guidance: str, lengths: list[float], **measured: np.ndarray) -> Cell:
+            return dataclasses.replace(cell(guidance, [[1.0]] * 3), lengths=np.array(lengths)[:, None],
+                                       solved=~np.isnan(lengths)[:, None], **measured)
+
+        clearances = {"clearances": np.array([[0.001], [0.002], [0.006]])}
+        uniform = cell_of("uniform", [4, 6, math.nan], hand_lengths=np.array([[1.0], [math.nan], [math.nan]]), **clearances)
+        guided = cell_of("panda", [1, 2, 9], hand_lengths=np.array([[0.5], [5.0], [5.0]]), **clearances)
+        [row] = tables.path_rows([statistics.compare(uniform, guided)])
+        self.assertEqual(row[2:], ["2", "5.00, 5.00", "1.50, 1.50", "1.00, 1.00", "0.50, 0.50", "1.5, 1.5", "1.5, 1.5"])
+        [row] = tables.path_rows([statistics.compare(cell_of("uniform", [4, 6, 8]), guided)])
+        self.assertEqual(row[5:], ["–"] * 4)
+        rows = list(StudyFolder(self.folder).lines("test.jsonl"))
+        (self.folder / "test.jsonl").write_text("".join(
+            json.dumps(row | ({"hand_length": 1.5, "clearance": 0.02} if row["solved"] else {"hand_length": None, "clearance": None})) + "\n"
+            for row in rows))
+        self.assertIn(" | 1.50, 1.50 | 1.50, 1.50 | 20.0, 20.0 | 20.0, 20.0 |\n", report.results_text(StudyFolder(self.folder)))
 
     def test_calibration(self) -> None:
         text = self.analyse(str(self.folder), "--calibration").stdout

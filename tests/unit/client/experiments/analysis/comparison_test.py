@@ -31,6 +31,12 @@ def guided(name: str, solved: bool, checks: int, time_s: float, share: float = 0
     return attempt(name, solved, checks, time_s, guidance={"distribution_id": "00", "share": share, "guide": "ways"})
 
 
+def measured(results: list[dict], **by_name: tuple[float, float, float]) -> list[dict]:
+    """With path length, hand's length in m and least clearance in m; others as lines of unsolved problems have them."""
+    names = ("path_length", "hand_length_m", "least_clearance_m")
+    return [each | dict(zip(names, by_name.get(each["name"], (None,) * 3))) for each in results]
+
+
 UNIFORM = [attempt("a", True, 1000, 1), attempt("b", True, 3000, 3), attempt("c", False, 60000, 50)]
 GUIDED = [guided("c", True, 2000, 2), guided("a", True, 500, 0.5), guided("b", True, 1500, 1.5)]
 COLLIDING = attempt("d", False, 1, 0, not_planned="start_collides", reason="collides")
@@ -77,7 +83,8 @@ class Comparisons(unittest.TestCase):
 
 class Tables(unittest.TestCase):
     def test_every_figure_is_in_its_column(self):
-        self.assertEqual(table(Comparison(UNIFORM, GUIDED), []), """\
+        paths = (measured(UNIFORM, a=(4, 1, 0.001), b=(6, 3, 0.003)), measured(GUIDED, a=(2, 0.5, 0.04), b=(4, 1.5, 0.01), c=(50, 9, 0.09)))
+        self.assertEqual(table(Comparison(*paths), []), """\
 3 problems, each planned with both
 
                                 uniform     guided    ratio          p
@@ -86,11 +93,26 @@ class Tables(unittest.TestCase):
   collision checks, median        3 000      1 500     2.00
   planning time, mean            18.0 s     1.33 s    13.50     0.2500
   planning time, median          3.00 s     1.50 s     2.00
+  path length, mean                5.00       3.00     1.67
+  path length, median              5.00       3.00     1.67
+  hand's length, mean            2.00 m     1.00 m     2.00
+  hand's length, median          2.00 m     1.00 m     2.00
+  least clearance, mean          2.0 mm    25.0 mm     0.08
+  least clearance, median        2.0 mm    25.0 mm     0.08
 
 ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst (exact, 3 pairs that differ).
 An unsolved attempt counts in a mean with what it had used when it gave up: that mean is a lower bound. In a median it is worse \
 than all that are solved.
+Lengths and clearance are of the 2 problems that both solved.
 """)
+
+    def test_paths_are_compared_where_both_were_measured(self):
+        told = measured(UNIFORM, a=(4, 1, 0.001), b=(6, 3, 0.003))
+        compared = Comparison(told, measured(GUIDED, a=(2, 2, 0.1), c=(50, 9, 0.09)))
+        self.assertEqual([compared.uniform.mean_length, compared.guided.mean_hand_m, compared.guided.median_clearance_m], [4, 2, 0.1])
+        one = Comparison(told, GUIDED)
+        self.assertRegex(table(one, []), r"least clearance, mean +- +- +-\n")
+        self.assertIsNone(document(one)["guided"]["mean_clearance_m"])
 
     def test_times_have_the_unit_that_fits_them_and_halves_round_up(self):
         told = table(Comparison([attempt("a", True, 1810, 0.00042), attempt("b", True, 1811, 0.00044)],
@@ -103,8 +125,8 @@ than all that are solved.
         compared = Comparison(UNIFORM, GUIDED)
         told = table(compared, [("retreat alone", Comparison(UNIFORM, UNIFORM)), ("mixture alone", compared)])
         self.assertTrue(told.startswith(table(compared, [])), "above, as without")
-        self.assertIn("  mixture alone             3/3    1 333    16.00     1.33 s    13.50\n", told)
-        self.assertIn("  retreat alone             2/3   21 333     1.00     18.0 s     1.00\n", told)
+        self.assertIn("  mixture alone             3/3    1 333    16.00     1.33 s    13.50        -        -          -\n", told)
+        self.assertIn("  retreat alone             2/3   21 333     1.00     18.0 s     1.00        -        -          -\n", told)
 
     def test_the_worth_of_experience_is_against_the_best_without_it(self):
         retreat = [attempt(name, True, 1600, 1, guidance={"distribution_id": None, "share": 0.5, "guide": "retreat"}) for name in "abc"]
@@ -127,12 +149,14 @@ than all that are solved.
     def test_infinity_is_unsolved_in_the_table_and_null_in_json(self):
         compared = Comparison([attempt("a", False, 60000, 9)], [guided("a", True, 1000, 1)])
         self.assertRegex(table(compared, []), r"checks, median +unsolved +1 000 +inf")
+        unmeasured = {f"{which}_{what}": None for what in ("length", "hand_m", "clearance_m") for which in ("mean", "median")}
         exact = {"p": 1, "pairs": 1, "dropped": 0, "rank_sum_plus": 1, "rank_sum_minus": 0, "method": "exact"}
         self.assertEqual(document(compared, [("say \"alone\"", compared)]), {
             "pairs": 1,
             "uniform": {"solved": 0, "with_guidance": 0, "mean_checks": 60000, "median_checks": None, "mean_time_s": 9,
-                        "median_time_s": None},
-            "guided": {"solved": 1, "with_guidance": 1, "mean_checks": 1000, "median_checks": 1000, "mean_time_s": 1, "median_time_s": 1},
+                        "median_time_s": None} | unmeasured,
+            "guided": {"solved": 1, "with_guidance": 1, "mean_checks": 1000, "median_checks": 1000, "mean_time_s": 1, "median_time_s": 1}
+                      | unmeasured,
             "ratio": {"mean_checks": 60, "median_checks": None, "mean_time": 9, "median_time": None},
             "wilcoxon_checks": exact, "wilcoxon_time": exact, "unpaired": 0, "not_planned": {},
             "also": [{"name": "say \"alone\""} | {name: document(compared)[name] for name in ("pairs", "uniform", "guided", "ratio")}]})
@@ -223,7 +247,7 @@ class RunFiles(unittest.TestCase):
         self.assertEqual(len(run["teachers"]), 1)
         mixture, retreat = run_files.described(run)["figures"]["also"]
         self.assertEqual((mixture[0], mixture[3]), ("mixture alone", "5.00"))
-        self.assertEqual(list(retreat), ["retreat alone", "2/2", "10 000", "0.50", "10.0 ms", "0.50"])
+        self.assertEqual(list(retreat), ["retreat alone", "2/2", "10 000", "0.50", "10.0 ms", "0.50", "-", "-", "-"])
 
     def test_results_beside_them_may_have_any_name(self):
         self.words["also"] = ["with my option=" + self.write("tuned", 500, 1500)]
