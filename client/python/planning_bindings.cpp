@@ -268,11 +268,14 @@ without a planner. The most promising first, as long as that is cheaper in the m
 
 problem    begins at a configuration; of its scene only names and poses are looked at
 free       of (n, dof): (n,) of bool, such as World.free
-path_free  of the waypoints of a path, (n, dof): bool, such as World.path_free
+path_free  of the waypoints of a piece of a path, (n, dof), 2 <= n <= 17: bool, such as
+           World.path_free
 step       between the configurations that are asked of free, joint units; with path_free they are
            the waypoints
 
-Returns the path, (n, dof), start first, straight in between; None: nothing is recalled, search.)");
+Returns the path, (n, dof), start first, straight in between; None: nothing is recalled, search.
+Raises InvalidInput if the problem does not fit the robot, begins at a pose, or has a constraint, which
+recalled paths would not keep.)");
 }
 
 void bind_outcome(py::class_<Plan>& plan) {
