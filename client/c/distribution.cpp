@@ -126,12 +126,14 @@ kinship_code kinship_fetch_recall(kinship_client* client, const kinship_request*
       *recall = new kinship_recall(chain, *reply->recall);
       return KINSHIP_OK;
     }
-    if (reply->status != kinship::FetchStatus::Ready)
+    const bool is_ready = reply->status == kinship::FetchStatus::Ready;
+    const bool is_rehearsed = reply->rehearsal && reply->rehearsal->is_complete;
+    if ((is_ready || reply->status == kinship::FetchStatus::Failed) && !is_rehearsed)
+      return remember(KINSHIP_PENDING,
+                      "paths to recall for task '" + wanted.task + "' are still being made");
+    if (!is_ready)
       return explain(*reply, wanted.task);
-    if (!reply->rehearsal || reply->rehearsal->is_complete)
-      return remember(KINSHIP_NO_EXPERIENCE, "no paths to recall for task '" + wanted.task + "'");
-    return remember(KINSHIP_PENDING,
-                    "paths to recall for task '" + wanted.task + "' are still being made");
+    return remember(KINSHIP_NO_EXPERIENCE, "no paths to recall for task '" + wanted.task + "'");
   });
 }
 
@@ -220,7 +222,11 @@ kinship_code kinship_follower_recall(kinship_follower* follower, const kinship_r
     if (!follower->chain)
       return remember(KINSHIP_INVALID_INPUT, "the follower's request said no with_recall");
     const std::shared_ptr<const kinship::RecallLibrary> newest = follower->value->recall();
-    if (!newest)
+    if (newest)
+      follower->had_paths = true;
+    else if (held != nullptr && follower->had_paths)
+      return remember(KINSHIP_NO_EXPERIENCE, "the paths that are held were taken back");
+    else
       return remember(KINSHIP_PENDING, "no paths to recall have come yet");
     if (held != nullptr && held->guide.library().revision == newest->revision)
       return remember(KINSHIP_PENDING, "the paths that are held are the newest");

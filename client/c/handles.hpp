@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -54,6 +55,7 @@ struct kinship_distribution {
 struct kinship_follower {
   std::unique_ptr<kinship::link::Follower> value;
   std::optional<kinship::kinematics::Chain> chain;  // with recall
+  std::atomic<bool> had_paths = false;              // to recall
 };
 
 struct kinship_recall {

@@ -414,28 +414,33 @@ typedef struct kinship_recall kinship_recall;
 
 /** Waits until the server has planned the recorded queries again, up to the request's deadline.
  * \param request  its robot was registered by this client: the paths are moved by its kinematics.
- * \return as kinship_fetch(); KINSHIP_PENDING while the server still makes the first paths,
- * KINSHIP_NO_EXPERIENCE if it has none, e.g. as no scenes were reported, KINSHIP_NOT_FOUND if the
- * client did not register the robot. */
+ * \return as kinship_fetch(); KINSHIP_PENDING while the server still makes the first paths (for
+ * ever with `kinshipd --rehearsal-cpu 0`), KINSHIP_NO_EXPERIENCE if it could make none, e.g. as no
+ * scenes were reported, KINSHIP_NOT_FOUND if the client did not register the robot. */
 KINSHIP_API kinship_code kinship_fetch_recall(kinship_client* client,
                                               const kinship_request* request,
                                               kinship_recall** recall);
 /** The newest paths of a follower whose request said `with_recall`, a handle of its own. Never
  * waits. \param held  those that the caller has; NULL: any will do. \return KINSHIP_OK with paths
- * that differ from `held`, KINSHIP_PENDING without. */
+ * that differ from `held`, KINSHIP_PENDING without: `held` are the newest still, or none have come
+ * yet; KINSHIP_NO_EXPERIENCE if the server took back what the follower had, e.g. as paths were
+ * retired: free `held`. */
 KINSHIP_API kinship_code kinship_follower_recall(kinship_follower* follower,
                                                  const kinship_recall* held,
                                                  kinship_recall** recall);
 KINSHIP_API void kinship_recall_free(kinship_recall* recall);
+
+/** Goals that a query has at most. */
+#define KINSHIP_RECALL_GOALS 32
 
 /** A query, and the caller's collision checker, which is called by the calling thread alone. */
 typedef struct kinship_recall_query {
   size_t size;
   const double* T_task_base; /**< where the robot stands; NULL: used as identity */
   size_t dof;
-  const double* start;       /**< dof numbers, joint units */
-  const double* goals;       /**< dof numbers each, one after the other; any of them will do */
-  size_t goal_count;         /**< 0: any configuration at T_task_goal */
+  const double* start; /**< dof numbers, joint units */
+  const double* goals; /**< dof numbers each, one after the other; any of them will do */
+  size_t goal_count;   /**< at most KINSHIP_RECALL_GOALS; 0: any configuration at T_task_goal */
   const double* T_task_goal; /**< of the transfer frame, in the task's frame; else not looked at */
   /** The scene: paths are moved with the furniture that is named as in the reports. Only names and
    * poses count; what is held is not looked at. NULL: none is known. */
@@ -459,13 +464,15 @@ typedef struct kinship_recalled {
   int is_recalled;       /**< 1: there is a path; 0: none was free, or none worth a try: search */
   int is_straight_line;  /**< 1: the straight line was free, which takes no experience */
   size_t waypoint_count; /**< 0 without a path */
-  uint64_t tries;        /**< paths that were tried */
+  uint64_t tries;        /**< paths that were tried; 0 if a callback gave up */
   uint64_t checks;       /**< calls of is_free */
 } kinship_recalled;
 
 /** Tries paths on a query, the most promising first, as long as that is cheaper in the mean than a
  * search. A path begins in the start, ends in a goal or at T_task_goal, and is straight between its
- * waypoints; the callbacks said of each of its configurations or lines that they are free.
+ * waypoints; the callbacks said of each of its configurations or lines that they are free. It is
+ * not projected onto a constraint, though it may come from a query with one: only the callbacks can
+ * refuse what leaves the constraint.
  * \param waypoints  the path, dof numbers each, start first; untouched without one.
  * \param room       configurations that fit there, at least KINSHIP_RECALL_WAYPOINTS.
  * \param recalled   set with KINSHIP_OK, whether there is a path or not. */

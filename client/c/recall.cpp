@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,6 @@ namespace kinship::c_library {
 namespace {
 
 static_assert(KINSHIP_RECALL_WAYPOINTS == kRecallWaypoints);
-
-constexpr std::size_t kMaxGoals = 4096;
 
 struct GivenUp {};  // leaves recall between two checks
 
@@ -34,9 +33,10 @@ Eigen::MatrixXd read_columns(const double* numbers, Eigen::Index dof, std::size_
 /// \throws Failure(InvalidInput) if none is left.
 Eigen::MatrixXd read_goals(const kinship_recall_query& given, const kinematics::Chain& chain,
                            const Eigen::Matrix2Xd& bounds) {
-  if (given.goal_count > kMaxGoals)
+  if (given.goal_count > KINSHIP_RECALL_GOALS)
     throw Failure(invalid_input("query->goal_count is " + std::to_string(given.goal_count) +
-                                ", must be at most " + std::to_string(kMaxGoals)));
+                                ", must be at most " + std::to_string(KINSHIP_RECALL_GOALS) +
+                                " (KINSHIP_RECALL_GOALS)"));
   const Eigen::MatrixXd read =
       read_columns(given.goals, chain.dof(), given.goal_count, "query->goals");
   Eigen::MatrixXd goals = planning::all_turned_into(bounds, chain, read);
@@ -72,13 +72,15 @@ recall::Query read_query(const kinship_recall_query& given, const recall::Recall
 }
 
 /// The caller's checker.
-planning::IsFree read_checker(const kinship_recall_query& given) {
+/// \param checks  out: its calls of is_free are added, also if it gives up.
+planning::IsFree read_checker(const kinship_recall_query& given, std::uint64_t& checks) {
   const auto is_yes = [](int answer) {
     if (answer < 0)
       throw GivenUp();
     return answer != 0;
   };
-  planning::IsFree::One one = [given, is_yes](const Eigen::VectorXd& q) {
+  planning::IsFree::One one = [given, is_yes, &checks](const Eigen::VectorXd& q) {
+    ++checks;
     return is_yes(given.is_free(given.user, q.data(), given.dof));
   };
   if (given.is_line_free == nullptr)
@@ -135,10 +137,9 @@ kinship_code kinship_recall_path(kinship_recall* recall, const kinship_recall_qu
           kinship::number_text(kLeastStep) + " to " + kinship::number_text(kLargestStep)));
     kinship_recalled told{};
     try {
-      const kinship::recall::RecallSummary summary =
-          try_paths(*recall, read_query(given, recall->guide), read_checker(given), step);
+      const kinship::recall::RecallSummary summary = try_paths(
+          *recall, read_query(given, recall->guide), read_checker(given, told.checks), step);
       told.tries = summary.tries;
-      told.checks = summary.collision_checks;
       if (summary.waypoints) {
         const Eigen::MatrixXd path = kinship::planning::sparse_vertices(*summary.waypoints, step);
         told.is_recalled = 1;

@@ -88,14 +88,16 @@ ob::PlannerStatus RecallPlanner::solve(const ob::PlannerTerminationCondition& en
 }
 
 Eigen::MatrixXd RecallPlanner::next_goals(const ob::PlannerTerminationCondition& ended) {
-  constexpr Eigen::Index kMostGoals = 32;
-  Eigen::MatrixXd goals(dof_, kMostGoals);
+  constexpr int kMostAttempts = 32;
+  Eigen::MatrixXd goals(dof_, kMostAttempts);
   Eigen::Index count = 0;
   // Of states that do not change OMPL would wait for a valid one until the end.
-  const ob::State* goal =
-      pdef_->getGoal()->hasType(ob::GOAL_LAZY_SAMPLES) ? pis_.nextGoal(ended) : pis_.nextGoal();
-  for (; goal != nullptr && count < kMostGoals; goal = pis_.nextGoal())
-    goals.col(count++) = to_configuration(*goal, dof_);
+  bool waits = pdef_->getGoal()->hasType(ob::GOAL_LAZY_SAMPLES);
+  for (int attempts = 0; attempts < kMostAttempts && !ended && (waits || pis_.haveMoreGoalStates());
+       ++attempts)
+    if (const ob::State* goal =
+            std::exchange(waits, false) ? pis_.nextGoal(ended) : pis_.nextGoal())
+      goals.col(count++) = to_configuration(*goal, dof_);
   return goals.leftCols(count);
 }
 
@@ -130,6 +132,8 @@ planning::IsFree RecallPlanner::what_is_free(const ob::PlannerTerminationConditi
 }
 
 void RecallPlanner::recall(const ob::PlannerTerminationCondition& ended) {
+  if (!pis_.haveMoreStartStates())
+    return;
   recall::Query query;
   query.T_task_base = T_task_base_;
   query.bounds = bounds_of(*si_);
@@ -175,7 +179,7 @@ void RecallPlanner::clear() {
 }
 
 void RecallPlanner::clearQuery() {
-  pis_.clear();
+  pis_.restart();
   otherwise_->clearQuery();
   forget();
 }

@@ -29,6 +29,9 @@ namespace kinship::ompl_planners {
 /// "trust" is the factor of every path's chance; it follows what the tries of this planner solved,
 /// until it is set.
 ///
+/// A path is not projected onto a constraint, though it may come from a query with one: only the
+/// problem's checkers can refuse what leaves the constraint.
+///
 /// Not shared between threads.
 class RecallPlanner : public ompl::base::Planner {
  public:
@@ -59,7 +62,7 @@ class RecallPlanner : public ompl::base::Planner {
 
   /// Tries paths for each start and goal that OMPL knows by now (of lazily sampled goals it waits
   /// for one), at most 32 goals; then the other planner's solve(). Without a valid start or goal
-  /// the other planner answers at once.
+  /// the other planner answers at once; so it does when asked to go on without a new start.
   ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& ended) override;
 
   void setProblemDefinition(const ompl::base::ProblemDefinitionPtr& problem) override;

@@ -117,7 +117,7 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
   guided::GuidanceAnswer answer = guided::fetch_guidance(fetch, wanted, request.T_task_base);
   if (!answer.guidance)
     raise_status(status, request, answer.message);
-  return std::make_shared<GuidanceHandle>(robot.digest(), std::move(answer));
+  return std::make_shared<GuidanceHandle>(robot.digest(), std::move(answer), robot.chain());
 }
 
 RegisterReply register_robot(const ClientHandle& client, const Robot& robot) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "client/guided/problem_mismatch.hpp"
+#include "proto/evidence/machine_speed.hpp"
 #include "proto/types/enum_text.hpp"
 #include "robots/planning/path_vertices.hpp"
 #include "robots/planning/planning_bounds.hpp"
@@ -12,8 +13,7 @@ namespace kinship::python {
 namespace {
 
 /// \throws Failure(InvalidInput) as GuidanceHandle::recall().
-recall::Query query_of(const recall::RecallGuide& guide, const Problem& problem) {
-  const kinematics::Chain& chain = guide.warper().chain();
+void require_recallable(const kinematics::Chain& chain, const Problem& problem) {
   const std::string name = "problem '" + problem.name + "': ";
   if (const auto mismatch = guided::find_mismatch(chain, problem))
     throw Failure(invalid_input(name + mismatch->text));
@@ -21,6 +21,11 @@ recall::Query query_of(const recall::RecallGuide& guide, const Problem& problem)
     throw Failure(invalid_input(name + "recall begins at a configuration, not at a pose"));
   if (problem.constraint)
     throw Failure(invalid_input(name + "recalled paths keep no constraint"));
+}
+
+/// \param problem  is recallable.
+recall::Query query_of(const recall::RecallGuide& guide, const Problem& problem) {
+  const kinematics::Chain& chain = guide.warper().chain();
   recall::Query query;
   query.T_task_base = problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
   query.bounds = planning::planning_bounds(chain, problem.start);
@@ -67,8 +72,8 @@ std::shared_ptr<GuidanceHandle> GuidanceHandle::of_robot(const Robot& robot, Gui
   wanted.chain = robot.chain();
   wanted.guide = guide;
   wanted.sampling.control_fraction = 0;
-  return std::make_shared<GuidanceHandle>(wanted.robot,
-                                          guided::fetch_guidance({}, wanted, std::nullopt));
+  return std::make_shared<GuidanceHandle>(
+      wanted.robot, guided::fetch_guidance({}, wanted, std::nullopt), robot.chain());
 }
 
 double GuidanceHandle::guided_part() const {
@@ -89,6 +94,8 @@ double GuidanceHandle::recall_trust() const {
 std::optional<Eigen::MatrixXd> GuidanceHandle::recall(const Problem& problem,
                                                       const planning::IsFree& is_free,
                                                       double step) {
+  if (chain_)
+    require_recallable(*chain_, problem);
   if (!guidance().recall)
     return std::nullopt;
   recall::RecallSummary summary =
@@ -105,7 +112,8 @@ void GuidanceHandle::add(const guided::PlannedProblem& planned) {
   const std::scoped_lock lock(mutex_);
   recall_trust_.add(planned.recall_expected, planned.result.found_by == FoundBy::Recalled);
   answer_.sampling->add(planned.result.sampling_mode, planned.outcome,
-                        planned.result.collision_checks);
+                        planned.result.collision_checks,
+                        planned.result.processor_time_s * evidence::machine_speed());
 }
 
 }  // namespace kinship::python

@@ -19,8 +19,10 @@ namespace kinship::python {
 class GuidanceHandle {
  public:
   /// \param answer  with guidance.
-  GuidanceHandle(const Digest& robot, guided::GuidanceAnswer answer)
-      : robot_(robot), answer_(std::move(answer)) {}
+  /// \param chain   of the robot; missing: the guidance has no paths to recall.
+  GuidanceHandle(const Digest& robot, guided::GuidanceAnswer answer,
+                 std::optional<kinematics::Chain> chain = std::nullopt)
+      : robot_(robot), chain_(std::move(chain)), answer_(std::move(answer)) {}
 
   /// A distribution alone: without stored ways, and without control.
   /// \throws Failure(InvalidInput) if it can guide no robot.
@@ -41,14 +43,14 @@ class GuidanceHandle {
   /// Tries whole stored paths on a problem, however they are rated beside other guides.
   /// \return dof x n; nothing if none was free, or there are none.
   /// \throws Failure(InvalidInput) if the problem does not fit the robot, begins at a pose, or has
-  /// a
-  ///         constraint.
+  ///         a constraint.
   std::optional<Eigen::MatrixXd> recall(const Problem& problem, const planning::IsFree& is_free,
                                         double step);
   void add(const guided::PlannedProblem& planned);
 
  private:
   const Digest robot_;
+  const std::optional<kinematics::Chain> chain_;
   recall::RecallTrust recall_trust_;
   guided::GuidanceAnswer answer_;  // but for its chooser never changed
   mutable std::mutex mutex_;       // guards chooser and trust

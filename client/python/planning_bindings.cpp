@@ -25,6 +25,7 @@ namespace kinship::python {
 namespace {
 
 using SharedGuidance = std::shared_ptr<GuidanceHandle>;
+using GuidanceClass = py::class_<GuidanceHandle, SharedGuidance>;
 using AnyGuidance = std::variant<SharedGuidance, std::shared_ptr<SampledDistribution>>;
 
 /// A planned query, with its inputs.
@@ -210,12 +211,32 @@ std::optional<Array> recall(GuidanceHandle& self, const Problem& problem, const 
   return path ? std::optional(to_rows(*path)) : std::nullopt;
 }
 
+void bind_recall(GuidanceClass& guidance) {
+  guidance.def(
+      "recall", recall, py::arg("problem"), py::arg("free"), py::arg("path_free") = py::none(),
+      py::arg("step") = guided::PlanSettings{}.resolution,
+      R"(Tries whole stored paths on a problem with a collision checker of one's own: an answer
+without a planner. The most promising first, as long as that is cheaper in the mean than a search.
+
+problem    begins at a configuration; of its scene only names and poses are looked at
+free       of (n, dof): (n,) of bool, such as World.free
+path_free  of the waypoints of a piece of a path, (n, dof), 2 <= n <= 17: bool, such as
+           World.path_free
+step       between the configurations that are asked of free, joint units; with path_free they are
+           the waypoints
+
+Returns the path, (n, dof), start first, straight in between; None: nothing is recalled, search.
+Raises InvalidInput if the problem does not fit the robot, begins at a pose, or has a constraint, which
+recalled paths would not keep.)");
+}
+
 void bind_guidance(py::module_& module) {
-  py::class_<GuidanceHandle, SharedGuidance>(
+  GuidanceClass guidance(
       module, "Guidance",
       "What guides a robot's queries of a task from one placement: a distribution, stored ways of "
       "the hand, and how far to trust them. Learns from what is planned with it. Threads may share "
-      "it.")
+      "it.");
+  guidance
       .def_static(
           "alone",
           [](const Robot& robot, const std::string& guide) {
@@ -268,19 +289,8 @@ void bind_guidance(py::module_& module) {
                 sources.push_back(path.source.hex());
             return sources;
           },
-          "Digests of the robots that took them, way by way.")
-      .def("recall", recall, py::arg("problem"), py::arg("free"), py::arg("path_free") = py::none(),
-           py::arg("step") = guided::PlanSettings{}.resolution,
-           R"(Tries whole stored paths on a problem with a collision checker of one's own: an answer
-without a planner. The most promising first, as long as that is cheaper in the mean than a search.
-
-problem    begins at a configuration; of its scene only names and poses are looked at
-free       of (n, dof): (n,) of bool, such as World.free
-path_free  of the waypoints of a path, (n, dof): bool, such as World.path_free
-step       between the configurations that are asked of free, joint units; with path_free they are
-           the waypoints
-
-Returns the path, (n, dof), start first, straight in between; None: nothing is recalled, search.)");
+          "Digests of the robots that took them, way by way.");
+  bind_recall(guidance);
 }
 
 void bind_outcome(py::class_<Plan>& plan) {

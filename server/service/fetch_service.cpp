@@ -34,6 +34,24 @@ rehearsal::RehearsalSchedulerOptions rehearsal_options(const ServiceOptions& opt
   return rehearsals;
 }
 
+/// When a path of each task and robot was last retired; nothing if no other server may do that.
+std::map<std::pair<std::string, Digest>, std::uint64_t> retired_generations(
+    const runtime::RobotRegistry& robots, const store::ExperienceStore& store) {
+  constexpr std::size_t kPage = 1000;
+  std::map<std::pair<std::string, Digest>, std::uint64_t> retired;
+  if (!robots.is_shared())
+    return retired;
+  std::string cursor;
+  do {
+    store::Page<TaskSummary> page = store.list_tasks(cursor, kPage);
+    for (const TaskSummary& each : page.rows)
+      for (const store::ExperienceSummary& robot : store.experience(each.task))
+        retired[{each.task, robot.robot}] = robot.retired_generation;
+    cursor = std::move(page.next_cursor);
+  } while (!cursor.empty());
+  return retired;
+}
+
 std::string seconds(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", value);
@@ -68,6 +86,7 @@ FetchService::FetchService(const ServiceParts& parts, const store::ExperienceSto
       catalog_({store, distributions, parts.robots, parts.pools.store, fitters_,
                 parts.options.clock, &memory_},
                catalog_options()),
+      retired_generations_(retired_generations(parts.robots, store)),
       rehearsals_({store, parts.robots, parts.options.clock, experience_, &memory_, &rehearsals},
                   rehearsal_options(parts.options)) {}
 

@@ -84,9 +84,10 @@ class FetchService final : public ServedGuidance {
   fitting::MemoryCeiling memory_;
   runtime::WorkerPool fitters_;
   catalog::Catalog catalog_;
-  rehearsal::RehearsalScheduler rehearsals_;  // its thread uses the experience and the memory
-  /// Of take_changes(): when a path of a task and robot was last seen to be retired.
+  /// Of take_changes(): when a path of a task and robot was last seen to be retired. Read before
+  /// the rehearsals, which leave out what was retired by then.
   std::map<std::pair<std::string, Digest>, std::uint64_t> retired_generations_;
+  rehearsal::RehearsalScheduler rehearsals_;  // its thread uses the experience and the memory
 };
 
 }  // namespace kinship::service

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -137,11 +138,19 @@ class CRecalls : public testing::Test {
 };
 
 TEST_F(CRecalls, WhatTheServerMadeOfReportsAnswersQueries) {
-  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain_.number()});
+  const test::ServerProcess::Options here{.store = directory_ / "fleet.db",
+                                          .domain = domain_.number()};
+  std::optional<test::ServerProcess> server(here);
   ASSERT_NO_FATAL_FAILURE(register_robot());
   EXPECT_EQ(kinship_fetch_recall(client_, &request_, &recall_), KINSHIP_NO_EXPERIENCE);
   EXPECT_EQ(recall_, nullptr);
   ASSERT_NO_FATAL_FAILURE(report_all());
+  kinship_distribution* fetched = nullptr;
+  ASSERT_EQ(kinship_fetch(client_, &request_, &fetched), KINSHIP_OK) << kinship_error_text();
+  kinship_distribution_free(fetched);
+  request_.deadline_ms = 0;  // the first rehearsal begins now
+  EXPECT_EQ(kinship_fetch_recall(client_, &request_, &recall_), KINSHIP_PENDING);
+  request_.deadline_ms = kEnough_ms;
   ASSERT_EQ(kinship_fetch_recall(client_, &request_, &recall_), KINSHIP_OK) << kinship_error_text();
   int recalled = 0;
   for (const PosedQuery& posed : cell_.queries(100, 8))
@@ -160,6 +169,21 @@ TEST_F(CRecalls, WhatTheServerMadeOfReportsAnswersQueries) {
   EXPECT_EQ(kinship_follower_recall(follower, nullptr, &followed), KINSHIP_OK)
       << kinship_error_text();
   kinship_recall_free(followed);
+
+  // What was reported is retired. The follower asks a server that comes up at once, and loses what
+  // was made of it.
+  const test::Answer reset = test::run_to_end(
+      "kinship",
+      {"--domain", std::to_string(domain_.number()), "tasks", "reset", "reach", "--yes"});
+  ASSERT_EQ(reset.code, 0) << reset.err;
+  server.reset();
+  server.emplace(here);
+  kinship_distribution* newer = nullptr;
+  while (kinship_follower_newer(follower, distribution, 100, &newer) != KINSHIP_NO_EXPERIENCE)
+    ASSERT_EQ(newer, nullptr);
+  EXPECT_EQ(kinship_follower_recall(follower, recall_, &followed), KINSHIP_NO_EXPERIENCE);
+  EXPECT_EQ(followed, nullptr);
+  EXPECT_EQ(kinship_follower_recall(follower, nullptr, &followed), KINSHIP_PENDING);
   kinship_distribution_free(distribution);
   kinship_follower_close(follower);
 }

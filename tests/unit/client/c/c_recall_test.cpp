@@ -218,6 +218,7 @@ TEST_F(CRecall, ACheckerMayGiveUpAndWhereNothingIsFreeNothingIsRecalled) {
   ASSERT_EQ(try_paths(asked(posed_.front(), scene, impatient)), KINSHIP_OK);
   EXPECT_EQ(recalled_.is_recalled, 0);
   EXPECT_EQ(impatient.asked.size(), 3U);
+  EXPECT_EQ(recalled_.checks, 4U) << "with the one that gave up";
   Checker blocked;
   ASSERT_EQ(try_paths(asked(posed_.front(), scene, blocked)), KINSHIP_OK);
   EXPECT_EQ(recalled_.is_recalled, 0);
@@ -266,6 +267,8 @@ TEST_F(CRecall, WhatIsNoQueryIsRefusedWithNameValueAndLimit) {
   far[3] = std::numeric_limits<double>::quiet_NaN();
   expect_refused(try_paths(query), "query->goals has a number that is not finite");
   query = good;
+  query.goal_count = KINSHIP_RECALL_GOALS + 1;
+  expect_refused(try_paths(query), "query->goal_count is 33, must be at most 32 (KINSHIP_RECALL_");
   query.goal_count = 0;
   expect_refused(try_paths(query), "query->T_task_goal is NULL");
   query = good;

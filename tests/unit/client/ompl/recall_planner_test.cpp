@@ -3,6 +3,7 @@
 #include "client/ompl/recall_planner.hpp"
 
 #include <gtest/gtest.h>
+#include <ompl/base/goals/GoalLazySamples.h>
 #include <ompl/base/goals/GoalStates.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
@@ -217,6 +218,60 @@ TEST_F(RecallPlannerTest, AClearedPlannerRecallsTheSameAgain) {
   EXPECT_FALSE(planner.recalled().waypoints);
   ASSERT_EQ(asked->setup.solve(kEnough_s), ob::PlannerStatus::EXACT_SOLUTION);
   EXPECT_EQ(planner.recalled().waypoints, first.waypoints);
+}
+
+TEST_F(RecallPlannerTest, AClearedQueryIsRecalledAgain) {
+  const auto asked = recalled();
+  auto& planner = dynamic_cast<RecallPlanner&>(*asked->setup.getPlanner());
+  const recall::RecallSummary first = planner.recalled();
+  planner.clearQuery();
+  EXPECT_FALSE(planner.recalled().waypoints);
+  asked->setup.getProblemDefinition()->clearSolutionPaths();
+  ASSERT_EQ(asked->setup.solve(kEnough_s), ob::PlannerStatus::EXACT_SOLUTION);
+  EXPECT_EQ(planner.recalled().waypoints, first.waypoints);
+}
+
+TEST_F(RecallPlannerTest, AnInvalidGoalHidesNoneBehindIt) {
+  const auto asked = recalled();
+  asked->setup.clear();
+  const auto goals = std::make_shared<ob::GoalStates>(asked->information());
+  ob::ScopedState<> state(asked->information());
+  copy_to_state(asked->posed.bounds.row(1).transpose().array() + 1, *state.get());
+  goals->addState(state);
+  for (const auto& q : asked->posed.goals.colwise()) {
+    copy_to_state(q, *state.get());
+    goals->addState(state);
+  }
+  asked->setup.setGoal(goals);
+  ASSERT_EQ(asked->setup.solve(kEnough_s), ob::PlannerStatus::EXACT_SOLUTION);
+  EXPECT_EQ(asked->solution().plannerName_, "Recall");
+}
+
+TEST_F(RecallPlannerTest, GoesOnWithoutWaitingForGoalsThatMayStillCome) {
+  const auto asked = recalled();
+  asked->setup.clear();
+  asked->plan_by(patient_guide(), std::make_shared<og::RRT>(asked->information()));
+  std::promise<void> is_done;
+  bool is_first = true;
+  const auto goals = std::make_shared<ob::GoalLazySamples>(
+      asked->information(), [&](const ob::GoalLazySamples*, ob::State* state) {
+        if (!std::exchange(is_first, false)) {
+          is_done.get_future().wait();
+          return false;
+        }
+        copy_to_state(asked->posed.goals.col(0), *state);
+        return true;
+      });
+  asked->setup.setGoal(goals);
+  ASSERT_EQ(asked->setup.solve(kEnough_s), ob::PlannerStatus::EXACT_SOLUTION);
+  EXPECT_EQ(asked->solution().plannerName_, "Recall");
+  ob::IterationTerminationCondition few(200);
+  asked->setup.solve(few);
+  ob::PlannerData tree(asked->information());
+  asked->setup.getPlanner()->getPlannerData(tree);
+  EXPECT_GT(tree.numVertices(), 1U) << "the other planner had no time left";
+  is_done.set_value();
+  goals->stopSampling();
 }
 
 TEST_F(RecallPlannerTest, NothingIsAskedWhenTheTimeIsOver) {

@@ -84,6 +84,8 @@ class Paths(OfAUr10e):
         self.assertIsNone(alone.recall(self.problem, lambda qs: self.fail("nothing is there to be tried")))
         with self.assertRaisesRegex(kinship.errors.InvalidInput, "step is 0, must be from"):
             alone.recall(self.problem, lambda qs: [True] * len(qs), step=0)
+        with self.assertRaisesRegex(kinship.errors.InvalidInput, "problem 'five': start has 5 joints"):
+            alone.recall(kinship.Problem("five", START[:5], GOAL[:5]), lambda qs: [True] * len(qs))
 
     def test_are_the_same_for_equal_seeds_alone(self):
         first, again, other = (kinship.plan(self.robot, self.problem, seed=seed) for seed in (5, 5, 6))

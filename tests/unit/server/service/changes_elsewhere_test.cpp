@@ -78,6 +78,26 @@ TEST_F(ChangesElsewhere, WhatIsInMemoryStaysWhenTheSameIsToldAgainOrPathsCame) {
   EXPECT_EQ(fetches_from_memory(), before + 2);
 }
 
+TEST_F(ChangesElsewhere, PathsToRecallStayWhenOthersComeWhateverWasRetiredBeforeTheStart) {
+  adjust_ = [this](ServiceOptions&) { troubled_->has_others = true; };
+  teach(6);
+  reset_elsewhere();
+  store::StoredRehearsal made = test::make_rehearsal(teacher_.digest, "shelf", 1);
+  const rehearsal::RehearsalKey key{fitting::make_key(request_for(teacher_)).value()};
+  made.id = fitting::identify(key.distribution);
+  made.retired = real_store_->experience("shelf").at(0).retired_generation;
+  real_store_->put_rehearsal(made, {});
+  start();
+  const rehearsal::RehearsalScheduler& rehearsals = service_->fetches().rehearsals();
+  ASSERT_TRUE(rehearsals.library(key));
+  teach_elsewhere(1, 100);
+  service_->fetches().take_changes(changed_experience());
+  EXPECT_TRUE(rehearsals.library(key));
+  reset_elsewhere();
+  service_->fetches().take_changes(changed_experience());
+  EXPECT_FALSE(rehearsals.library(key));
+}
+
 TEST_F(ChangesElsewhere, WhatAnErrorOfTheStoreCutShortIsTakenWhenItIsToldAgain) {
   teach(6);
   const Digest id = fetch(request_for(teacher_)).distribution.value().id;
