@@ -230,13 +230,11 @@ Raises InvalidInput if the problem does not fit the robot, begins at a pose, or 
 recalled paths would not keep.)");
 }
 
-void bind_guidance(py::module_& module) {
-  GuidanceClass guidance(
-      module, "Guidance",
-      "What guides a robot's queries of a task from one placement: a distribution, stored ways of "
-      "the hand, and how far to trust them. Learns from what is planned with it. Threads may share "
-      "it.");
-  guidance
+GuidanceClass bind_guidance(py::module_& module) {
+  return GuidanceClass(module, "Guidance",
+                       "What guides a robot's queries of a task from one placement: a "
+                       "distribution, stored ways of the hand, and how far to trust them. Learns "
+                       "from what is planned with it. Threads may share it.")
       .def_static(
           "alone",
           [](const Robot& robot, const std::string& guide) {
@@ -290,7 +288,6 @@ void bind_guidance(py::module_& module) {
             return sources;
           },
           "Digests of the robots that took them, way by way.");
-  bind_recall(guidance);
 }
 
 void bind_outcome(py::class_<Plan>& plan) {
@@ -355,7 +352,8 @@ void bind_guided(py::class_<Plan>& plan) {
 }  // namespace
 
 void bind_planning(py::module_& module) {
-  bind_guidance(module);
+  GuidanceClass guidance = bind_guidance(module);
+  bind_recall(guidance);
   py::class_<Plan> outcome(module, "Plan", "What came of planning a problem.");
   bind_outcome(outcome);
   bind_guided(outcome);
