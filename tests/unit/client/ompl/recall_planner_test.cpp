@@ -12,6 +12,7 @@
 #include <ompl/geometric/planners/rrt/RRT.h>
 #include <ompl/util/Console.h>
 
+#include <future>
 #include <stdexcept>
 #include <utility>
 #include <vector>
