@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -371,7 +372,10 @@ std::vector<bool> LibraryMaker::solved_by(std::size_t path) const {
 
 /// The order of paths: each next one solves most of what those before solve least.
 std::vector<std::size_t> LibraryMaker::best_first() const {
-  constexpr std::size_t kFewQueries = 3;  // too few to tell what a path is worth
+  constexpr std::size_t kFewReports = 3;  // too few to tell what a path is worth
+  std::set<Uuid> reports;
+  for (const RecallQuery& query : library_.queries)
+    reports.insert(query.report);
   std::vector<std::vector<bool>> solved;
   for (std::size_t path = 0; path < library_.paths.size(); ++path)
     solved.push_back(solved_by(path));
@@ -379,7 +383,7 @@ std::vector<std::size_t> LibraryMaker::best_first() const {
   std::vector<bool> is_taken(library_.paths.size());
   std::vector<std::size_t> order;
   while (order.size() < std::min(max_paths_, library_.paths.size())) {
-    double most = library_.queries.size() < kFewQueries ? -1 : 0;
+    double most = reports.size() < kFewReports ? -1 : 0;
     std::optional<std::size_t> best;
     for (std::size_t path = 0; path < solved.size(); ++path) {
       double gain = 0;

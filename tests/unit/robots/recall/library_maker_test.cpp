@@ -128,13 +128,15 @@ TEST(LibraryMaker, EachPathSolvesAnotherQuery) {
   }
 }
 
-TEST(LibraryMaker, TooFewQueriesLeaveNothingOut) {
+TEST(LibraryMaker, QueriesOfTooFewReportsLeaveNothingOut) {
   const MadeShelf& made = made_shelf();
-  const auto library = made.cell.make({made.recorded.front()});
-  ASSERT_TRUE(library);
-  EXPECT_FALSE(validate(*library));
-  EXPECT_EQ(library->queries.size(), 1U);
-  EXPECT_FALSE(library->paths.empty());
+  for (const std::size_t times : {1, 4}) {
+    const auto library = made.cell.make(std::vector<PosedQuery>(times, made.recorded.front()));
+    ASSERT_TRUE(library);
+    EXPECT_FALSE(validate(*library));
+    EXPECT_EQ(library->queries.size(), times);
+    EXPECT_FALSE(library->paths.empty());
+  }
 }
 
 TEST(LibraryMaker, OwnAnswersAreKeptAndPlannedOnesAreSynthetic) {
