@@ -122,6 +122,8 @@ const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey&
   for (const auto& [id, entry] : entries_) {
     if (!entry.known || !entry.known->is_complete || entry.is_lost || entry.kind != kind)
       continue;
+    if (!entry.library && entry.looked_at != versions_.of(entry.key.distribution.task).changes)
+      continue;  // one may be made by now
     const double distance = planning::pose_distance_m(place(entry.key), place(key));
     if (distance <= least) {
       least = distance;
@@ -246,6 +248,7 @@ void RehearsalScheduler::work(const Digest& id) {
     Entry& entry = entries_[id];
     before.key = entry.key;
     before.known = entry.known;
+    before.library = entry.library;
     before.paths = entry.paths;
     before.is_lost = entry.is_lost;
     entry.is_lost = false;
@@ -273,11 +276,13 @@ void RehearsalScheduler::work(const Digest& id) {
 }
 
 bool RehearsalScheduler::is_out_of_date(const RehearsalKey& key, const Entry& entry) {
-  constexpr std::uint64_t kLeastGrowth = 10, kPartOfGrowth = 5;
   if (!entry.known || entry.is_lost)
     return true;
   const std::uint64_t now = count_selected(parts_.store, key.distribution);
-  return now >= entry.paths + std::max(kLeastGrowth, entry.paths / kPartOfGrowth);
+  const std::uint64_t growth =
+      entry.library ? std::max<std::uint64_t>(10, entry.paths / 5)
+                    : std::max<std::uint64_t>(1, entry.paths / 20);  // one may be made of it
+  return now >= entry.paths + growth;
 }
 
 void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
@@ -288,7 +293,8 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   result.is_complete = true;
   Result<Subject> subject =
       read_subject(key, parts_, options_.max_queries, stop_source_.get_token());
-  if (subject) {
+  const bool is_rehearsed = subject.has_value();
+  if (is_rehearsed) {
     result = try_guides(id, *std::move(subject), paths);
     if (stop_source_.stop_requested())
       return;
@@ -302,7 +308,7 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
                " of processor time" + described(result.costs) +
                (result.message.empty() ? "" : ": " + result.message));
   keep(id, std::move(result), paths);
-  if (subject && parts_.rehearsals != nullptr)
+  if (is_rehearsed && parts_.rehearsals != nullptr)
     save(id, retired);
 }
 

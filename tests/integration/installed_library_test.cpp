@@ -190,8 +190,9 @@ TEST_F(InstalledLibrary, ExamplesAreBuiltAgainstItAndRunBesideAServer) {
   expect_output(run(example("04_guide_your_own_planner", {models})), "solved in ");
   expect_output(run(example("04_guide_your_own_planner_c", {models})), "arrays hold the rows: yes");
   expect_output(run(example("08_plan_as_kinship_plan", {models})), "post 3 solved with ");
-  expect_output(run(example("09_recall_in_ompl", {models})), "recalled with ");
-  expect_output(run(example("09_recall_a_path_c", {models})), "recalled: ");
+  // Recalled, or not where a search is cheaper: by the paths that the server made.
+  expect_output(run(example("09_recall_in_ompl", {models})), "ed with ");
+  expect_output(run(example("09_recall_a_path_c", {models})), " waypoints after ");
   expect_output(run(example("06_register_any_urdf",
                             {models + "/iiwa7/robot.urdf", "iiwa_link_0", "iiwa_link_ee", "0.12"})),
                 "inverse kinematics: ");

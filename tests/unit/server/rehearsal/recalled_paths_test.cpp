@@ -150,6 +150,23 @@ TEST_F(RecalledPaths, AreKnownOnceRehearsed) {
   EXPECT_FALSE(rehearsals.library(key_at(ur10e_))) << "they are one robot's";
 }
 
+TEST_F(RecalledPaths, WhereThereIsNoneTheNextPathIsReasonToRehearse) {
+  report_sweeps(5, std::nullopt);
+  RehearsalScheduler rehearsals(parts_, quick());
+  const RehearsalKey key = key_at(panda_);
+  ASSERT_TRUE(wait(rehearsals, key));
+  EXPECT_FALSE(rehearsals.library(key)) << "no scene was recorded";
+  const RehearsalKey near = key_at(panda_, 0.5);
+  EXPECT_EQ(wait(rehearsals, near), rehearsals.find(identify(key.distribution)));
+  report_sweeps(1);
+  rehearsals.new_experience("sweep");
+  ASSERT_TRUE(wait(rehearsals, near));
+  EXPECT_TRUE(rehearsals.library(near)) << "the other placement has none, and serves no more";
+  ASSERT_TRUE(wait(rehearsals, key));
+  EXPECT_TRUE(rehearsals.library(key));
+  EXPECT_EQ(rehearsals.totals().done, 3U);
+}
+
 TEST_F(RecalledPaths, AnotherPlacementIsServedByTheNearestRehearsedOne) {
   report_sweeps(5);
   RehearsalScheduler rehearsals(parts_, quick());
