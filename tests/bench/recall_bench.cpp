@@ -4,8 +4,7 @@
 //
 //   recall_bench STUDY [ROBOT...] [--set tuning|test] [--uniform]
 //
-// --uniform: uniform planning alone: how dear a study is. A constrained study, whose paths are not
-// recalled, is planned uniformly and by the retreat.
+// --uniform: uniform planning alone: how dear a study is.
 //
 // own: the robot's own learning instances, solved uniformly. first day: the learning instances of
 // another robot, the next one of the study, of which it knows scenes and the hand at start and
@@ -298,9 +297,9 @@ void print_as(const std::string& name, const RecallLibrary& library, const Compa
          .note = note});
 }
 
-/// How dear queries are without experience, by uniform planning or the retreat.
+/// How dear queries are by uniform planning.
 void print_dearness(const Robot& robot, const experiments::Study& study, const std::string& name,
-                    const std::vector<Problem>& tests, Guide guide) {
+                    const std::vector<Problem>& tests) {
   Costs costs;
   std::size_t within_1_s = 0;
   const Queries queries(robot, study);
@@ -309,7 +308,7 @@ void print_dearness(const Robot& robot, const experiments::Study& study, const s
       Item item(robot, problem, study.settings.resolution);
       const int solved = costs.solved;
       add_costs(robot, item, costs,
-                [&] { return queries.search(item, guide, problem.seed + seed).waypoints; });
+                [&] { return queries.search(item, Guide::None, problem.seed + seed).waypoints; });
       if (costs.solved > solved && costs.time_s.back() <= 1)
         ++within_1_s;
     }
@@ -320,7 +319,7 @@ void print_dearness(const Robot& robot, const experiments::Study& study, const s
                 1e3 * percentile(costs.time_s, 0.5), 1e3 * percentile(costs.time_s, 0.95),
                 Costs::mean(costs.checks), percentile(costs.checks, 0.5), costs.solved, within_1_s,
                 costs.checks.size());
-  print({.name = name + (guide == Guide::None ? " uniform" : " retreat"),
+  print({.name = name + " uniform",
          .value = 1e3 * Costs::mean(costs.time_s),
          .unit = "ms",
          .note = note});
@@ -346,10 +345,8 @@ class Fleet {
   void compare_all(std::size_t robot, experiments::InstanceSet set, bool is_uniform) const {
     const std::string name = study_.name + " " + study_.robots[robot].model;
     const auto tests = draw(robot, set);
-    if (is_uniform || study_.is_constrained) {
-      print_dearness(*robots_[robot], study_, name, tests, Guide::None);
-      if (!is_uniform)
-        print_dearness(*robots_[robot], study_, name, tests, Guide::Retreat);
+    if (is_uniform) {
+      print_dearness(*robots_[robot], study_, name, tests);
       return;
     }
     compare(*robots_[robot], study_, name + " own", draw(robot, experiments::InstanceSet::Learning),
