@@ -6,6 +6,7 @@
 #include <span>
 
 #include "server/store/values/distribution_blob.hpp"
+#include "server/store/values/rehearsal_blob.hpp"
 #include "server/store/values/scene_blob.hpp"
 #include "server/store/values/waypoint_blob.hpp"
 #include "tests/fuzz/demand.hpp"
@@ -59,6 +60,13 @@ void try_distribution(Bytes bytes) {
            "a distribution comes back");
 }
 
+void try_rehearsal(Bytes bytes) {
+  store::StoredRehearsal rehearsal;
+  if (store::decode_rehearsal(bytes, rehearsal))
+    demand(store::decode_rehearsal(store::encode_rehearsal(rehearsal), rehearsal),
+           "a rehearsal comes back");
+}
+
 }  // namespace
 }  // namespace kinship::fuzz
 
@@ -66,15 +74,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0)
     return 0;
   const kinship::fuzz::Bytes bytes(data + 1, size - 1);
-  switch (data[0] % 3) {
+  switch (data[0] % 4) {
     case 0:
       kinship::fuzz::try_waypoints(bytes);
       break;
     case 1:
       kinship::fuzz::try_scene(bytes);
       break;
-    default:
+    case 2:
       kinship::fuzz::try_distribution(bytes);
+      break;
+    default:
+      kinship::fuzz::try_rehearsal(bytes);
   }
   return 0;
 }
