@@ -37,18 +37,11 @@ struct Interrupted {};  // leaves a planner between two checks
 /// turn of the start.
 Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matrix2Xd& bounds,
                               const Eigen::MatrixXd& configurations) {
-  const std::vector<bool> turning = planning::turning_joints(chain);
-  Eigen::MatrixXd kept(configurations.rows(), configurations.cols());
-  Eigen::Index count = 0;
-  for (const auto& q : configurations.colwise()) {
-    Eigen::VectorXd limited = q;
-    for (Eigen::Index i = 0; i < q.size(); ++i)
-      if (chain.joints()[static_cast<std::size_t>(i)].type != kinematics::JointType::Continuous)
-        limited[i] = std::clamp(q[i], chain.lower()[i], chain.upper()[i]);
-    if (const auto turned = planning::turned_into(bounds, turning, limited))
-      kept.col(count++) = *turned;
-  }
-  return kept.leftCols(count);
+  Eigen::MatrixXd limited = configurations;
+  for (Eigen::Index i = 0; i < limited.rows(); ++i)
+    if (chain.joints()[static_cast<std::size_t>(i)].type != kinematics::JointType::Continuous)
+      limited.row(i) = limited.row(i).cwiseMax(chain.lower()[i]).cwiseMin(chain.upper()[i]);
+  return planning::all_turned_into(bounds, chain, limited);
 }
 
 /// "roll by 0.2, z by -0.1": the excess over a region, m and rad.
@@ -66,7 +59,7 @@ std::string with_detail(const std::string& text, const std::string& detail) {
   return detail.empty() ? text : text + ": " + detail;
 }
 
-/// Empty for a query that is guided.
+/// Empty for a query that is to be guided.
 std::string why_unguided(const QueryGuidance& query) {
   if (query.guidance == nullptr)
     return query.why_not;

@@ -312,6 +312,16 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
     save(id, retired);
 }
 
+/// Rests after each part, until there is none or the scheduler stops.
+void RehearsalScheduler::do_in_parts(const Digest& id, const std::function<bool()>& part) {
+  double rested_s = planning::thread_time_s();
+  while (!stop_source_.stop_requested() && part()) {
+    const double now_s = planning::thread_time_s();
+    rest(id, now_s - rested_s);
+    rested_s = now_s;
+  }
+}
+
 /// A first result, before the long work: each guide on a few queries.
 void RehearsalScheduler::try_a_few(const Digest& id, const Subject& subject, RehearsalOptions plan,
                                    std::uint64_t paths) {
@@ -325,12 +335,7 @@ void RehearsalScheduler::try_a_few(const Digest& id, const Subject& subject, Reh
   queries.resize(kFew);
   plan.rounds = 1;
   Rehearsing rehearsing(std::move(few), plan);
-  double rested_s = planning::thread_time_s();
-  while (!stop_source_.stop_requested() && rehearsing.step()) {
-    const double now_s = planning::thread_time_s();
-    rest(id, now_s - rested_s);
-    rested_s = now_s;
-  }
+  do_in_parts(id, [&] { return rehearsing.step(); });
   Rehearsal result = rehearsing.result();
   result.is_complete = false;
   keep(id, std::move(result), paths);
@@ -352,20 +357,18 @@ Rehearsal RehearsalScheduler::try_guides(const Digest& id, Subject subject, std:
   if (const SharedLibrary library = make_library(id, subject))
     subject.recall = std::make_shared<recall::RecallGuide>(robot.chain, *library);
   Rehearsing rehearsing(std::move(subject), plan);
-  double rested_s = planning::thread_time_s();
   std::size_t kept_rounds = 0;
-  while (!stop_source_.stop_requested() && rehearsing.step()) {
-    const double now_s = planning::thread_time_s();
+  do_in_parts(id, [&] {
+    const bool is_done = !rehearsing.step();
     if (rehearsing.rounds() > kept_rounds) {
       kept_rounds = rehearsing.rounds();
       Rehearsal result = rehearsing.result();
-      result.processor_time_s = now_s - begin_s;
+      result.processor_time_s = planning::thread_time_s() - begin_s;
       if (!result.is_complete)
         keep(id, std::move(result), paths);
     }
-    rest(id, now_s - rested_s);
-    rested_s = now_s;
-  }
+    return !is_done;
+  });
   Rehearsal result = rehearsing.result();
   if (result.message.empty())
     result.message = shapes;
@@ -381,12 +384,7 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
       subject.robot->chain, {subject.robot->chain, subject.robot->shapes},
       recall_queries(*subject.robot, subject.T_task_base, subject.recorded.queries, subject.starts),
       options);
-  double rested_s = planning::thread_time_s();
-  while (maker.step()) {
-    const double now_s = planning::thread_time_s();
-    rest(id, now_s - rested_s);
-    rested_s = now_s;
-  }
+  do_in_parts(id, [&] { return maker.step(); });
   std::optional<RecallLibrary> made = maker.take();
   SharedLibrary library = made ? std::make_shared<const RecallLibrary>(*std::move(made)) : nullptr;
   const std::lock_guard lock(mutex_);

@@ -153,6 +153,7 @@ class RehearsalScheduler {
   void work(const Digest& id);
   bool is_out_of_date(const RehearsalKey& key, const Entry& entry);
   void rehearse(const Digest& id, const RehearsalKey& key);
+  void do_in_parts(const Digest& id, const std::function<bool()>& part);
   void try_a_few(const Digest& id, const Subject& subject, RehearsalOptions plan,
                  std::uint64_t paths);
   Rehearsal try_guides(const Digest& id, Subject subject, std::uint64_t paths);
