@@ -112,6 +112,14 @@ Certificate make_certificate(const CertificateText& text, evp_pkey_st& subject_k
   return certificate;
 }
 
+/// \param what  of the validity, for messages.
+std::chrono::sys_seconds time_of(const ASN1_TIME* time, const std::string& what) {
+  std::tm fields{};
+  if (ASN1_TIME_to_tm(time, &fields) != 1)
+    throw_openssl("certificate: " + what + " of validity");
+  return std::chrono::sys_seconds(std::chrono::seconds(timegm(&fields)));
+}
+
 }  // namespace
 
 Validity valid_for(std::chrono::days days, std::chrono::sys_seconds now) {
@@ -212,11 +220,12 @@ std::string fingerprint(x509_st& certificate) {
   return text;
 }
 
+std::chrono::sys_seconds beginning(x509_st& certificate) {
+  return time_of(X509_get0_notBefore(&certificate), "beginning");
+}
+
 std::chrono::sys_seconds expiry(x509_st& certificate) {
-  std::tm fields{};
-  if (ASN1_TIME_to_tm(X509_get0_notAfter(&certificate), &fields) != 1)
-    throw_openssl("certificate: end of validity");
-  return std::chrono::sys_seconds(std::chrono::seconds(timegm(&fields)));
+  return time_of(X509_get0_notAfter(&certificate), "end");
 }
 
 bool belongs_to(evp_pkey_st& key, x509_st& certificate) {

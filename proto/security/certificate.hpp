@@ -59,6 +59,7 @@ Key key_from_pem(std::string_view pem, std::string_view what);
 std::string common_name(x509_st& certificate);  ///< of its subject; empty if there is none
 std::string serial_text(x509_st& certificate);  ///< hexadecimal, lower case
 std::string fingerprint(x509_st& certificate);  ///< first 16 hexadecimal digits of its SHA-256
+std::chrono::sys_seconds beginning(x509_st& certificate);  ///< of its validity
 std::chrono::sys_seconds expiry(x509_st& certificate);
 
 /// Whether the certificate is for this key.

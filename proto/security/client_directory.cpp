@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "proto/security/certificate_name.hpp"
@@ -24,6 +25,18 @@ FileMark mark_of(const std::filesystem::path& file) {
   return {status.st_dev,         status.st_ino,          status.st_size,
           status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_ctim.tv_sec,
           status.st_ctim.tv_nsec};
+}
+
+/// What both take.
+Revocation merged(Revocation first, const Revocation& second) {
+  if (!first.revoked)
+    first.revoked = second.revoked;
+  first.oldest_accepted = std::max(first.oldest_accepted, second.oldest_accepted);
+  return first;
+}
+
+bool takes_more(const Revocation& first, const Revocation& second) {
+  return (first.revoked && !second.revoked) || first.oldest_accepted > second.oldest_accepted;
 }
 
 }  // namespace
@@ -54,12 +67,17 @@ Result<ClientRecord> ClientDirectory::read(const std::filesystem::path& file,
 }
 
 Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
+  return find(name, kFreshFor);
+}
+
+Result<ClientRecord> ClientDirectory::find(const std::string& name,
+                                           std::chrono::seconds fresh_for) const {
   if (const auto error = check_client_name(name))
     return *error;
   const auto now = clock_();
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(name);
-  if (found != entries_.end() && now - found->second->checked < kFreshFor)
+  if (found != entries_.end() && now - found->second->checked < fresh_for)
     return found->second->record;
   const std::filesystem::path file = folder_ / (name + ".toml");
   const FileMark mark = mark_of(file);  // before it is read: changes meanwhile are read again
@@ -88,18 +106,51 @@ Result<Caller> ClientDirectory::caller(const std::string& common_name,
   const Result<ClientRecord> record = find(name);
   if (!record)
     return record.error();
-  if (record->revoked)
+  const Revocation taken =
+      merged({name, record->revoked, record->oldest_accepted}, remembered(name));
+  if (taken.revoked)
     return Error{ErrorCode::Unavailable,
-                 "client '" + name + "': revoked at " + time_text(*record->revoked)};
+                 "client '" + name + "': revoked at " + time_text(*taken.revoked)};
   if (record->expires <= now)
     return Error{ErrorCode::Unavailable,
                  "client '" + name + "': expired at " + time_text(record->expires)};
-  if (certificate->generation < record->oldest_accepted)
+  if (certificate->generation < taken.oldest_accepted)
     return Error{ErrorCode::Unavailable,
                  "client '" + name + "': these credentials were replaced (" +
                      std::to_string(certificate->generation) + " of " +
                      std::to_string(record->generation) + "), the newest ones are accepted only"};
   return caller_of(*record);
+}
+
+Revocation ClientDirectory::remembered(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = remembered_.find(name);
+  return found == remembered_.end() ? Revocation{name} : found->second;
+}
+
+void ClientDirectory::remember(const Revocation& revocation) {
+  const std::lock_guard lock(mutex_);
+  Revocation& known = remembered_.try_emplace(revocation.client, revocation).first->second;
+  known = merged(known, revocation);
+}
+
+ClientDirectory::Differences ClientDirectory::compare_records() const {
+  Differences differences;
+  std::error_code ignored;  // the folder need not exist yet
+  for (const auto& file : std::filesystem::directory_iterator(folder_, ignored)) {
+    if (file.path().extension() != ".toml")
+      continue;
+    const Result<ClientRecord> record = find(file.path().stem().string(), {});
+    if (!record)
+      continue;
+    const Revocation told{record->name, record->revoked, record->oldest_accepted};
+    const Revocation known = remembered(record->name);
+    if (takes_more(told, known))
+      differences.unknown.push_back(told);
+    if (takes_more(known, told))
+      differences.put_back.push_back(merged(known, told));
+  }
+  return differences;
 }
 
 }  // namespace kinship::security

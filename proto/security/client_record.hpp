@@ -28,6 +28,13 @@ struct ClientRecord {
   std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
 };
 
+/// What was taken from a client for good.
+struct Revocation {
+  std::string client;
+  std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
+  std::uint32_t oldest_accepted = 1;                     ///< generation of credentials
+};
+
 /// The fault of a client's name; nothing if it is 1 to 56 of [A-Za-z0-9_-] and not the server's
 /// name. A certificate has 64 characters for it and its generation.
 std::optional<Error> check_client_name(std::string_view name);

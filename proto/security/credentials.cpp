@@ -50,6 +50,28 @@ void require_private(const std::filesystem::path& key) {
     refuse(key, "others than its owner have access to it; chmod 600 it");
 }
 
+/// When this machine's clock stood at the file's last change; 1970 if that is not known.
+std::chrono::sys_seconds changed_at(const std::filesystem::path& file) {
+  struct stat status {};
+  return std::chrono::sys_seconds(
+      std::chrono::seconds(stat(file.c_str(), &status) == 0 ? status.st_ctim.tv_sec : 0));
+}
+
+/// A certificate may be from a machine whose clock is ahead, or this machine's clock may be behind:
+/// it is, if it stood later before.
+void require_begun(const std::filesystem::path& file, std::chrono::sys_seconds begins,
+                   std::chrono::sys_seconds now) {
+  if (begins <= now)
+    return;
+  const std::string times =
+      "is valid from " + time_text(begins) + " on, and this machine's clock says " + time_text(now);
+  if (const auto before = changed_at(file); before > now + std::chrono::minutes(1))
+    refuse(file, times + ", which is behind: it said " + time_text(before) +
+                     " when the file was written; set the clock");
+  refuse(file, times + "; if that is right (date -u), the clock of the machine that made the " +
+                   "certificate was ahead: set that one and make new ones there");
+}
+
 void check_document(const std::filesystem::path& file, x509_st& authority) {
   if (const auto text = verify_document(read_file(file), authority); !text)
     refuse(file, "not signed by the first authority of ca.pem, or not valid any more (" +
@@ -89,6 +111,7 @@ Credentials read_checked(const CredentialFiles& files, std::chrono::sys_seconds 
                                   (credentials.name == kServerName
                                        ? std::string("-server")
                                        : " " + client_of(credentials.name) + " --out FOLDER"));
+  require_begun(files.certificate, beginning(certificate), now);
   if (const auto error = check_issued(certificate, authorities, now))
     refuse(files.certificate, error->message);
   check_document(files.governance, *authorities.front());

@@ -270,6 +270,16 @@ ClientRecord SecurityFolder::revoke_former(const std::string& name) const {
   return record;
 }
 
+void SecurityFolder::revoke_again(const Revocation& revocation) const {
+  const files::LockFile lock = lock_folder(folder_);
+  ClientRecord record = record_of(revocation.client);
+  if (revocation.revoked)
+    record.revoked = revocation.revoked;
+  record.oldest_accepted = std::max(record.oldest_accepted, revocation.oldest_accepted);
+  record.generation = std::max(record.generation, record.oldest_accepted);
+  replace_file(record_file(record.name), record_text(record), Readers::Everybody);
+}
+
 CredentialList SecurityFolder::list(std::chrono::sys_seconds now) const {
   CredentialList list;
   for (const Certificate& one : authority_.trusted())

@@ -62,6 +62,10 @@ class SecurityFolder {
   /// renewed.
   ClientRecord revoke_former(const std::string& name) const;
 
+  /// Writes a revocation into a record that lacks it, because it was put back from a copy.
+  /// \throws Failure(NotFound) if there is no such client.
+  void revoke_again(const Revocation& revocation) const;
+
   /// The server and all clients, including clients with an unreadable record.
   CredentialList list(std::chrono::sys_seconds now) const;
 

@@ -11,7 +11,6 @@
 #include "proto/dds/network_interface.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/json/admin_rows_json.hpp"
-#include "proto/security/client_directory.hpp"
 #include "proto/security/security_folder.hpp"
 #include "proto/types/failure.hpp"
 #include "server/app/port_holder.hpp"
@@ -89,32 +88,27 @@ std::string explain(const ServerOptions& options, std::uint16_t port, const Port
   return message + "; end that one, or take another domain (--domain N)";
 }
 
-/// The clients that the server knows: the records of its security folder.
-dds::Directory directory_of(const std::filesystem::path& security) {
-  const auto clients =
-      std::make_shared<security::ClientDirectory>(security::SecurityFolder(security).clients());
-  return [clients](const std::string& name) {
-    return clients->caller(
-        name, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
-  };
-}
-
-dds::ParticipantOptions participant_options(const ServerOptions& options) {
+dds::ParticipantOptions participant_options(
+    const ServerOptions& options, const std::shared_ptr<const security::ClientDirectory>& clients) {
   dds::ParticipantOptions participant{.domain = options.domain,
                                       .role = dds::Role::Server,
                                       .network_interface = options.network_interface};
-  if (!options.security.empty()) {
+  if (clients) {
     participant.security = security::SecurityFolder(options.security).server_credentials();
-    participant.directory = directory_of(options.security);
+    participant.directory = [clients](const std::string& name) {
+      return clients->caller(
+          name, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+    };
   }
   return participant;
 }
 
 }  // namespace
 
-dds::Participant join_domain(const ServerOptions& options) {
+dds::Participant join_domain(const ServerOptions& options,
+                             const std::shared_ptr<const security::ClientDirectory>& clients) {
   try {
-    return dds::Participant(participant_options(options));
+    return dds::Participant(participant_options(options, clients));
   } catch (const Failure& failure) {
     const std::string address =
         address_of(options.network_interface.empty() ? "lo" : options.network_interface);

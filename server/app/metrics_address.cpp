@@ -1,7 +1,11 @@
 #include "server/app/metrics_address.hpp"
 
 #include <arpa/inet.h>
+#include <strings.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 
 namespace kinship::app {
@@ -10,6 +14,15 @@ namespace {
 bool is_address(int family, const std::string& text) {
   in6_addr address{};  // the larger of the two
   return inet_pton(family, text.c_str(), &address) == 1;
+}
+
+std::string name_of_this_machine() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+bool are_equal(const std::string& name, const std::string& other) {
+  return strcasecmp(name.c_str(), other.c_str()) == 0;
 }
 
 }  // namespace
@@ -33,6 +46,16 @@ Result<MetricsAddress> read_metrics_address(std::string_view text) {
   }
   read.address = host;
   return is_address(AF_INET, read.address) ? Result<MetricsAddress>(read) : wrong;
+}
+
+bool is_served_host(std::string_view host, const std::vector<std::string>& names) {
+  if (host.starts_with('['))
+    return host.find(']') != std::string_view::npos &&
+           is_address(AF_INET6, std::string(host.substr(1, host.find(']') - 1)));
+  const std::string name(host.substr(0, host.rfind(':')));
+  return is_address(AF_INET, name) || are_equal(name, "localhost") ||
+         are_equal(name, name_of_this_machine()) ||
+         std::ranges::any_of(names, [&](const std::string& one) { return are_equal(name, one); });
 }
 
 std::string to_text(const MetricsAddress& address) {

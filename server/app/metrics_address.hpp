@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/types/result.hpp"
 
@@ -16,6 +17,11 @@ struct MetricsAddress {
 
 /// Reads 127.0.0.1:9464 or [::1]:9464. Host names are refused: their address may change.
 Result<MetricsAddress> read_metrics_address(std::string_view text);
+
+/// Whether a request for this host is answered: an address, localhost, this machine's name or one
+/// of `names`. A page of another name, which was made to lead here, is not this server's. \param
+/// host  as in a request's field Host, with or without a port.
+bool is_served_host(std::string_view host, const std::vector<std::string>& names);
 
 /// As in a URL: 127.0.0.1:9464, [::1]:9464.
 std::string to_text(const MetricsAddress& address);

@@ -1,5 +1,6 @@
 #include "server/app/metrics_listener.hpp"
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -167,7 +168,18 @@ class MetricsListener::Implementation {
     connection->start();
   }
 
+  /// No browser leaves Host out.
+  bool is_for_another_host(const http::request<http::empty_body>& request) const {
+    const auto hosts = request.equal_range(http::field::host);
+    return std::any_of(hosts.first, hosts.second, [this](const auto& field) {
+      return !is_served_host({field.value().data(), field.value().size()}, limits_.hosts);
+    });
+  }
+
   Reply answer(const http::request<http::empty_body>& request) {
+    if (is_for_another_host(request))
+      return text_reply(http::status::misdirected_request,
+                        "this host's name is not served; kinshipd --metrics-host NAME serves it\n");
     const std::string_view target(request.target().data(), request.target().size());
     if (target.substr(0, target.find('?')) != kPagePath)
       return text_reply(http::status::not_found, std::string("there is ") + kPagePath + " only\n");

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/app/metrics_address.hpp"
 
@@ -35,6 +36,7 @@ struct MetricsLimits {
   std::chrono::milliseconds request_time{5000};  ///< from connection to reply, and for the reply
   /// A page younger than this is sent again, however many requests come.
   std::chrono::milliseconds page_age{200};
+  std::vector<std::string> hosts = {};  ///< see is_served_host()
 };
 
 /// Answers GET /metrics over HTTP/1, one request a connection, on a thread of its own. A connection

@@ -248,6 +248,9 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "Address and port where Prometheus reads /metrics, e.g. 127.0.0.1:9464, without "
                  "access control; default: nowhere")
       ->check(is_metrics_address());
+  app.add_option("--metrics-host", options.metrics_hosts,
+                 "A name by which /metrics may be asked for, besides addresses, localhost and this "
+                 "machine's name; may be given again");
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();

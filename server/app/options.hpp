@@ -57,6 +57,7 @@ struct ServerOptions {
   std::string upstream;                     ///< URL of the memory above this site; empty: none
   std::vector<std::string> upstream_tasks;  ///< patterns of tasks that always come down from it
   std::string metrics;                      ///< address and port to serve metrics at; empty: none
+  std::vector<std::string> metrics_hosts;   ///< names by which they may be asked for
   std::string log_level = "info";
 };
 

@@ -26,6 +26,7 @@
 #include "server/app/line_limit.hpp"
 #include "server/app/metrics_listener.hpp"
 #include "server/app/metrics_page.hpp"
+#include "server/app/revocation_watch.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
 #include "server/service/service.hpp"
@@ -126,6 +127,30 @@ bool may_hear_announcement(const Caller& caller, const Announcement& announcemen
   return access::may_see(caller, announcement.task, "");
 }
 
+/// The records of the security folder; null without security.
+std::shared_ptr<security::ClientDirectory> clients_of(const ServerOptions& options) {
+  if (options.security.empty())
+    return nullptr;
+  return std::make_shared<security::ClientDirectory>(
+      security::SecurityFolder(options.security).clients());
+}
+
+std::unique_ptr<RevocationWatch> watch_revocations(
+    const ServerOptions& options, const std::shared_ptr<security::ClientDirectory>& clients,
+    store::Store& store) {
+  if (!clients)
+    return nullptr;
+  return std::make_unique<RevocationWatch>(
+      security::SecurityFolder(options.security), *clients, store,
+      [](std::string_view line) { spdlog::warn("security: {}", line); });
+}
+
+std::optional<MetricsPort> open_metrics_port(const ServerOptions& options) {
+  if (options.metrics.empty())
+    return std::nullopt;
+  return MetricsPort(read_metrics_address(options.metrics).value_or_throw());
+}
+
 ExpiryWatch watch_expiry(const dds::Participant& participant) {
   return {participant.credentials(),
           [] { return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()); },
@@ -156,10 +181,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   hold_termination_signals();
 
   // Before the store: a server that cannot join the domain, or has no port, leaves no file behind.
-  const dds::Participant participant = join_domain(options);
-  std::optional<MetricsPort> metrics_port;
-  if (!options.metrics.empty())
-    metrics_port.emplace(read_metrics_address(options.metrics).value_or_throw());
+  const std::shared_ptr<security::ClientDirectory> clients = clients_of(options);
+  const dds::Participant participant = join_domain(options, clients);
+  std::optional<MetricsPort> metrics_port = open_metrics_port(options);
   dds::WaitLoop loop(participant);
   const Events events(participant, loop, access::may_hear);
   const Announcements announcements(participant, loop, may_hear_announcement);
@@ -171,8 +195,11 @@ int serve(const ServerOptions& options, std::ostream& out) {
   set_upstream(options, settings);
   publish_with(settings, events, announcements);
   settings.wake = [&loop] { loop.wake(); };
-  service::Service service(store::open_store(options.store.string(), store_options(options)),
-                           std::move(settings));
+  std::unique_ptr<store::Store> opened =
+      store::open_store(options.store.string(), store_options(options));
+  store::Store& store = *opened;
+  service::Service service(std::move(opened), std::move(settings));
+  const auto revocations = watch_revocations(options, clients, store);
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {
     spdlog::info("signal {}: draining", signal);
@@ -186,8 +213,10 @@ int serve(const ServerOptions& options, std::ostream& out) {
   std::optional<MetricsListener> metrics;
   if (metrics_port) {
     spdlog::info("metrics at {}", metrics_port->url());
-    metrics.emplace(std::move(*metrics_port),
-                    [&service, &endpoints] { return metrics_page(service, endpoints.clients()); });
+    metrics.emplace(
+        std::move(*metrics_port),
+        [&service, &endpoints] { return metrics_page(service, endpoints.clients()); },
+        MetricsLimits{.hosts = options.metrics_hosts});
   }
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");

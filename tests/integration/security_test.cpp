@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "proto/security/private_files.hpp"
 #include "tests/integration/secured_site.hpp"
 
 namespace kinship::security_test {
@@ -31,10 +32,20 @@ class SecuredServer : public test::SecuredSite {
       ASSERT_LT(std::chrono::steady_clock::now(), end);
   }
 
+  void wait_for_audit(const std::string& act) const {
+    const auto end = std::chrono::steady_clock::now() + 10s;
+    while (!kinship("audit --who server --security " + anna_.string()).says(act))
+      ASSERT_LT(std::chrono::steady_clock::now(), end);
+  }
+
+  test::ServerProcess::Options server_options() const {
+    return {.store = folder_ / "store.db",
+            .domain = domain_.number(),
+            .arguments = {"--security", folder_ / "fleet"}};
+  }
+
   const test::ReservedDomain domain_;
-  const test::ServerProcess server_{{.store = folder_ / "store.db",
-                                     .domain = domain_.number(),
-                                     .arguments = {"--security", folder_ / "fleet"}}};
+  test::ServerProcess server_{server_options()};
 };
 
 TEST_F(SecuredServer, ARobotReportsFetchesAndHearsOfWhatIsNewer) {
@@ -88,6 +99,31 @@ TEST_F(SecuredServer, FormerCredentialsAreGoodUntilTheyAreRevoked) {
   const test::Answer log = kinship(with_second + "audit --json");
   EXPECT_EQ(log.code, 0);
   EXPECT_EQ(log.out.find("anna.2"), std::string::npos) << "one name, whichever credentials";
+}
+
+TEST_F(SecuredServer, ARevocationOutlivesTheReturnOfItsRecordAndARestart) {
+  const fs::path bob = add({.name = "bob", .role = AccessRole::Operator});
+  const fs::path record = fleet_.clients() / "bob.toml";
+  const std::string of_before = security::read_file(record);
+  const auto put_back = [&] {
+    security::replace_file(record, of_before, security::Readers::Everybody);
+  };
+  EXPECT_EQ(kinship("status --security " + bob.string()).code, 0);
+  fleet_.revoke("bob", test::now_s());
+  wait_until_told(bob, "revoked");
+  wait_for_audit("revoke ");
+  put_back();
+  wait_for_audit("revoke_again");
+  EXPECT_TRUE(kinship("status --security " + bob.string()).says("revoked"));
+  EXPECT_NE(security::read_file(record).find("revoked = "), std::string::npos)
+      << "secure list says so, too";
+
+  server_.kill();
+  put_back();
+  const test::ServerProcess restarted(server_options());
+  const test::Answer refused = kinship("status --security " + bob.string());
+  EXPECT_NE(refused.code, 0) << refused.out;
+  EXPECT_EQ(kinship("status --security " + anna_.string()).code, 0);
 }
 
 }  // namespace

@@ -90,6 +90,36 @@ TEST_F(ClientDirectoryTest, CredentialsThatWereReplacedAreRefusedOnceTheFormerOn
     EXPECT_FALSE(directory_.caller(name, kNow)) << name;
 }
 
+TEST_F(ClientDirectoryTest, ARecordThatIsPutBackGivesNothingBack) {
+  ClientRecord renewed = arm();
+  renewed.generation = renewed.oldest_accepted = 2;
+  write(renewed);
+  ClientRecord other = arm();
+  other.name = "leg";
+  other.revoked = kNow;
+  write(other);
+  const auto told = directory_.compare_records();
+  ASSERT_EQ(told.unknown.size(), 2U);
+  EXPECT_TRUE(told.put_back.empty());
+  for (const Revocation& one : told.unknown)
+    directory_.remember(one);
+  EXPECT_TRUE(directory_.compare_records().unknown.empty()) << "each is told once";
+
+  write(arm());
+  other.revoked.reset();
+  write(other);
+  const auto differences = directory_.compare_records();  // within the second: no clock moved
+  EXPECT_TRUE(differences.unknown.empty());
+  ASSERT_EQ(differences.put_back.size(), 2U);
+  clock_ += 1s;
+  EXPECT_EQ(directory_.caller("leg", kNow).error().message,
+            "client 'leg': revoked at 2026-11-25T00:00:00Z");
+  EXPECT_EQ(directory_.caller("arm", kNow).error().message,
+            "client 'arm': these credentials were replaced (1 of 1), the newest ones are accepted "
+            "only");
+  EXPECT_TRUE(directory_.caller("arm.2", kNow)) << "which were not replaced";
+}
+
 TEST_F(ClientDirectoryTest, AClientThatIsAddedIsKnownAndOneThatIsRemovedIsNotASecondLater) {
   ASSERT_FALSE(directory_.find("arm"));
   write(arm());

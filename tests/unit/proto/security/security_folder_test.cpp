@@ -178,6 +178,21 @@ TEST_F(SecurityFolderTest, ThirtyDaysAheadPeopleAreWarned) {
   EXPECT_NE(expired.error().message.find("expired at"), std::string::npos);
 }
 
+TEST_F(SecurityFolderTest, AClockThatIsBehindIsToldFromACertificateOfTheFuture) {
+  init().add({.name = "r1"}, out_, now_s());
+  const auto behind = read_credentials(out_, now_s() - days(2));
+  ASSERT_FALSE(behind);
+  EXPECT_NE(behind.error().message.find("which is behind: it said"), std::string::npos)
+      << behind.error().message;
+  EXPECT_TRUE(read_credentials(out_, now_s() - std::chrono::hours(23))) << "robots' clocks may be";
+  const std::filesystem::path ahead = scratch_ / "ahead";
+  SecurityFolder::init(ahead, days(30), now_s() + days(3));
+  const auto future = read_credentials(ahead / "server", now_s());
+  ASSERT_FALSE(future);
+  EXPECT_NE(future.error().message.find("that made the certificate was ahead"), std::string::npos)
+      << future.error().message;
+}
+
 TEST_F(SecurityFolderTest, TheListHasTheServerEveryClientAndWhatIsUnreadable) {
   const SecurityFolder folder = init();
   folder.add({.name = "b", .tasks = {"shelf_*"}, .days = days(10)}, out_, now_s());

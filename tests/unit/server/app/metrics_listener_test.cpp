@@ -78,7 +78,7 @@ class MetricsListenerTest : public testing::Test {
     return connection.read();
   }
   std::string get(const std::string& target = "/metrics") const {
-    return ask("GET " + target + " HTTP/1.1\r\nHost: here\r\n\r\n");
+    return ask("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
   }
 
   std::string url_;
@@ -99,7 +99,7 @@ TEST_F(MetricsListenerTest, AnswersWithThePageOfNow) {
 }
 
 TEST_F(MetricsListenerTest, HeadHasNoBody) {
-  const std::string reply = ask("HEAD /metrics HTTP/1.1\r\nHost: here\r\n\r\n");
+  const std::string reply = ask("HEAD /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(reply.starts_with("HTTP/1.1 200 OK\r\n")) << reply;
   EXPECT_NE(reply.find("Content-Length: 8\r\n"), std::string::npos) << reply;
   EXPECT_TRUE(reply.ends_with("\r\n\r\n")) << reply;
@@ -108,10 +108,28 @@ TEST_F(MetricsListenerTest, HeadHasNoBody) {
 TEST_F(MetricsListenerTest, RefusesWhatIsNotThere) {
   EXPECT_TRUE(get("/").starts_with("HTTP/1.1 404 "));
   EXPECT_TRUE(get("/metrics/..").starts_with("HTTP/1.1 404 "));
-  const std::string reply = ask("DELETE /metrics HTTP/1.1\r\nHost: here\r\n\r\n");
+  const std::string reply = ask("DELETE /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(reply.starts_with("HTTP/1.1 405 ")) << reply;
   EXPECT_NE(reply.find("Allow: GET, HEAD\r\n"), std::string::npos) << reply;
   EXPECT_EQ(pages_, 0);
+}
+
+TEST_F(MetricsListenerTest, AnswersForItsOwnNamesOnly) {
+  start({.page_age = milliseconds(0), .hosts = {"cell.example"}});
+  const auto status = [&](const std::string& hosts) {
+    return ask("GET /metrics HTTP/1.1\r\n" + hosts + "\r\n").substr(9, 3);
+  };
+  char name[256] = {};
+  gethostname(name, sizeof name - 1);
+  for (const std::string host :
+       {"127.0.0.1:9464", "192.0.2.7", "[::1]:9464", "localhost", "LOCALHOST:1", "Cell.Example:80"})
+    EXPECT_EQ(status("Host: " + host + "\r\n"), "200") << host;
+  EXPECT_EQ(status("Host: " + std::string(name) + ":9464\r\n"), "200");
+  EXPECT_EQ(status(""), "200") << "no browser leaves it out";
+  for (const std::string host : {"evil.example:9464", "", "cell.example.evil.example", "[::1",
+                                 "localhost@evil.example", "127.0.0.1.evil.example"})
+    EXPECT_EQ(status("Host: " + host + "\r\n"), "421") << host;
+  EXPECT_EQ(status("Host: localhost\r\nHost: evil.example\r\n"), "421");
 }
 
 TEST_F(MetricsListenerTest, SaysWhyThereIsNoPageAndGoesOn) {
