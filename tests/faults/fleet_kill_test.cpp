@@ -46,7 +46,7 @@ class FleetKill : public testing::Test {
         std::vector<std::string>{
             "report", std::to_string(domain_.number()),
             (directory_ / ("outbox-" + std::to_string(outbox)).c_str()).string(), ledgers_.back(),
-            std::to_string(ledgers_.size() * kNumbersPerLife)},
+            std::to_string(ledgers_.size() * kNumbersPerLife), "0"},
         directory_ / "clients.log");
   }
   void kill_one(std::mt19937_64& generator) {
@@ -93,49 +93,6 @@ class FleetKill : public testing::Test {
   int server_kills_ = 0;
 };
 
-/// What is wrong with the store, as counts.
-struct Audit {
-  std::size_t stored = 0;    ///< reports that clients began
-  std::size_t lost = 0;      ///< accepted, and not there
-  std::size_t wrong = 0;     ///< there, and not as reported
-  std::size_t unknown = 0;   ///< there, and nobody's
-  std::size_t repeated = 0;  ///< paths with the content of another one
-  std::size_t pathless = 0;  ///< contents that were reported solved, without a path
-};
-
-Audit audit(const store::Store& store, const Digest& panda, const ReportLedger& ledger) {
-  Audit audit;
-  std::set<std::uint64_t> contents;
-  for (const std::uint64_t number : ledger.begun) {
-    const Attempt wanted = numbered_attempt(panda, number);
-    const std::optional<Attempt> found = store.find_attempt(wanted.report_uuid);
-    if (found) {
-      ++audit.stored;
-      if (!is_as_reported(*found, wanted))
-        ++audit.wrong;
-      if (is_solved(number))
-        contents.insert(number / 2);
-    } else if (ledger.accepted.contains(number)) {
-      ++audit.lost;
-    }
-  }
-  const store::StoreStatus status = store.status();
-  audit.unknown = status.attempts - audit.stored;
-  std::set<std::vector<double>> paths;
-  std::size_t read = 0;
-  for (int task = 0; task < 3; ++task)
-    for (const store::StoredPath& path :
-         store.read_paths(panda, "sweep_" + std::to_string(task), {.limit = 100'000'000})) {
-      ++read;
-      paths.emplace(path.path.waypoints().reshaped().begin(),
-                    path.path.waypoints().reshaped().end());
-    }
-  EXPECT_EQ(read, status.paths);
-  audit.repeated = read - paths.size();
-  audit.pathless = contents.size() - paths.size();
-  return audit;
-}
-
 TEST_F(FleetKill, WhatWasReportedIsInTheStoreOnceWhoeverDies) {
   const int kills = is_long_run() ? 300 : 20;
   std::mt19937_64 generator(kSeed);
@@ -150,13 +107,9 @@ TEST_F(FleetKill, WhatWasReportedIsInTheStoreOnceWhoeverDies) {
   EXPECT_EQ(check.problems, 0U) << (check.messages.empty() ? "" : check.messages.front());
   EXPECT_EQ(check.damaged_paths, 0U);
   const ReportLedger ledger = read_ledgers();
-  const Audit found =
-      audit(*store::open_sqlite_store(store_), model_chain("panda").digest(), ledger);
-  EXPECT_EQ(found.lost, 0U);
-  EXPECT_EQ(found.wrong, 0U);
-  EXPECT_EQ(found.unknown, 0U);
-  EXPECT_EQ(found.repeated, 0U);
-  EXPECT_EQ(found.pathless, 0U);
+  const FleetAudit found =
+      audit_fleet(*store::open_sqlite_store(store_), model_chain("panda").digest(), ledger);
+  expect_nothing_wrong(found);
   EXPECT_GT(ledger.accepted.size(), 100U);
   std::cout << kills << " kills, " << server_kills_ << " of them of the server; accepted "
             << ledger.accepted.size() << " reports, stored " << found.stored << '\n';

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "server/store/store.hpp"
 
 /// A client process that reports as fast as it can and keeps a ledger of it.
 namespace kinship::test {
@@ -25,11 +26,25 @@ struct ReportLedger {
   void read(const std::filesystem::path& file);  ///< adds what the file says
 };
 
+/// What is wrong with a store in the end, as counts.
+struct FleetAudit {
+  std::size_t stored = 0;    ///< reports that clients began
+  std::size_t lost = 0;      ///< accepted, and not there
+  std::size_t wrong = 0;     ///< there, and not as reported
+  std::size_t unknown = 0;   ///< there, and nobody's
+  std::size_t repeated = 0;  ///< paths with the content of another one
+  std::size_t pathless = 0;  ///< contents that were reported solved, without a path
+};
+
+FleetAudit audit_fleet(const store::Store& store, const Digest& panda, const ReportLedger& ledger);
+/// Of these only `stored` may be other than 0.
+void expect_nothing_wrong(const FleetAudit& audit);
+
 /// The main function of the client process: registers the Panda and reports numbers upwards from
-/// `first`, every eighth of the last ones once more, until SIGTERM. Then delivers what is pending
-/// and prints "pending N refused N".
+/// `first`, every eighth of the last ones once more, with pauses between them, until SIGTERM. Then
+/// delivers what is pending and prints "pending N refused N".
 ///
-///   DOMAIN OUTBOX LEDGER FIRST
+///   DOMAIN OUTBOX LEDGER FIRST PAUSE_MS [CREDENTIALS]
 int run_reporting_client(const std::vector<std::string>& arguments);
 
 }  // namespace kinship::test

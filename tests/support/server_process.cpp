@@ -130,6 +130,13 @@ void Program::kill() {
   wait();
 }
 
+bool Program::has_ended() const {
+  siginfo_t state{};
+  return !is_running_ ||
+         (waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+          state.si_pid != 0);
+}
+
 int Program::wait() {
   if (is_running_)
     waitpid(pid_, &status_, 0);

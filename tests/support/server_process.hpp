@@ -32,6 +32,7 @@ class Program {
   bool has_output_within(std::chrono::milliseconds patience) const;
   void signal(int number) const;
   void kill();  ///< SIGKILL; returns when it is gone
+  bool has_ended() const;
 
   /// Waits for its end. \return exit code, or 128 + the signal that ended it.
   int wait();
