@@ -2,8 +2,9 @@
 // configurations, preparation, search. Beside it uniform planning, and the retreat, which needs no
 // experience; both by the same steps.
 //
-//   recall_bench STUDY [ROBOT...] [--set tuning|test] [--uniform]
+//   recall_bench STUDY|DIR [ROBOT...] [--set tuning|test] [--uniform] [--kind KIND]
 //
+// DIR: problem files of one's own (problem_sets.hpp).
 // --uniform: uniform planning alone: how dear a study is.
 //
 // own: the robot's own learning instances, solved uniformly. first day: the learning instances of
@@ -12,6 +13,7 @@
 // free. Where no path is free, the retreat plans.
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -33,6 +35,7 @@
 #include "robots/recall/recall.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/problem_sets.hpp"
 #include "tests/support/places.hpp"
 
 namespace kinship::bench {
@@ -325,14 +328,21 @@ void print_dearness(const Robot& robot, const experiments::Study& study, const s
          .note = note});
 }
 
+std::string name_of(const experiments::StudyRobot& robot) {
+  return std::filesystem::path(robot.model).filename();
+}
+
 /// The robots of a study.
 class Fleet {
  public:
   explicit Fleet(const experiments::Study& study) : study_(study) {
     for (const experiments::StudyRobot& placed : study.robots) {
-      models::LoadedRobot loaded =
-          models::load_robot({.source = test::source_dir() + "/robots/models/" + placed.model})
-              .value_or_throw();
+      models::RobotArguments arguments;
+      arguments.source = test::source_dir() + "/robots/models";
+      arguments.source /= placed.model;
+      if (std::filesystem::exists(arguments.source / "robot.srdf"))
+        arguments.srdf = arguments.source / "robot.srdf";
+      models::LoadedRobot loaded = models::load_robot(arguments).value_or_throw();
       guided::PlannedRobot planned(loaded.chain, loaded.shapes);
       auto draw = study.make_instances(loaded, placed);
       robots_.push_back(
@@ -343,7 +353,7 @@ class Fleet {
   /// Own experience, and that of the next robot, on a set of instances; or uniform planning
   /// alone.
   void compare_all(std::size_t robot, experiments::InstanceSet set, bool is_uniform) const {
-    const std::string name = study_.name + " " + study_.robots[robot].model;
+    const std::string name = study_.name + " " + name_of(study_.robots[robot]);
     const auto tests = draw(robot, set);
     if (is_uniform) {
       print_dearness(*robots_[robot], study_, name, tests);
@@ -396,16 +406,30 @@ int main(int argc, char** argv) {
   using namespace kinship;
   std::vector<std::string> words(argv + 1, argv + argc);
   const bool is_uniform = std::erase(words, "--uniform") > 0;
-  auto set = experiments::InstanceSet::Tuning;
-  if (const auto at = std::ranges::find(words, "--set"); at != words.end()) {
-    set = experiments::parse_instance_set(at[1]);
+  const auto take = [&](const std::string& name) {
+    const auto at = std::ranges::find(words, name);
+    if (at == words.end())
+      return std::string();
+    const std::string value = at[1];
     words.erase(at, at + 2);
-  }
-  for (const experiments::Study* study : experiments::find_studies(words.at(0))) {
-    const bench::Fleet fleet(*study);
-    for (std::size_t robot = 0; robot < study->robots.size(); ++robot)
-      if (words.size() == 1 || std::ranges::find(words.begin() + 1, words.end(),
-                                                 study->robots[robot].model) != words.end())
-        fleet.compare_all(robot, set, is_uniform);
+    return value;
+  };
+  const std::string set = take("--set"), kind = take("--kind");
+  std::vector<experiments::Study> studies;
+  if (std::filesystem::is_directory(words.at(0)))
+    studies = bench::studies_of(words.at(0));
+  else
+    for (const experiments::Study* study : experiments::find_studies(words.at(0)))
+      studies.push_back(*study);
+  for (const experiments::Study& study : studies) {
+    if (!kind.empty() && study.name != kind)
+      continue;
+    const bench::Fleet fleet(study);
+    for (std::size_t robot = 0; robot < study.robots.size(); ++robot)
+      if (words.size() == 1 ||
+          std::ranges::find(words.begin() + 1, words.end(), bench::name_of(study.robots[robot])) !=
+              words.end())
+        fleet.compare_all(robot, experiments::parse_instance_set(set.empty() ? "tuning" : set),
+                          is_uniform);
   }
 }
