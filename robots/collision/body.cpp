@@ -1,7 +1,7 @@
 #include "robots/collision/body.hpp"
 
 #include <algorithm>
-#include <map>
+#include <span>
 #include <string_view>
 
 #include "proto/types/failure.hpp"
@@ -113,40 +113,84 @@ std::vector<std::vector<int>> tree_edges(const std::vector<kinematics::ChainLink
   return edges;
 }
 
-/// Which pairs of some bodies may touch, by their indices: there are many pairs, and few of these.
+/// Which pairs of some bodies may touch, by their indices, and for two links by the links', which
+/// have many bodies: there are many pairs, and few of these.
 class Permissions {
  public:
   Permissions(const std::vector<Body>& bodies, const Surroundings& surroundings)
-      : is_named_(bodies.size(), false) {
-    std::map<std::string_view, std::vector<std::size_t>> named;
+      : bodies_(bodies), is_named_(bodies.size(), false) {
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      named[bodies[i].name].push_back(i);
+      names_.emplace_back(bodies[i].name, i);
+    std::ranges::sort(names_);
     for (const auto& [a, b] : surroundings.allowed_collisions)
-      for (const std::size_t i : named[a])
-        for (const std::size_t j : named[b])
-          permit(i, j);
+      permit_all(named(a), named(b));
     for (std::size_t i = 0; i < bodies.size(); ++i)
       for (const std::string& link : bodies[i].touch_links)
-        for (const std::size_t j : named[link])
-          if (bodies[j].kind == BodyKind::Link)
-            permit(i, j);
-    std::sort(permitted_.begin(), permitted_.end());
+        for (const Named& one : named(link))
+          if (bodies[one.second].kind == BodyKind::Link)
+            permit(i, one.second);
+    std::ranges::sort(links_);
+    std::ranges::sort(permitted_);
   }
 
   bool may_touch(std::size_t i, std::size_t j) const {
-    return is_named_[i] && is_named_[j] &&
-           std::binary_search(permitted_.begin(), permitted_.end(), BodyPair(std::minmax(i, j)));
+    if (!is_named_[i] || !is_named_[j])
+      return false;
+    return are_links(i, j) ? std::ranges::binary_search(links_, link_pair(i, j))
+                           : std::ranges::binary_search(permitted_, BodyPair(std::minmax(i, j)));
   }
 
  private:
+  using Named = std::pair<std::string_view, std::size_t>;
+
+  std::span<const Named> named(std::string_view name) const {
+    const auto begin = std::ranges::lower_bound(names_, Named(name, 0));
+    const auto end =
+        std::find_if(begin, names_.end(), [&](const Named& other) { return other.first != name; });
+    return {begin, end};
+  }
+  bool are_links(std::size_t i, std::size_t j) const {
+    return bodies_[i].kind == BodyKind::Link && bodies_[j].kind == BodyKind::Link;
+  }
+  std::pair<int, int> link_pair(std::size_t i, std::size_t j) const {
+    return std::minmax(bodies_[i].link, bodies_[j].link);
+  }
+
+  void permit_all(std::span<const Named> some, std::span<const Named> others) {
+    if (some.empty() || others.empty())
+      return;
+    if (are_links(some.back().second, others.back().second)) {  // all: links come first
+      links_.push_back(link_pair(some.back().second, others.back().second));
+      for (const std::span<const Named> both : {some, others})
+        for (const Named& one : both)
+          is_named_[one.second] = true;
+      return;
+    }
+    for (const Named& one : some)
+      for (const Named& other : others)
+        permit(one.second, other.second);
+  }
   void permit(std::size_t i, std::size_t j) {
-    permitted_.emplace_back(std::minmax(i, j));
+    if (are_links(i, j))
+      links_.push_back(link_pair(i, j));
+    else
+      permitted_.emplace_back(std::minmax(i, j));
     is_named_[i] = is_named_[j] = true;
   }
 
-  std::vector<bool> is_named_;       // in a pair
-  std::vector<BodyPair> permitted_;  // first <= second, ascending
+  const std::vector<Body>& bodies_;
+  std::vector<Named> names_;                // ascending
+  std::vector<bool> is_named_;              // in a pair
+  std::vector<std::pair<int, int>> links_;  // first <= second, ascending
+  std::vector<BodyPair> permitted_;         // the same
 };
+
+/// Links come first.
+std::size_t first_of_no_link(const std::vector<Body>& bodies) {
+  return static_cast<std::size_t>(
+      std::ranges::find_if(bodies, [](const Body& body) { return body.kind != BodyKind::Link; }) -
+      bodies.begin());
+}
 
 }  // namespace
 
@@ -264,24 +308,38 @@ LinkPairs unchecked_links(const std::vector<Body>& bodies, const kinematics::Cha
   return pairs;
 }
 
-std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const LinkPairs& unchecked,
+std::vector<BodyPair> checked_links(const std::vector<Body>& links, const LinkPairs& unchecked) {
+  std::vector<BodyPair> pairs;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    for (std::size_t j = i + 1; j < links.size(); ++j)
+      if (links[i].joint != links[j].joint &&
+          !unchecked.contains(std::minmax(links[i].link, links[j].link)))
+        pairs.emplace_back(i, j);
+  return pairs;
+}
+
+std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies,
+                                   const std::vector<BodyPair>& links,
                                    const Surroundings& surroundings) {
   const Permissions permissions(bodies, surroundings);
   std::vector<std::vector<BodyPair>> of_joint;  // by the last joint that moves either
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-      const Body &a = bodies[i], &b = bodies[j];
-      if (a.joint == b.joint)
-        continue;
-      const bool links = a.kind == BodyKind::Link && b.kind == BodyKind::Link;
-      if (links && (!surroundings.checks_links || unchecked.count(std::minmax(a.link, b.link)) > 0))
-        continue;
-      if (permissions.may_touch(i, j))
-        continue;
-      const auto joint = static_cast<std::size_t>(std::max(a.joint, b.joint));
-      of_joint.resize(std::max(of_joint.size(), joint + 1));
-      of_joint[joint].emplace_back(i, j);
-    }
+  const auto add = [&](std::size_t i, std::size_t j) {
+    if (permissions.may_touch(i, j))
+      return;
+    const auto joint = static_cast<std::size_t>(std::max(bodies[i].joint, bodies[j].joint));
+    of_joint.resize(std::max(of_joint.size(), joint + 1));
+    of_joint[joint].emplace_back(i, j);
+  };
+  const std::size_t others = first_of_no_link(bodies);
+  auto link = links.begin();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (; link != links.end() && link->first == i; ++link)
+      if (surroundings.checks_links)
+        add(i, link->second);
+    for (std::size_t j = std::max(i + 1, others); j < bodies.size(); ++j)
+      if (bodies[i].joint != bodies[j].joint)
+        add(i, j);
+  }
   std::vector<BodyPair> pairs;
   for (auto joint = of_joint.rbegin(); joint != of_joint.rend(); ++joint)
     pairs.insert(pairs.end(), joint->begin(), joint->end());
@@ -292,13 +350,12 @@ std::vector<BodyPair> standing_pairs(const std::vector<Body>& bodies,
                                      const Surroundings& surroundings) {
   const Permissions permissions(bodies, surroundings);
   std::vector<BodyPair> pairs;
+  const std::size_t others = first_of_no_link(bodies);
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-      const Body &a = bodies[i], &b = bodies[j];
-      if (a.joint < 0 && b.joint < 0 && a.kind != BodyKind::Obstacle &&
-          b.kind == BodyKind::Obstacle && !permissions.may_touch(i, j))
-        pairs.emplace_back(i, j);
-    }
+    if (bodies[i].joint < 0 && bodies[i].kind != BodyKind::Obstacle)
+      for (std::size_t j = std::max(i + 1, others); j < bodies.size(); ++j)
+        if (bodies[j].kind == BodyKind::Obstacle && !permissions.may_touch(i, j))
+          pairs.emplace_back(i, j);
   return pairs;
 }
 

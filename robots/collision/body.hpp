@@ -68,10 +68,15 @@ std::vector<std::pair<int, int>> neighbouring_links(const kinematics::Chain& cha
 LinkPairs unchecked_links(const std::vector<Body>& bodies, const kinematics::Chain& chain,
                           const geometry::RobotShapes& shapes);
 
+/// The pairs of links' bodies that a configuration can bring together or apart, ascending.
+std::vector<BodyPair> checked_links(const std::vector<Body>& links, const LinkPairs& unchecked);
+
 /// The pairs of bodies that a configuration can bring together or apart and that may not touch.
 /// Those of the last joints come first: they move most and collide most.
-/// \param unchecked  of links.
-std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const LinkPairs& unchecked,
+/// \param bodies  those of links first.
+/// \param links   of these, see checked_links().
+std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies,
+                                   const std::vector<BodyPair>& links,
                                    const Surroundings& surroundings);
 
 /// The pairs of a standing part of the robot and an obstacle that may not touch.

@@ -26,7 +26,7 @@ CollisionWorld::CollisionWorld(const RobotSolids& robot, const Surroundings& sur
     : robot_(robot),
       bodies_(bodies_among(robot, surroundings)),
       T_base_bodies_(standing_poses(bodies_)),
-      pairs_(moving_pairs(bodies_, robot.parts().unchecked, surroundings)),
+      pairs_(moving_pairs(bodies_, robot.parts().checked, surroundings)),
       standing_pairs_(standing_pairs(bodies_, surroundings)),
       lanes_(robot.parts().chain, bodies_, pairs_) {
   for (const BodyPair& pair : standing_pairs_)

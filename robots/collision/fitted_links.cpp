@@ -19,7 +19,7 @@ class TouchingLinks {
                 const LinkPairs& unchecked)
       : chain_(chain),
         bodies_(link_bodies(chain, shapes)),
-        pairs_(moving_pairs(bodies_, unchecked, {})),
+        pairs_(moving_pairs(bodies_, checked_links(bodies_, unchecked), {})),
         T_base_bodies_(standing_poses(bodies_)) {}
 
   LinkPairs at(const Eigen::VectorXd& q) {

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <map>
+#include <vector>
 
 #include "proto/types/turn.hpp"
 #include "robots/collision/lane_world.hpp"
@@ -66,7 +67,11 @@ class LaneWorldMaker {
  public:
   LaneWorldMaker(LaneWorld& world, const kinematics::Chain& chain, const std::vector<Body>& bodies,
                  const std::vector<BodyPair>& pairs)
-      : world_(world), chain_(chain), bodies_(bodies), pairs_(pairs) {}
+      : world_(world),
+        chain_(chain),
+        bodies_(bodies),
+        pairs_(pairs),
+        in_lanes_(bodies.size(), -1) {}
 
   void make() {
     world_.has_room_ = chain_.moving_joints() <= kLaneJoints;
@@ -230,18 +235,22 @@ class LaneWorldMaker {
 
   /// Bodies that move and are in a pair, the last joints' first: they collide most.
   void add_moving() {
-    std::map<std::pair<int, std::size_t>, std::size_t> order;  // joint from the end, body
+    std::vector<bool> is_in_a_pair(bodies_.size(), false);
     for (const auto& [first, second] : pairs_)
-      for (const std::size_t body : {first, second})
-        if (bodies_[body].joint >= 0)
-          order.emplace(std::pair(-bodies_[body].joint, body), body);
+      is_in_a_pair[first] = is_in_a_pair[second] = true;
+    std::vector<std::size_t> order;
+    for (std::size_t body = 0; body < bodies_.size(); ++body)
+      if (is_in_a_pair[body] && bodies_[body].joint >= 0)
+        order.push_back(body);
+    std::ranges::stable_sort(order, std::greater(),
+                             [this](std::size_t body) { return bodies_[body].joint; });
     world_.has_room_ = order.size() <= kLaneBodies;
-    for (const auto& [key, index] : order) {
+    for (const std::size_t index : order) {
       const Body& body = bodies_[index];
       const Eigen::Isometry3d T =
           T_turned_moving_[static_cast<std::size_t>(body.joint)] * body.T_joint_body;
       const std::vector<CoverSphere>& cover = body.solid.cover();
-      moving_.emplace(index, static_cast<int>(world_.bodies_.size()));
+      in_lanes_[index] = static_cast<int>(world_.bodies_.size());
       world_.index_of_body_.push_back(index);
       world_.bodies_.push_back({.joint = body.joint,
                                 .form = lane_form(body.solid.shape(), T),
@@ -262,7 +271,7 @@ class LaneWorldMaker {
     for (const auto& [first, second] : pairs_)
       for (const std::size_t index : {first, second}) {
         const Body& body = bodies_[index];
-        if (body.joint >= 0 || standing_.count(index) > 0)
+        if (body.joint >= 0 || in_lanes_[index] >= 0)
           continue;
         LaneObstacle obstacle{};
         const Eigen::Isometry3d T = T_scene_base_ * body.T_joint_body;
@@ -272,7 +281,7 @@ class LaneWorldMaker {
           obstacle.first = add_spheres(T, body.solid.cover());
           obstacle.count = static_cast<int>(body.solid.cover().size());
         }
-        standing_.emplace(index, static_cast<int>(world_.obstacles_.size()));
+        in_lanes_[index] = static_cast<int>(world_.obstacles_.size());
         world_.obstacles_.push_back(obstacle);
         world_.index_of_obstacle_.push_back(index);
         const Eigen::Vector3d half = T.linear().cwiseAbs() * body.solid.half_extents_m();
@@ -302,13 +311,13 @@ class LaneWorldMaker {
   void add_pairs() {
     std::vector<std::vector<int>> obstacles(world_.bodies_.size()), others(world_.bodies_.size());
     for (const auto& [first, second] : pairs_) {
-      const auto a = moving_.find(first), b = moving_.find(second);
-      if (a == moving_.end() || b == moving_.end()) {
-        const int moving = a == moving_.end() ? b->second : a->second;
-        obstacles[static_cast<std::size_t>(moving)].push_back(
-            standing_.at(a == moving_.end() ? first : second));
+      const int a = in_lanes_[first], b = in_lanes_[second];
+      if (bodies_[first].joint < 0 || bodies_[second].joint < 0) {
+        const auto [moving, standing] =
+            bodies_[first].joint < 0 ? std::pair(b, a) : std::pair(a, b);
+        obstacles[static_cast<std::size_t>(moving)].push_back(standing);
       } else {
-        const auto [before, after] = std::minmax(a->second, b->second);
+        const auto [before, after] = std::minmax(a, b);
         others[static_cast<std::size_t>(after)].push_back(before);
       }
     }
@@ -338,9 +347,9 @@ class LaneWorldMaker {
   Eigen::Vector3d first_joint_ = Eigen::Vector3d::Zero();
   double slack_m_ = 0;
   Eigen::Isometry3d T_scene_base_ = Eigen::Isometry3d::Identity();
-  std::vector<Eigen::AlignedBox3d> boxes_;        // around each of the lane's obstacles
-  std::size_t blocks_ = 0;                        // of kLanes obstacles
-  std::map<std::size_t, int> moving_, standing_;  // body -> lane's body, obstacle
+  std::vector<Eigen::AlignedBox3d> boxes_;  // around each of the lane's obstacles
+  std::size_t blocks_ = 0;                  // of kLanes obstacles
+  std::vector<int> in_lanes_;  // of each body: the lane's body or obstacle; -1: it is in no pair
 };
 
 LaneWorld::LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bodies,

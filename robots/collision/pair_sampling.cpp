@@ -213,7 +213,8 @@ std::vector<SampledPair> sample_pairs(const kinematics::Chain& chain,
 
 LinkPairs links_always_touching(const RobotSolids::Parts& robot, const TouchSamples& samples) {
   std::map<std::pair<int, int>, NamedPairs> named;
-  for (const BodyPair& pair : moving_pairs(robot.bodies, robot.unchecked, {}))
+  for (const BodyPair& pair :
+       moving_pairs(robot.bodies, checked_links(robot.bodies, robot.unchecked), {}))
     named[std::minmax(robot.bodies[pair.first].link, robot.bodies[pair.second].link)]
         .pairs.push_back(pair);
   return touching_everywhere(robot.chain, robot.bodies, std::move(named), samples);
@@ -235,7 +236,7 @@ std::set<std::pair<std::string, std::string>> always_touching(const RobotSolids&
       always.insert(name_of(pair));
   }
   std::map<Names, NamedPairs> named;
-  for (const BodyPair& pair : moving_pairs(bodies, robot.parts().unchecked, surroundings))
+  for (const BodyPair& pair : moving_pairs(bodies, robot.parts().checked, surroundings))
     if (Names name = name_of(pair); !always.contains(name))
       named[std::move(name)].pairs.push_back(pair);
   always.merge(touching_everywhere(robot.parts().chain, bodies, std::move(named), samples));

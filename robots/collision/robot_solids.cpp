@@ -7,11 +7,12 @@
 namespace kinship::collision {
 
 RobotSolids::RobotSolids(const kinematics::Chain& chain, const geometry::RobotShapes& shapes) {
-  Parts parts{chain, link_bodies(chain, shapes), {}, {}};
+  Parts parts{chain, link_bodies(chain, shapes), {}, {}, {}};
   parts.unchecked = unchecked_links(parts.bodies, chain, shapes);
   if (shapes.never_colliding.empty())
     parts.always_touching = links_always_touching(parts, kLinkSamples);
   parts.unchecked.insert(parts.always_touching.begin(), parts.always_touching.end());
+  parts.checked = checked_links(parts.bodies, parts.unchecked);
   parts_ = std::make_shared<const Parts>(std::move(parts));
 }
 

@@ -23,7 +23,8 @@ class RobotSolids {
     kinematics::Chain chain;
     std::vector<Body> bodies;  ///< of the links
     LinkPairs unchecked;
-    LinkPairs always_touching;  ///< of these, the ones found in random configurations
+    LinkPairs always_touching;      ///< of these, the ones found in random configurations
+    std::vector<BodyPair> checked;  ///< checked_links()
   };
   const Parts& parts() const noexcept { return *parts_; }
 

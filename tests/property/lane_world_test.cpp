@@ -68,7 +68,7 @@ void try_in_scenes(const Robot& robot, int batches, Random& random) {
     add_surroundings(robot.chain, around, bodies);
     allow_standing_contacts(bodies, around);
     CollisionWorld world(solids, around);
-    LaneWorld lanes(robot.chain, bodies, moving_pairs(bodies, solids.parts().unchecked, around));
+    LaneWorld lanes(robot.chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
     Eigen::MatrixXd qs(robot.chain.dof(), kLanes);
     for (int batch = 0; batch < batches; ++batch) {
       // Beyond the limits too, and far round.
@@ -121,7 +121,7 @@ TEST(LaneWorld, ABarIsNotFreeOfTheRimThatItTouches) {
   CollisionWorld world(solids, around);
   std::vector<Body> bodies = solids.parts().bodies;
   add_surroundings(chain, around, bodies);
-  LaneWorld lanes(chain, bodies, moving_pairs(bodies, solids.parts().unchecked, around));
+  LaneWorld lanes(chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
   int touching = 0;
   for (double angle = -4e-4; angle <= 4e-4; angle += 1e-5) {
     Eigen::MatrixXd qs(2, kLanes);
@@ -189,7 +189,7 @@ TEST(LaneWorld, NearlyParallelBoxesTouchWhereFclSaysSo) {
   CollisionWorld world(solids, around);
   std::vector<Body> bodies = solids.parts().bodies;
   add_surroundings(chain, around, bodies);
-  LaneWorld lanes(chain, bodies, moving_pairs(bodies, solids.parts().unchecked, around));
+  LaneWorld lanes(chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
   Random random;
   Counts counts;
   for (int batch = 0; batch < 3000; ++batch) {
