@@ -173,8 +173,10 @@ class Planning {
     options.track_check_fraction = settings_.tracks.check_fraction;
     options.recorder = recorder_;
     const double begin_s = planning::thread_time_s();
-    const auto sampler = make_query_sampler(robot_.chain, {T_task_base_, bounds_, start_, goals},
-                                            query.guidance, settings_, planned.result);
+    const auto sampler = make_query_sampler(
+        robot_.chain,
+        {T_task_base_, bounds_, start_, goals, {}, [this] { return recall::whole(failed_); }},
+        query.guidance, settings_, planned.result);
     planned.result.planner = planner_text(planner, sampler);
     planned.result.not_planned.reset();
     planning::PlanSummary summary = search(planner, start_, goals, sampler, options);
@@ -215,6 +217,7 @@ class Planning {
     result.recall_tries = summary.tries;
     result.projections = constraint_ ? constraint_->projections() : 0;
     result.planning_time_s = planning::thread_time_s() - begin_s;
+    failed_ = std::move(summary.failed);
     if (!summary.waypoints)
       return false;
     result.solved = true;
@@ -439,6 +442,7 @@ class Planning {
   Eigen::VectorXd start_;    // dof; from find_start on
   Eigen::Matrix2Xd bounds_;  // around it
   std::optional<planning::RegionConstraint> constraint_;
+  std::vector<recall::Warp> failed_;  // recalled paths; they borrow the guidance
   planning::SearchRecorder* recorder_;
   std::mt19937_64 generator_;
   double shortening_s_ = 0;
