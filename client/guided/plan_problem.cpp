@@ -207,7 +207,7 @@ class Planning {
       query.T_base_goal = T_task_base_.inverse() * *problem_.T_task_goal;
     query.T_task_anchors =
         recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
-    query.constraint = constraint_ ? &*constraint_ : nullptr;
+    query.constraint = constraint_or_null();
     recall::RecallOptions options{.step = settings_.resolution, .max_checks = settings_.max_checks};
     options.trust = from.recall_trust;
     recall::RecallSummary summary = recall::recall(*guidance.recall, query, is_free_, options);
@@ -260,10 +260,11 @@ class Planning {
                                                  ompl, generator_)
                  : ompl_planners::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
     }
-    return constraint_ ? planning::plan_cbirrt2(start, goals, {is_free_, *constraint_}, sampler,
-                                                options, generator_)
-                       : planning::plan_birrt(start, goals, is_free_, sampler, options, generator_);
+    return planning::plan_trees(start, goals, {is_free_, constraint_or_null()}, sampler, options,
+                                generator_);
   }
+
+  planning::RegionConstraint* constraint_or_null() { return constraint_ ? &*constraint_ : nullptr; }
 
   /// \return whether there is one; the result says which, or why not.
   bool find_start(ProblemResult& result) {
@@ -328,9 +329,7 @@ class Planning {
       const double begin_s = planning::thread_time_s();
       std::mt19937_64 generator = generator_;  // each time alike
       planning::ShortcutSummary shortened =
-          constraint_
-              ? planning::shortcut_constrained(waypoints, is_free, *constraint_, options, generator)
-              : planning::shortcut(waypoints, is_free, options, generator);
+          planning::shortcut(waypoints, is_free, constraint_or_null(), options, generator);
       shortening_s_ += planning::thread_time_s() - begin_s;
       return shortened;
     };

@@ -159,11 +159,9 @@ Rehearsing::Cost Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Guide g
   options.max_checks = options_.max_checks;
   std::mt19937_64 generator(seed);
   const planning::PlanSummary summary =
-      posed.constraint
-          ? planning::plan_cbirrt2(posed.query.start, posed.query.goals,
-                                   {is_free, *posed.constraint}, guided.sampler, options, generator)
-          : planning::plan_birrt(posed.query.start, posed.query.goals, is_free, guided.sampler,
-                                 options, generator);
+      planning::plan_trees(posed.query.start, posed.query.goals,
+                           {is_free, posed.constraint ? &*posed.constraint : nullptr},
+                           guided.sampler, options, generator);
   return {static_cast<double>(summary.collision_checks), planning::thread_time_s() - begin_s,
           summary.waypoints.has_value(),
           summary.tracks_followed > 0 && summary.found_by != FoundBy::Track};

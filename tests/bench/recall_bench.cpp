@@ -117,11 +117,9 @@ class Queries {
     const auto sampler =
         planning::guided_sampler(robot_.planned.chain, query, nullptr, nothing_, {.guide = guide})
             .sampler;
-    return item.constraint
-               ? planning::plan_cbirrt2(item.problem.start, goals, {item.is_free, *item.constraint},
-                                        sampler, options, generator)
-               : planning::plan_birrt(item.problem.start, goals, item.is_free, sampler, options,
-                                      generator);
+    return planning::plan_trees(item.problem.start, goals,
+                                {item.is_free, item.constraint ? &*item.constraint : nullptr},
+                                sampler, options, generator);
   }
 
   recall::RecallSummary recall(Item& item, const recall::RecallGuide& guide) const {
