@@ -178,6 +178,7 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
     if (is_way_free(*warp, is_free, options.step, summary))
       break;
     ranking.fail();
+    summary.failed.reserve(kMostFailed);
     if (summary.failed.size() < kMostFailed)
       summary.failed.push_back(*std::move(warp));
   }
