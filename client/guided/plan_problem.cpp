@@ -173,8 +173,10 @@ class Planning {
     options.track_check_fraction = settings_.tracks.check_fraction;
     options.recorder = recorder_;
     const double begin_s = planning::thread_time_s();
-    const auto sampler = make_query_sampler(robot_.chain, {T_task_base_, bounds_, start_, goals},
-                                            query.guidance, settings_, planned.result);
+    const auto sampler = make_query_sampler(
+        robot_.chain,
+        {T_task_base_, bounds_, start_, goals, {}, [this] { return recall::whole(failed_); }},
+        query.guidance, settings_, planned.result);
     planned.result.planner = planner_text(planner, sampler);
     planned.result.not_planned.reset();
     planning::PlanSummary summary = search(planner, start_, goals, sampler, options);
@@ -205,7 +207,7 @@ class Planning {
       query.T_base_goal = T_task_base_.inverse() * *problem_.T_task_goal;
     query.T_task_anchors =
         recall::find_anchors(guidance.recall->library().anchors, problem_.scene.objects);
-    query.constraint = constraint_ ? &*constraint_ : nullptr;
+    query.constraint = constraint_or_null();
     recall::RecallOptions options{.step = settings_.resolution, .max_checks = settings_.max_checks};
     options.trust = from.recall_trust;
     recall::RecallSummary summary = recall::recall(*guidance.recall, query, is_free_, options);
@@ -215,6 +217,7 @@ class Planning {
     result.recall_tries = summary.tries;
     result.projections = constraint_ ? constraint_->projections() : 0;
     result.planning_time_s = planning::thread_time_s() - begin_s;
+    failed_ = std::move(summary.failed);
     if (!summary.waypoints)
       return false;
     result.solved = true;
@@ -257,10 +260,11 @@ class Planning {
                                                  ompl, generator_)
                  : ompl_planners::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
     }
-    return constraint_ ? planning::plan_cbirrt2(start, goals, {is_free_, *constraint_}, sampler,
-                                                options, generator_)
-                       : planning::plan_birrt(start, goals, is_free_, sampler, options, generator_);
+    return planning::plan_trees(start, goals, {is_free_, constraint_or_null()}, sampler, options,
+                                generator_);
   }
+
+  planning::RegionConstraint* constraint_or_null() { return constraint_ ? &*constraint_ : nullptr; }
 
   /// \return whether there is one; the result says which, or why not.
   bool find_start(ProblemResult& result) {
@@ -325,9 +329,7 @@ class Planning {
       const double begin_s = planning::thread_time_s();
       std::mt19937_64 generator = generator_;  // each time alike
       planning::ShortcutSummary shortened =
-          constraint_
-              ? planning::shortcut_constrained(waypoints, is_free, *constraint_, options, generator)
-              : planning::shortcut(waypoints, is_free, options, generator);
+          planning::shortcut(waypoints, is_free, constraint_or_null(), options, generator);
       shortening_s_ += planning::thread_time_s() - begin_s;
       return shortened;
     };
@@ -439,6 +441,7 @@ class Planning {
   Eigen::VectorXd start_;    // dof; from find_start on
   Eigen::Matrix2Xd bounds_;  // around it
   std::optional<planning::RegionConstraint> constraint_;
+  std::vector<recall::Warp> failed_;  // recalled paths; they borrow the guidance
   planning::SearchRecorder* recorder_;
   std::mt19937_64 generator_;
   double shortening_s_ = 0;

@@ -224,8 +224,11 @@ class BidirectionalSearch {
     const std::uint64_t before = budget_.checks();
     const Eigen::VectorXd root = track.configurations.col(0);
     Extension there{goal_tree_.nearest(root), true};
-    if (goal_tree_.node(there.node) != root)  // this goal collides
-      return std::nullopt;
+    if (goal_tree_.node(there.node) != root) {
+      if (!track.is_goal_free)  // it collides
+        return std::nullopt;
+      there.node = goal_tree_.add(root, -1);
+    }
     for (Eigen::Index i = 1; i < track.configurations.cols() && there.reached; ++i)
       there = steering_.extend(goal_tree_, there.node, track.configurations.col(i), Aim::Sample,
                                budget_);

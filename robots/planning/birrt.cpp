@@ -60,4 +60,13 @@ PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
   });
 }
 
+PlanSummary plan_trees(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                       const Freedom& freedom, const ConfigurationSampler& sampler,
+                       const BirrtOptions& options, std::mt19937_64& generator) {
+  return freedom.constraint != nullptr
+             ? plan_cbirrt2(start, goals, {freedom.is_free, *freedom.constraint}, sampler, options,
+                            generator)
+             : plan_birrt(start, goals, freedom.is_free, sampler, options, generator);
+}
+
 }  // namespace kinship::planning

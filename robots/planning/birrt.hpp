@@ -77,4 +77,15 @@ PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
                          const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
                          const BirrtOptions& options, std::mt19937_64& generator);
 
+/// The conditions on the configurations of a plan; borrows both.
+struct Freedom {
+  const IsFree& is_free;
+  RegionConstraint* constraint = nullptr;  ///< as of ConstrainedFreedom; null: none
+};
+
+/// plan_cbirrt2 along a constraint, plan_birrt without one.
+PlanSummary plan_trees(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                       const Freedom& freedom, const ConfigurationSampler& sampler,
+                       const BirrtOptions& options, std::mt19937_64& generator);
+
 }  // namespace kinship::planning

@@ -273,17 +273,31 @@ void QueryTracks::make_some() {
     choices_ = guide_->choose(query_, options_);
   const std::size_t count = std::min<std::size_t>(inverse::kLanes, choices_->size() - followed_);
   for (Track& track :
-       guide_->follow(query_, std::span(*choices_).subspan(followed_, count), options_)) {
-    for (const auto& q : track.configurations.colwise())
-      configurations_.emplace_back(q);
-    tracks_.push_back(std::move(track));
-  }
+       guide_->follow(query_, std::span(*choices_).subspan(followed_, count), options_))
+    add(std::move(track));
   followed_ += count;
+}
+
+void QueryTracks::add(Track track) {
+  for (const auto& q : track.configurations.colwise())
+    configurations_.emplace_back(q);
+  tracks_.push_back(std::move(track));
+}
+
+void QueryTracks::add_failed_paths() {
+  for (const Eigen::MatrixXd& path : std::exchange(query_.failed_paths, {})()) {
+    Eigen::Index finite = 1;
+    while (finite < path.cols() && path.col(path.cols() - 1 - finite).allFinite())
+      ++finite;
+    add({.configurations = path.rightCols(finite).rowwise().reverse(), .is_goal_free = true});
+  }
 }
 
 const Track* QueryTracks::track(std::size_t index) {
   while (index >= tracks_.size() && (!choices_ || followed_ < choices_->size()))
     make_some();
+  if (index >= tracks_.size() && query_.failed_paths)
+    add_failed_paths();
   return index < tracks_.size() ? &tracks_[index] : nullptr;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <random>
@@ -25,6 +26,7 @@ struct PoseTrack {
 struct Track {
   Eigen::MatrixXd configurations;  ///< dof x m, 1 <= m <= n: configurations at their poses
   double gap = 0;                  ///< from the last configuration to `towards`, joint units
+  bool is_goal_free = false;       ///< its first configuration is a goal, and was found free
 };
 
 /// Follows pose tracks with an arm, each configuration from the one before, eight at a time: damped
@@ -84,6 +86,10 @@ struct TrackQuery {
   Eigen::MatrixXd goals;    ///< dof x n
   /// A stored path not to follow: the solution of this query, if the query is planned again.
   std::optional<Uuid> without = {};
+  /// Whole paths that are not free, dof x n each, from the start to a goal that was found free;
+  /// what is before a column that is not finite is left out. Asked once, when all tracks before
+  /// them have failed, and followed from their goals, too; empty: there are none.
+  std::function<std::vector<Eigen::MatrixXd>()> failed_paths = {};
 };
 
 /// Tracks for one robot's query from a task's experience: the stored ways of the hand nearest to
@@ -138,9 +144,11 @@ class QueryTracks {
 
  private:
   void make_some();
+  void add(Track track);
+  void add_failed_paths();
 
   const std::shared_ptr<const ExperienceGuide> guide_;
-  const TrackQuery query_;
+  TrackQuery query_;  // failed_paths: until they are asked
   const TrackOptions options_;
   std::optional<std::vector<ExperienceGuide::Choice>> choices_;  // not made yet
   std::size_t followed_ = 0;                                     // of the choices

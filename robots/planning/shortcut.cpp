@@ -198,4 +198,12 @@ ShortcutSummary shortcut_constrained(const Eigen::MatrixXd& waypoints, const IsF
   return summary;
 }
 
+ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
+                         RegionConstraint* constraint, const ShortcutOptions& options,
+                         std::mt19937_64& generator) {
+  return constraint != nullptr
+             ? shortcut_constrained(waypoints, is_free, *constraint, options, generator)
+             : shortcut(waypoints, is_free, options, generator);
+}
+
 }  // namespace kinship::planning

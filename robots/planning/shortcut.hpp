@@ -42,4 +42,9 @@ ShortcutSummary shortcut_constrained(const Eigen::MatrixXd& waypoints, const IsF
                                      RegionConstraint& constraint, const ShortcutOptions& options,
                                      std::mt19937_64& generator);
 
+/// shortcut_constrained along a constraint, shortcut without one. \param constraint  null: none.
+ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
+                         RegionConstraint* constraint, const ShortcutOptions& options,
+                         std::mt19937_64& generator);
+
 }  // namespace kinship::planning

@@ -54,20 +54,13 @@ std::optional<Eigen::MatrixXd> clear_path(const Eigen::MatrixXd& path,
   plan.time_limit = kNoTimeLimit;
   const planning::ConfigurationSampler sampler(bounds);
   const planning::ShortcutOptions polish{options.step, options.polish_checks};
-  const planning::PlanSummary found =
-      options.constraint != nullptr
-          ? planning::plan_cbirrt2(dense.col(first), dense.col(last),
-                                   {is_clear, *options.constraint}, sampler, plan, generator)
-          : planning::plan_birrt(dense.col(first), dense.col(last), is_clear, sampler, plan,
-                                 generator);
+  const planning::PlanSummary found = planning::plan_trees(
+      dense.col(first), dense.col(last), {is_clear, options.constraint}, sampler, plan, generator);
   if (!found.waypoints)
     return std::nullopt;
   const Eigen::MatrixXd middle =
-      options.constraint != nullptr
-          ? planning::shortcut_constrained(*found.waypoints, is_clear, *options.constraint, polish,
-                                           generator)
-                .waypoints
-          : planning::shortcut(*found.waypoints, is_clear, polish, generator).waypoints;
+      planning::shortcut(*found.waypoints, is_clear, options.constraint, polish, generator)
+          .waypoints;
   const Eigen::Index behind = dense.cols() - 1 - last;
   Eigen::MatrixXd clear(dense.rows(), first + middle.cols() + behind);
   clear << dense.leftCols(first), middle, dense.rightCols(behind);

@@ -156,10 +156,8 @@ planning::PlanSummary LibraryMaker::plan(const PosedQuery& posed, World& world,
                                    goals};
   const auto sampler =
       planning::guided_sampler(chain_, query, nullptr, no_experience_, {.guide = guide}).sampler;
-  return world.constraint
-             ? planning::plan_cbirrt2(posed.start, goals, {world.is_free, *world.constraint},
-                                      sampler, options, generator)
-             : planning::plan_birrt(posed.start, goals, world.is_free, sampler, options, generator);
+  return planning::plan_trees(posed.start, goals, {world.is_free, world.constraint_or_null()},
+                              sampler, options, generator);
 }
 
 /// A recorded answer at the steps of a plan; nothing if it does not keep the constraint.
@@ -183,10 +181,8 @@ Eigen::MatrixXd LibraryMaker::shortest(const std::vector<Eigen::MatrixXd>& answe
   for (const Eigen::MatrixXd& answer : answers) {
     std::mt19937_64 generator(answers.size());
     Eigen::MatrixXd shorter =
-        world.constraint ? planning::shortcut_constrained(answer, world.is_free, *world.constraint,
-                                                          options, generator)
-                               .waypoints
-                         : planning::shortcut(answer, world.is_free, options, generator).waypoints;
+        planning::shortcut(answer, world.is_free, world.constraint_or_null(), options, generator)
+            .waypoints;
     const double length = planning::path_length(shorter);
     if (length < least) {
       least = length;

@@ -9,6 +9,9 @@
 namespace kinship::recall {
 namespace {
 
+constexpr Eigen::Index kCoarse = 4;  // between waypoints that are checked first
+constexpr std::size_t kMostFailed = 3;
+
 /// Asks which configurations are free, many at once, until one is not.
 class Asked {
  public:
@@ -115,7 +118,6 @@ bool is_goal_free(const Warp& warp, const planning::IsFree& is_free, RecallSumma
 bool is_way_free(Warp& warp, const planning::IsFree& is_free, double step, RecallSummary& summary) {
   const Eigen::MatrixXd& path = warp.waypoints();
   Asked asked(is_free, summary.collision_checks);
-  constexpr Eigen::Index kCoarse = 4;
   for (Eigen::Index stride = kCoarse; stride >= 1; stride /= kCoarse) {
     warp.compute(stride, stride == kCoarse ? kRecallWaypoints : kCoarse);
     for (Eigen::Index i = stride; i < path.cols() - 1; i += stride)
@@ -128,6 +130,15 @@ bool is_way_free(Warp& warp, const planning::IsFree& is_free, double step, Recal
   return warp.constraint() != nullptr
              ? are_lines_free(path, is_free, *warp.constraint(), step, summary)
              : are_lines_free(path, is_free, step, summary);
+}
+
+std::vector<Eigen::MatrixXd> whole(std::vector<Warp>& failed) {
+  std::vector<Eigen::MatrixXd> paths;
+  for (Warp& warp : failed) {
+    warp.compute(1, kCoarse);
+    paths.push_back(warp.waypoints());
+  }
+  return paths;
 }
 
 RecallSummary recall(const RecallGuide& guide, const Query& query, const planning::IsFree& is_free,
@@ -167,6 +178,9 @@ RecallSummary recall(const RecallGuide& guide, const Query& query, const plannin
     if (is_way_free(*warp, is_free, options.step, summary))
       break;
     ranking.fail();
+    summary.failed.reserve(kMostFailed);
+    if (summary.failed.size() < kMostFailed)
+      summary.failed.push_back(*std::move(warp));
   }
   summary.expected = 1 - missed;
   return summary;

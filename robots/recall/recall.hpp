@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "robots/planning/is_free.hpp"
 #include "robots/recall/recall_guide.hpp"
@@ -25,8 +26,13 @@ struct RecallSummary {
   std::uint64_t collision_checks = 0;
   std::uint64_t tries = 0;
   bool is_straight_line = false;  ///< the straight line to the first goal tried was free
-  double expected = 0;            ///< chance that one of the tries works, by the ranking, 0 to 1
+  /// The first candidates that failed though their goal was free; they borrow guide and constraint.
+  std::vector<Warp> failed;
+  double expected = 0;  ///< chance that one of the tries works, by the ranking, 0 to 1
 };
+
+/// All waypoints of candidates that failed, for TrackQuery::failed_paths.
+std::vector<Eigen::MatrixXd> whole(std::vector<Warp>& failed);
 
 /// Whether a path's goal is free, and keeps the constraint. \param summary  out: checks are added.
 bool is_goal_free(const Warp& warp, const planning::IsFree& is_free, RecallSummary& summary);

@@ -103,7 +103,7 @@ class Warp {
 
   const Warper& warper_;
   const WarpedPath& path_;
-  const WarpTarget target_;
+  WarpTarget target_;  // not const: moved with the warp
   const WarpBlend& blend_;
   const std::optional<Eigen::Isometry3d> T_new_old_;
   Eigen::Isometry3d T_start_, T_goal_;  // motions of the ends, in the base link

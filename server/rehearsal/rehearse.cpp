@@ -75,18 +75,25 @@ bool Rehearsing::step() {
                  subject_.starts, Branch::Drawn);
   is_usable_[next_] = posed.has_value();
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
-  const std::optional<Cost> recalled = posed ? recall(*posed) : std::nullopt;
+  std::vector<recall::Warp> failed;
+  const std::optional<Cost> recalled = posed ? recall(*posed, failed) : std::nullopt;
   for (std::size_t i = 0; posed && i < guides_.size(); ++i) {
     TriedGuide& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first: cold caches
     if (tried.is_left)
       continue;
-    const Cost planned = plan(*posed, seed, tried.guide);
+    posed->query.failed_paths = {};
+    Cost planned = plan(*posed, seed, tried.guide);
     tried.alone.add(planned);
-    if (recalled)
-      tried.after_recall.add(recalled->is_solved
-                                 ? *recalled
-                                 : Cost{recalled->checks + planned.checks,
-                                        recalled->time_s + planned.time_s, planned.is_solved});
+    if (!recalled)
+      continue;
+    if (!recalled->is_solved && planned.has_used_tracks && !failed.empty()) {
+      posed->query.failed_paths = [&failed] { return recall::whole(failed); };
+      planned = plan(*posed, seed, tried.guide);
+    }
+    tried.after_recall.add(recalled->is_solved
+                               ? *recalled
+                               : Cost{recalled->checks + planned.checks,
+                                      recalled->time_s + planned.time_s, planned.is_solved});
   }
   ++next_;
   advance();
@@ -117,7 +124,8 @@ void Rehearsing::Tried::add(const Cost& cost) {
 }
 
 /// \return nothing if there is nothing to recall.
-std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed) const {
+std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed,
+                                                   std::vector<recall::Warp>& failed) const {
   if (!subject_.recall)
     return std::nullopt;
   const planning::TrackQuery& planned = posed.query;
@@ -130,10 +138,11 @@ std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed) const {
   const planning::IsFree is_free =
       planning::free_in(*posed.world, [this] { throw_if_stopped(options_.stop); });
   const double begin_s = planning::thread_time_s();
-  const recall::RecallSummary summary =
+  recall::RecallSummary summary =
       recall::recall(*subject_.recall, query, is_free, {.step = subject_.recorded.steps.step});
-  return Cost{static_cast<double>(summary.collision_checks), planning::thread_time_s() - begin_s,
-              summary.waypoints.has_value()};
+  const double time_s = planning::thread_time_s() - begin_s;
+  failed = std::move(summary.failed);
+  return Cost{static_cast<double>(summary.collision_checks), time_s, summary.waypoints.has_value()};
 }
 
 Rehearsing::Cost Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Guide guide) const {
@@ -150,13 +159,12 @@ Rehearsing::Cost Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Guide g
   options.max_checks = options_.max_checks;
   std::mt19937_64 generator(seed);
   const planning::PlanSummary summary =
-      posed.constraint
-          ? planning::plan_cbirrt2(posed.query.start, posed.query.goals,
-                                   {is_free, *posed.constraint}, guided.sampler, options, generator)
-          : planning::plan_birrt(posed.query.start, posed.query.goals, is_free, guided.sampler,
-                                 options, generator);
+      planning::plan_trees(posed.query.start, posed.query.goals,
+                           {is_free, posed.constraint ? &*posed.constraint : nullptr},
+                           guided.sampler, options, generator);
   return {static_cast<double>(summary.collision_checks), planning::thread_time_s() - begin_s,
-          summary.waypoints.has_value()};
+          summary.waypoints.has_value(),
+          summary.tracks_followed > 0 && summary.found_by != FoundBy::Track};
 }
 
 void Rehearsing::end_round() {

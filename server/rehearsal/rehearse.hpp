@@ -69,6 +69,7 @@ class Rehearsing {
   struct Cost {
     double checks = 0, time_s = 0;
     bool is_solved = false;
+    bool has_used_tracks = false;  // followed all of them in vain
   };
   struct Tried {
     std::vector<double> checks;  // of each plan, in the order of steps
@@ -85,7 +86,7 @@ class Rehearsing {
   };
 
   Cost plan(PosedQuery& posed, std::uint64_t seed, Guide guide) const;
-  std::optional<Cost> recall(PosedQuery& posed) const;
+  std::optional<Cost> recall(PosedQuery& posed, std::vector<recall::Warp>& failed) const;
   bool is_done() const;
   void advance();
   void end_round();

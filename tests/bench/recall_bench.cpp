@@ -103,7 +103,9 @@ class Queries {
  public:
   Queries(const Robot& robot, const experiments::Study& study) : robot_(robot), study_(study) {}
 
-  planning::PlanSummary search(Item& item, Guide guide, std::uint64_t seed) const {
+  /// \param failed  by recall, to be followed too.
+  planning::PlanSummary search(Item& item, Guide guide, std::uint64_t seed,
+                               std::vector<recall::Warp> failed = {}) const {
     const Eigen::MatrixXd goals = item.find_goals(robot_, study_.settings.max_goals);
     planning::BirrtOptions options;
     options.step = study_.settings.resolution;
@@ -111,15 +113,16 @@ class Queries {
     options.max_checks = study_.settings.max_checks;
     options.time_limit = std::chrono::seconds(600);
     std::mt19937_64 generator(seed);
-    const planning::TrackQuery query{item.T_task_base, item.bounds, item.problem.start, goals};
+    const planning::TrackQuery query{
+        item.T_task_base, item.bounds, item.problem.start, goals, {}, [&failed] {
+          return recall::whole(failed);
+        }};
     const auto sampler =
         planning::guided_sampler(robot_.planned.chain, query, nullptr, nothing_, {.guide = guide})
             .sampler;
-    return item.constraint
-               ? planning::plan_cbirrt2(item.problem.start, goals, {item.is_free, *item.constraint},
-                                        sampler, options, generator)
-               : planning::plan_birrt(item.problem.start, goals, item.is_free, sampler, options,
-                                      generator);
+    return planning::plan_trees(item.problem.start, goals,
+                                {item.is_free, item.constraint ? &*item.constraint : nullptr},
+                                sampler, options, generator);
   }
 
   recall::RecallSummary recall(Item& item, const recall::RecallGuide& guide) const {
@@ -246,7 +249,8 @@ void compare(const Robot& robot, const experiments::Study& study, const std::str
           compared.hit_s += thread_cpu_s() - from_s;
           return std::move(summary.waypoints);
         }
-        return queries.search(item, fallback, problem.seed + seed).waypoints;
+        return queries.search(item, fallback, problem.seed + seed, std::move(summary.failed))
+            .waypoints;
       });
     }
   print_as(name, *library, compared);

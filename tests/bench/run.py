@@ -50,6 +50,8 @@ BENCHES = [
     bench("proof-planning", "proof_bench", "Plans with proven edges, beside steps of 0.05", ["planning"], repeats=1),
     bench("recall", "recall_bench", "Recalled paths in the studies' furniture, CPU time of everything", ["furniture", "ur10e", "panda"], repeats=1),
     bench("recall-kitting", "recall_bench", "Recalled paths in the study of kitting, CPU time of everything", ["kitting", "ur10e", "panda"], repeats=1),
+    bench("dear", "recall_bench", "Recalled paths in the dear studies, one robot a kind, CPU time of everything", ["dear", "iiwa14_lift", "sara_like"],
+          repeats=1, minutes=60, is_long=True),
     bench("recall-planner", "recall_planner_bench", "RecallPlanner beside OMPL's Lightning and RRTConnect in shelves, processor time", repeats=1),
     bench("order", "kinship-experiments", "Orders: 100 queries one after another from an empty store, CPU time of plans",
           ["order", "--out", "order", "--models", str(ROOT / "robots" / "models"), "--figures"], repeats=1),

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -124,6 +125,32 @@ TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
   TrackQuery nowhere = motion.query();
   nowhere.goals.resize(7, 0);
   EXPECT_TRUE(tracks_of(guide_of(motion.chain, {motion.path()}), nowhere).empty());
+}
+
+TEST(QueryTracks, PathsThatFailedComeLastAndEndBeforeWhatTheyLack) {
+  const Motion motion = panda_motion();
+  TrackQuery query = motion.query();
+  Eigen::MatrixXd path(7, 4);
+  for (int i = 0; i < 4; ++i)
+    path.col(i) = motion.start + i / 3.0 * (motion.goal - motion.start);
+  path(3, 1) = std::numeric_limits<double>::quiet_NaN();
+  int asked = 0;
+  query.failed_paths = [&] {
+    ++asked;
+    return std::vector{path};
+  };
+  TaskExperience experience;
+  experience.paths = {motion.path()};
+  QueryTracks tracks(std::make_shared<const ExperienceGuide>(motion.chain, experience), query, {});
+  ASSERT_NE(tracks.track(0), nullptr);
+  EXPECT_FALSE(tracks.track(0)->is_goal_free);
+  EXPECT_EQ(asked, 0);
+  const Track* const failed = tracks.track(1);
+  ASSERT_NE(failed, nullptr);
+  EXPECT_TRUE(failed->is_goal_free);
+  EXPECT_EQ(failed->configurations, path.rightCols(2).rowwise().reverse());
+  EXPECT_EQ(tracks.track(2), nullptr);
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(ExperienceGuide, TheRetreatComesBeforeStoredWaysAndNeedsNone) {

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "robots/collision/edge_prover.hpp"
 #include "robots/inverse/descent.hpp"
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/guided_sampler.hpp"
 #include "robots/planning/path_vertices.hpp"
 #include "tests/unit/robots/recall/shelf_cell.hpp"
 
@@ -215,6 +219,54 @@ TEST_P(Recalls, ALineThatIsRefutedIsNotReturned) {
         });
     EXPECT_FALSE(recall(guide_, each.query, nothing_proven, kOptions).waypoints);
   }
+}
+
+/// What blocks a path is on it alone; the search has another goal, and no other track.
+TEST_P(Recalls, ASearchFollowsAPathThatFailed) {
+  constexpr double kBlocked = 0.2;  // joint units
+  RecallOptions once = kOptions;
+  once.most_spent = 0;
+  int ended = 0;
+  for (Fresh& each : fresh()) {
+    RecallSummary found = recall(guide_, each.query, planning::free_in(each.world), once);
+    if (!found.waypoints || found.is_straight_line)
+      continue;
+    const Eigen::VectorXd middle = found.waypoints->col(found.waypoints->cols() / 2);
+    const Eigen::VectorXd goal = found.waypoints->rightCols<1>();
+    const planning::IsFree is_free([&](const Eigen::VectorXd& q) {
+      return (q - middle).norm() > kBlocked && !each.world.collides(q);
+    });
+    found = recall(guide_, each.query, is_free, once);
+    ASSERT_EQ(found.failed.size(), 1U);
+    EXPECT_EQ(whole(found.failed)[0].col(0), each.query.start);
+    EXPECT_EQ(whole(found.failed)[0].rightCols<1>(), goal);
+    Eigen::Index farthest = 0;
+    (each.posed.goals.colwise() - goal).colwise().norm().maxCoeff(&farthest);
+    const Eigen::VectorXd other = each.posed.goals.col(farthest);
+    const auto sampler = planning::guided_sampler(made_shelf().cell.chain,
+                                                  {each.query.T_task_base,
+                                                   each.query.bounds,
+                                                   each.query.start,
+                                                   other,
+                                                   {},
+                                                   [&] { return whole(found.failed); }},
+                                                  nullptr,
+                                                  std::make_shared<const planning::ExperienceGuide>(
+                                                      made_shelf().cell.chain, TaskExperience{}),
+                                                  {.guide = Guide::Ways})
+                             .sampler;
+    std::mt19937_64 generator(1);
+    const planning::PlanSummary plan =
+        planning::plan_birrt(each.query.start, other, is_free, sampler, {.step = kStep}, generator);
+    ASSERT_TRUE(plan.waypoints);
+    EXPECT_EQ(plan.tracks_followed, plan.found_by == FoundBy::StraightLine ? 0U : 1U);
+    for (const auto& q : plan.waypoints->colwise())
+      EXPECT_TRUE(is_free(q));
+    const Eigen::VectorXd end = plan.waypoints->rightCols<1>();
+    EXPECT_TRUE(end == goal || end == other);
+    ended += end == goal && goal != other ? 1 : 0;
+  }
+  EXPECT_GT(ended, 0) << "else none was of use";
 }
 
 TEST_P(Recalls, AStartThatCollidesCostsOneCheck) {
