@@ -146,7 +146,7 @@ TEST_F(LostStoreFile, WithoutItsWalGoesOnByItself) {
     return store_.cell().log().find("is the file again") != std::string::npos;
   };
   EXPECT_TRUE(store_.status_becomes(is_noticed));
-  expect_says(store_.cell().log(), "was removed; the store itself has all reports");
+  expect_says(store_.cell().log(), "the store itself has all reports");
   expect_all_when_it_goes_on();
 }
 

@@ -1,7 +1,8 @@
-// No memory: what asked for it is put off in words, the server stays, and no receipt is lost.
+// A server that the system ends for want of memory loses no receipt.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,25 +19,6 @@ namespace fs = std::filesystem;
 using test::ServedStore;
 
 constexpr rlim_t kMega = rlim_t{1} << 20U;
-
-/// Bytes of address space that a process has.
-rlim_t address_space_of(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/statm");
-  rlim_t pages = 0;
-  file >> pages;
-  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
-}
-
-/// The server gets no more than this beside what it has.
-void leave(const test::ServerProcess& server, rlim_t bytes) {
-  const rlimit limit{address_space_of(server.pid()) + bytes, RLIM_INFINITY};
-  ASSERT_EQ(prlimit(server.pid(), RLIMIT_AS, &limit, nullptr), 0);
-}
-
-void leave_all(const test::ServerProcess& server) {
-  const rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
-  ASSERT_EQ(prlimit(server.pid(), RLIMIT_AS, &limit, nullptr), 0);
-}
 
 /// A control group with a limit of memory, of either version.
 class MemoryGroup {
@@ -103,35 +85,6 @@ TEST(NoMemory, ThatTheSystemEndsTheServerForLosesNothing) {
   store.cell().start();
   EXPECT_TRUE(store.has_all_receipts());
   EXPECT_EQ(store.cell().terminate(), 0);
-  EXPECT_EQ(store.missing(store.file()), 0U);
-  EXPECT_EQ(store.offline("check").code, 0);
-}
-
-TEST(NoMemory, PutsOffWhatAsksForItAndLosesNothing) {
-  ServedStore store({"--rehearsal-cpu", "1"});
-  store.report(30);
-  const pid_t process = store.cell().server().pid();
-  leave(store.cell().server(), 2 * kMega);
-  // Fits, paths of a quarter of a megabyte, listings and a backup, all at once.
-  for (int round = 0; round < 3; ++round) {
-    for (int i = 0; i < 8; ++i)
-      store.offer_long();
-    FetchRequest request;
-    request.task = "sweep";
-    request.robot = store.robot();
-    request.deadline = std::chrono::seconds(1);
-    static_cast<void>(store.cell().client().fetch(request));
-    static_cast<void>(store.cell().client().admin(AdminRequest{}));
-  }
-  leave_all(store.cell().server());
-  ASSERT_EQ(::kill(process, 0), 0);
-  EXPECT_TRUE(store.has_all_receipts()) << store.cell().log();
-  bool is_counted = false;
-  for (const TroubleCount& trouble : store.cell().status().troubles)
-    is_counted |= trouble.what == "out of memory" && trouble.count > 0;
-  EXPECT_TRUE(is_counted) << store.cell().log();
-  EXPECT_EQ(store.cell().server().pid(), process);
-  EXPECT_EQ(store.cell().terminate(), 0) << store.cell().log();
   EXPECT_EQ(store.missing(store.file()), 0U);
   EXPECT_EQ(store.offline("check").code, 0);
 }
