@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -50,7 +51,7 @@ class WaitLoop::Implementation {
 
   void run(const std::function<Clock::time_point()>& on_wake) {
     while (!stopped_) {
-      Clock::time_point next = std::min(on_wake(), call_timers());
+      Clock::time_point next = unless_refused([&] { return std::min(on_wake(), call_timers()); });
       if (stopped_)
         return;
       for (const Source& source : sources_)
@@ -58,7 +59,7 @@ class WaitLoop::Implementation {
       wait(next == kAgain ? 0 : time_until(next));
       for (Source& source : sources_)
         if (source.is_due() && !stopped_)
-          source.due = source.on_data();
+          source.due = unless_refused(source.on_data);
     }
   }
 
@@ -70,6 +71,17 @@ class WaitLoop::Implementation {
   }
 
  private:
+  /// Without memory a call is made again soon: it must not end the loop of all others.
+  template <typename Call>
+  static Clock::time_point unless_refused(const Call& call) {
+    constexpr std::chrono::milliseconds kPause{50};
+    try {
+      return call();
+    } catch (const std::bad_alloc&) {
+      return Clock::now() + kPause;
+    }
+  }
+
   /// Notes which readers have samples, and which guards were set.
   void wait(dds_duration_t time) {
     std::array<dds_attach_t, 16> ready{};

@@ -130,7 +130,7 @@ class MetricsListener::Implementation {
         port_(std::move(port)),
         retry_(port_.state_->context) {
     accept();
-    thread_ = std::thread([this] { port_.state_->context.run(); });
+    thread_ = std::thread([this] { run(); });
   }
 
   ~Implementation() {
@@ -141,6 +141,16 @@ class MetricsListener::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
  private:
+  void run() {
+    for (bool is_done = false; !is_done;)
+      try {
+        port_.state_->context.run();
+        is_done = true;
+      } catch (const std::bad_alloc&) {  // of one connection, which ends; the others go on
+        accept_later();
+      }
+  }
+
   void accept() {
     port_.state_->acceptor.async_accept([this](const beast::error_code& error, Tcp::socket socket) {
       if (error)

@@ -78,6 +78,20 @@ int restore(const OfflineOptions& options, const store::Progress& progress, std:
   return kDone;
 }
 
+void print(const store::Repaired::Table& table, std::ostream& out) {
+  out << "table " << table.name << ": " << (table.is_before_known ? "" : "at least ")
+      << table.before << " rows before, " << table.after << " after";
+  if (table.again > 0)
+    out << ", " << table.again << " damaged that were sent again since";
+  out << ", " << table.missing.size() << " missing\n";
+  for (const store::Repaired::Table::Missing& row : table.missing) {
+    out << "missing: " << table.name << ' ' << row.id;
+    if (row.report)
+      out << ", report " << row.report->text();
+    out << '\n';
+  }
+}
+
 int repair(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
   const store::Repaired repaired = store::repair_store(options.store, progress);
   out << "store '" << options.store.string() << "': written anew, epoch "
@@ -91,10 +105,8 @@ int repair(const OfflineOptions& options, const store::Progress& progress, std::
       out << ", task '" << lost.task << "'";
     out << '\n';
   }
-  for (const StoreCheck::Table& table : repaired.check.tables)
-    if (table.name == "robot" || table.name == "path" || table.name == "attempt" ||
-        table.name == "scene")
-      out << "kept: " << table.rows << " rows of table " << table.name << '\n';
+  for (const store::Repaired::Table& table : repaired.tables)
+    print(table, out);
   for (const std::string& problem : repaired.check.messages)
     out << "still wrong: " << problem << '\n';
   const bool is_whole = repaired.check.problems == 0;

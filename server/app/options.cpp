@@ -185,6 +185,11 @@ void add_place_options(CLI::App& app, ServerOptions& options) {
       ->type_name("FILE|URL")
       ->capture_default_str();
   app.add_flag(
+         "--new-store", options.new_store,
+         "Begin a new SQLite file though the WAL, the high-water mark or the lock of one that "
+         "is gone are there, which are set aside; refused if there is a file")
+      ->configurable(false);
+  app.add_flag(
       "--require-synchronous", options.require_synchronous,
       "Of a PostgreSQL database: while it has no synchronous standby, reports are answered "
       "'try again'");

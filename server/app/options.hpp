@@ -30,6 +30,7 @@ struct ClientQuotaOptions {
 /// Options of kinshipd as a server.
 struct ServerOptions {
   std::filesystem::path store;       ///< of SQLite, or the URL of a PostgreSQL database
+  bool new_store = false;            ///< of SQLite: begin one beside what a lost one left
   bool require_synchronous = false;  ///< of a database: acknowledge only data that a standby has
   bool primary_only = false;         ///< of a database: fits read no standby
   std::uint32_t domain = 0;

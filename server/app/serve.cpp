@@ -29,6 +29,7 @@
 #include "server/app/revocation_watch.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
+#include "server/runtime/memory_reserve.hpp"
 #include "server/service/service.hpp"
 #include "server/store/open_store.hpp"
 
@@ -79,6 +80,7 @@ store::StoreOptions store_options(const ServerOptions& options) {
   store::StoreOptions store;
   store.sqlite.free_space_watermark_bytes = options.free_space_watermark_mb * kMega;
   store.sqlite.ballast_bytes = options.ballast_mb * kMega;
+  store.sqlite.new_store = options.new_store;
   store.sqlite.max_wal_bytes = options.max_wal_mb * kMega;
   store.sqlite.max_paths_per_pair = options.max_paths_per_pair;
   store.sqlite.max_distribution_bytes = options.stored_distributions_mb * kMega;
@@ -175,6 +177,7 @@ void tell_what_is_served(const ServerStatus& status, std::uint32_t domain,
 
 int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
+  runtime::keep_memory_reserve();
   std::signal(SIGPIPE, SIG_IGN);  // the output may have no reader
 
   tell_insecurity(options);

@@ -31,9 +31,10 @@ enum class Trouble : std::uint8_t {
   AdminRefused,     ///< an admin request breaks a rule or names a missing object
   AdminFailed,      ///< an admin request that the store or the queue could not serve
   ClientQuota,      ///< one client is over a quota of any kind
+  NoMemory,         ///< something was put off because the system had no memory for it
 };
 
-inline constexpr std::array<std::string_view, 15> kTroubleNames = {"report refused",
+inline constexpr std::array<std::string_view, 16> kTroubleNames = {"report refused",
                                                                    "report to be sent again",
                                                                    "report of an unknown robot",
                                                                    "report over quota",
@@ -47,7 +48,8 @@ inline constexpr std::array<std::string_view, 15> kTroubleNames = {"report refus
                                                                    "fit to be tried again",
                                                                    "admin verb refused",
                                                                    "admin verb failed",
-                                                                   "client over quota"};
+                                                                   "client over quota",
+                                                                   "out of memory"};
 
 /// Counts troubles by kind and logs the first of each burst: an event that many clients repeat
 /// every second is one line, and a number. Bounded by the number of kinds. May be shared between

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <new>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -82,7 +83,10 @@ void WorkerPool::work(int niceness) {
     setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
   Job job;
   while (next_job(job)) {
-    job.run();
+    try {
+      job.run();
+    } catch (const std::bad_alloc&) {  // counted (memory_reserve); its client asks again
+    }
     job = {};  // its references end here, not when the next job comes
   }
 }

@@ -25,7 +25,8 @@ class WorkerPool {
 
   enum class Priority { Interactive, Background };
 
-  /// Exactly one of the two is called, on a worker or in stop(). Neither may throw.
+  /// Exactly one of the two is called, on a worker or in stop(). Neither may throw; one that finds
+  /// no memory even for its answer is dropped.
   struct Job {
     std::function<void()> run;
     std::function<void()> abandon;  ///< may be empty

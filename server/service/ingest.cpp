@@ -26,6 +26,17 @@ ReceiptStatus status_of(bool is_robot_there, const Error& error) {
 
 /// A batch on its way. Shared by the callbacks of one submission, never used by two at a time.
 struct Ingest::Batch {
+  Batch() = default;
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+  /// Without an answer if there was no memory for one: draining must not wait for it.
+  ~Batch() {
+    if (counted_by == nullptr)
+      return;
+    counted_by->let_go_of_client(*this);
+    counted_by->let_go(*this);
+  }
+
   std::vector<Attempt> attempts;  // until they are handed to the store
   std::vector<catalog::AttemptCost> costs;
   std::vector<Receipt> receipts;
@@ -33,7 +44,8 @@ struct Ingest::Batch {
   std::vector<std::size_t> path_bytes;  // of each attempt
   std::size_t bytes = 0;
   RetryAfter retry_after{0};
-  bool counted = false;  // among load_, and its client's
+  Ingest* counted_by = nullptr;  // among its load_
+  bool is_counted_of_client = false;
   std::string client;
   Done done;
 };
@@ -103,7 +115,8 @@ std::string Ingest::take_in(Batch& batch) {
         load->attempts += batch.receipts.size();
         load->bytes += batch.bytes;
       }
-      batch.counted = true;
+      batch.counted_by = this;
+      batch.is_counted_of_client = true;
       return {};
     }
   }
@@ -112,8 +125,10 @@ std::string Ingest::take_in(Batch& batch) {
 }
 
 /// Before the answer: a client that has it may send the next ones at once.
-void Ingest::let_go_of_client(const Batch& batch) {
+void Ingest::let_go_of_client(Batch& batch) {
   const std::lock_guard lock(mutex_);
+  if (!std::exchange(batch.is_counted_of_client, false))
+    return;
   Load& own = clients_[batch.client];
   own.attempts -= batch.receipts.size();
   own.bytes -= batch.bytes;
@@ -122,8 +137,10 @@ void Ingest::let_go_of_client(const Batch& batch) {
 }
 
 /// After the answer: draining ends when all have got one.
-void Ingest::let_go(const Batch& batch) {
+void Ingest::let_go(Batch& batch) {
   const std::lock_guard lock(mutex_);
+  if (std::exchange(batch.counted_by, nullptr) == nullptr)
+    return;
   load_.attempts -= batch.receipts.size();
   load_.bytes -= batch.bytes;
   answered_.notify_all();
@@ -200,11 +217,9 @@ void Ingest::answer(Batch& batch) {
       batch.receipts.begin(), batch.receipts.end(),
       [](const Receipt& receipt) { return receipt.status == ReceiptStatus::Refused; }));
   options_.on_answer(batch.costs, batch.receipts);
-  if (batch.counted)
-    let_go_of_client(batch);
+  let_go_of_client(batch);
   batch.done(batch.receipts, batch.retry_after);
-  if (batch.counted)
-    let_go(batch);
+  let_go(batch);
 }
 
 void Ingest::answer_try_again(Batch& batch, std::string_view message) {

@@ -94,8 +94,8 @@ class Ingest {
 
   /// \return the reason of a refusal; empty: it was taken in.
   std::string take_in(Batch& batch);
-  void let_go_of_client(const Batch& batch);
-  void let_go(const Batch& batch);
+  void let_go_of_client(Batch& batch);
+  void let_go(Batch& batch);
   void check_and_commit(const BatchPointer& batch);
   void check(Batch& batch);
   void commit(const BatchPointer& batch);

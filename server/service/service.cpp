@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "server/runtime/memory_reserve.hpp"
+
 namespace kinship::service {
 
 Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
@@ -64,6 +66,18 @@ std::optional<Service::TimePoint> Service::next_deadline() const {
 void Service::expire(TimePoint now) {
   fetches_.expire(now);
   administration_.expire(now);
+  note_memory();
+}
+
+/// What was refused since the last look, whoever asked for it.
+void Service::note_memory() {
+  const std::uint64_t refusals = runtime::memory_refusals();
+  if (refusals != memory_refusals_)
+    troubles_.add(runtime::Trouble::NoMemory,
+                  "the system has no more memory for kinshipd; what asked for it was put off",
+                  refusals - memory_refusals_);
+  memory_refusals_ = refusals;
+  runtime::renew_memory_reserve();
 }
 
 ServerStatus Service::status() const {

@@ -66,6 +66,7 @@ class Service {
  private:
   ServiceParts parts();
   std::optional<quotas::Refusal> counted(std::optional<quotas::Refusal> refusal);
+  void note_memory();
   std::vector<BoundUse> bounds(const store::StoreStatus& store) const;
   void expose_use(metrics::Exposition& page) const;
   void expose_guidance(metrics::Exposition& page) const;
@@ -76,6 +77,7 @@ class Service {
   const std::unique_ptr<store::Store> store_;
   mutable StoreStatusReader store_status_;
   runtime::ErrorCounters troubles_;
+  std::uint64_t memory_refusals_ = 0;  // as of the last look; of the thread that calls expire()
   Measures measures_;
   EventFeed events_;
   quotas::ClientQuotas clients_;

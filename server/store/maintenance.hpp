@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,21 @@ struct Repaired {
     std::string task;
     std::uint64_t rows = 0;
   };
+  /// The rows of a table that are copied one by one.
+  struct Table {
+    struct Missing {
+      std::int64_t id = 0;
+      std::optional<Uuid> report = {};  ///< of an attempt, if an index still has it
+    };
+    std::string name;
+    std::uint64_t before = 0;      ///< in the damaged store, by its indexes and its rows
+    bool is_before_known = true;   ///< else `before` is what could be read of these
+    std::uint64_t after = 0;       ///< copied
+    std::uint64_t again = 0;       ///< damaged, but sent again since: not missing
+    std::vector<Missing> missing;  ///< all of them
+  };
   Restored restored;
+  std::vector<Table> tables;
   /// Rows whose checksum was wrong, and stretches of rows, or the schema, that could not be read.
   std::uint64_t damaged_places = 0;
   std::vector<Lost> lost;

@@ -210,7 +210,7 @@ TEST_F(StoreFlip, NoWrongAnswerComesOutOfAnOpenStoresWalAndNoCheckpointBlessesIt
   for (int trial = 0; trial < trials; ++trial) {
     fs::remove(file_);
     {
-      const std::unique_ptr<Store> store = open_sqlite_store(file_);
+      const std::unique_ptr<Store> store = open_sqlite_store(file_, {.new_store = true});
       fill(*store, things_);
       const fs::path wal = file_.string() + "-wal";
       const std::uint64_t bit = generator_() % (8 * fs::file_size(wal));

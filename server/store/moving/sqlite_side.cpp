@@ -12,6 +12,7 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/files/store_lock.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
@@ -128,7 +129,7 @@ class SqliteSide : public Side {
   }
 
   void open_target() {
-    lock_ = lock_store(file_);
+    lock_.emplace(file_);
     if (!fs::exists(file_))
       make_empty_store();
     named([&] {
@@ -188,7 +189,7 @@ class SqliteSide : public Side {
     if (lock_)
       return {};
     try {
-      lock_ = lock_store(file_);
+      lock_.emplace(file_);
     } catch (const Failure& failure) {
       if (failure.code() != ErrorCode::Unavailable)
         throw;
@@ -351,7 +352,7 @@ class SqliteSide : public Side {
   const fs::path file_;
   const std::string name_;
   const bool is_target_;
-  std::optional<files::LockFile> lock_;
+  std::optional<StoreLock> lock_;
   std::unique_ptr<Database> database_;
 };
 

@@ -77,24 +77,35 @@ std::string ReportWriter::trouble() const {
 }
 
 void ReportWriter::run() {
-  while (std::optional<std::vector<QueuedItem>> items = queue_.take()) {
-    const bool connected = is_connected();
-    if (items->empty() && connected)
-      look_around();
-    if (connected)
-      write(*items);
-    for (QueuedItem& item : *items) {
-      if (!connected)
-        for (std::size_t i = 0; i < item.receipts.size(); ++i)
-          if (item.prepared[i])
-            item.receipts[i] = {item.receipts[i].report_uuid, ReceiptStatus::TryAgain, trouble()};
-      if (item.done)
-        item.done(item.receipts);
+  for (bool goes_on = true; goes_on;)
+    try {
+      goes_on = run_once();
+    } catch (const std::bad_alloc&) {  // who waits for the items has no answer, and asks again
     }
-  }
   const std::lock_guard lock(mutex_);
   has_ended_ = true;
   ended_.notify_all();
+}
+
+/// \return false at the end.
+bool ReportWriter::run_once() {
+  std::optional<std::vector<QueuedItem>> items = queue_.take();
+  if (!items)
+    return false;
+  const bool connected = is_connected();
+  if (items->empty() && connected)
+    look_around();
+  if (connected)
+    write(*items);
+  for (QueuedItem& item : *items) {
+    if (!connected)
+      for (std::size_t i = 0; i < item.receipts.size(); ++i)
+        if (item.prepared[i])
+          item.receipts[i] = {item.receipts[i].report_uuid, ReceiptStatus::TryAgain, trouble()};
+    if (item.done)
+      item.done(item.receipts);
+  }
+  return true;
 }
 
 void ReportWriter::write(std::vector<QueuedItem>& items) {

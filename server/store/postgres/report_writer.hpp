@@ -64,6 +64,7 @@ class ReportWriter {
   };
 
   void run();
+  bool run_once();
   void write(std::vector<QueuedItem>& items);
   void write_reports(std::span<Pending> pending);
   bool try_reports(std::span<Pending> pending);

@@ -15,7 +15,9 @@
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/disk_budget.hpp"
 #include "server/store/sqlite/files/disk_space.hpp"
+#include "server/store/sqlite/files/leftovers.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/files/store_lock.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/reader_pool.hpp"
@@ -27,6 +29,7 @@
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/sqlite/upkeep/file_watch.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 #include "server/store/tables/distributions.hpp"
@@ -34,18 +37,33 @@
 namespace kinship::store {
 namespace {
 
+/// The lock of a store that exists from now on.
+StoreLock lock_for_serving(const std::filesystem::path& file, bool is_new) {
+  if (is_new)
+    set_leftovers_aside(file);
+  else
+    require_no_leftovers(file);
+  if (!std::filesystem::exists(file)) {
+    make_for_owner(file);
+    files::sync_folder_of(file);  // a lock that outlives the file says that the file is gone
+  }
+  return StoreLock(file);
+}
+
 class SqliteStore : public SqlStore {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
       : SqlStore(options.max_distribution_bytes),
         options_(options),
         file_(locate_servable(file)),
-        lock_(lock_store(file_)),
+        lock_(lock_for_serving(file_, options.new_store)),
         history_(file_),
         readers_(file_),
+        watch_(file_, lock_, readers_, options.log),
         space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
     std::unique_ptr<Database> database = open_writer(file_);
     history_.begin_run(*database);
+    watch_.note_opened();
     for (const std::string& line : mend_indexes(*database))
       if (options.log)
         options.log(line);
@@ -53,7 +71,8 @@ class SqliteStore : public SqlStore {
         std::move(database), [this] { return reopen(); },
         WriterOptions{.retry_after = options.retry_after,
                       .checkpoint_bytes = options.checkpoint_bytes,
-                      .max_wal_bytes = options.max_wal_bytes});
+                      .max_wal_bytes = options.max_wal_bytes,
+                      .look = [this](Database& writing) { watch_.require_named(writing); }});
     scrub_ = std::make_unique<Scrub>(readers_, *writer_,
                                      ScrubOptions{options.scrub_bytes_per_s, options.log});
   }
@@ -75,7 +94,8 @@ class SqliteStore : public SqlStore {
   }
 
   StoreStatus status() const override {
-    StoreStatus status;
+    StoreStatus status = counted();
+    const std::string uncounted = std::exchange(status.message, {});
     status.file = file_.string();
     status.epoch = history_.epoch();
     status.rollbacks = history_.rollbacks();
@@ -87,8 +107,9 @@ class SqliteStore : public SqlStore {
     if (status.rollbacks > 0)
       status.message +=
           "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
-    const ReaderPool::Lease reader = readers_.lease();
-    count_rows(*reader, status);
+    status.message += uncounted;
+    if (!watch_.trouble().empty())
+      status.message += "what is counted was so before; ";
     describe_damage(status, damaged_robots(), scrub_->findings());
     status.scrubbed_ms = scrub_->progress().ended_ms;
     status.scrub_part = scrub_->progress().part;
@@ -236,15 +257,40 @@ class SqliteStore : public SqlStore {
 
   /// Through the writer's queue; returns when it is durable.
   template <typename Function>
-  std::invoke_result_t<Function, Batch&> write(Function function) {
+  std::invoke_result_t<Function, Batch&> write(Function function) const {
     auto item = std::make_unique<CallItem<Function>>(std::move(function));
     auto result = item->result();
     writer_->submit(std::move(item));
     return result.get();
   }
 
+  /// The rows; while the file is not the one that is named, as counted before.
+  StoreStatus counted() const {
+    const std::lock_guard lock(counted_mutex_);
+    try {
+      const ReaderPool::Lease reader = readers_.lease();
+      counted_ = {};
+      count_rows(*reader, counted_);
+    } catch (const NotTheFile&) {  // or not any more: then it is back meanwhile
+    } catch (const Failure&) {
+      if (!is_file_gone())
+        throw;
+    }
+    return counted_;
+  }
+  /// As of now: the writer looks before it answers.
+  bool is_file_gone() const {
+    try {
+      write([](Batch&) { return true; });
+    } catch (const Failure&) {  // which the watch tells, if it is that
+    }
+    return !watch_.trouble().empty();
+  }
+
   /// Empty if reports are taken; else why not.
   std::string out_of_space_reason() const {
+    if (std::string trouble = watch_.trouble(); !trouble.empty())
+      return trouble;
     return store::out_of_space_reason(space_, *writer_, readers_, options_.max_wal_bytes);
   }
 
@@ -283,10 +329,14 @@ class SqliteStore : public SqlStore {
     readers_.suspend();
     space_.release_ballast_if_short();
     try {
+      watch_.require_named_closed();
       std::unique_ptr<Database> database = reopen_writer(file_);
       history_.begin_run(*database);
+      watch_.note_opened();
       readers_.resume();
       return database;
+    } catch (const NotTheFile&) {
+      throw;  // nor may anything be read then
     } catch (...) {
       readers_.resume();
       throw;
@@ -295,11 +345,14 @@ class SqliteStore : public SqlStore {
 
   const SqliteOptions options_;
   const std::filesystem::path file_;
-  const files::LockFile lock_;
+  const StoreLock lock_;
   History history_;
   mutable ReaderPool readers_;
+  FileWatch watch_;
   mutable DiskSpace space_;
   DamagedReports damaged_reports_;
+  mutable std::mutex counted_mutex_;
+  mutable StoreStatus counted_;     // guarded by counted_mutex_
   std::unique_ptr<Writer> writer_;  // destroyed before all above, which it uses
   std::unique_ptr<Scrub> scrub_;    // and this before the writer
 };

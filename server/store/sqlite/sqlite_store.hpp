@@ -28,6 +28,9 @@ struct SqliteOptions {
   std::uint64_t max_distribution_bytes = 0;
   /// Cap of the paths of a robot and task (rules/report_resolver.hpp); 0: none.
   std::uint64_t max_paths_per_pair = 0;
+  /// A store that is to be made although files of one that is gone lie beside it, which are set
+  /// aside; refused if there is a store.
+  bool new_store = false;
   std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: no search
   /// Takes a line when damage is found, from a thread of the store's own; may be empty.
   std::function<void(std::string_view)> log = {};
@@ -37,7 +40,8 @@ struct SqliteOptions {
 /// starts the writer thread. Destroying the store drains the queue.
 /// \throws Failure(Unavailable) if another server has it open; Failure(Storage) if the file is
 ///         no Kinship store (or a directory, or has hard links), is newer than this binary, or
-///         cannot be opened. Every message names the file.
+///         cannot be opened, or is missing while its WAL, its high-water mark or its lock is
+///         there. Every message names the file.
 std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file,
                                          const SqliteOptions& options = {});
 

@@ -25,6 +25,8 @@ bool SqliteError::concerns_one_row() const noexcept {
          primary == SQLITE_MISMATCH;
 }
 
+bool SqliteError::is_busy() const noexcept { return (sqlite_code_ & 0xFF) == SQLITE_BUSY; }
+
 bool SqliteError::is_damage() const noexcept {
   const int primary = sqlite_code_ & 0xFF;
   return primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB ||

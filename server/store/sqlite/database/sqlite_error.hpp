@@ -27,6 +27,10 @@ class SqliteError : public Failure {
   /// other error (I/O error, full disk) nothing may be written before a reopen.
   bool concerns_one_row() const noexcept;
 
+  /// True if another program holds a lock for longer than was waited: nothing was written, and the
+  /// connection is fine.
+  bool is_busy() const noexcept;
+
   /// True if the data to be read is damaged: a row with a wrong checksum that was to be changed, or
   /// content that SQLite finds malformed, after which a transaction takes no writes. Rows on other
   /// pages are fine.

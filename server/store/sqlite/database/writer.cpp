@@ -2,15 +2,19 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <exception>
 #include <optional>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
+#include "server/store/sqlite/files/named_store.hpp"
 
 namespace kinship::store {
 namespace {
+
+const Error kNoMemory{ErrorCode::Unavailable, "no memory"};  // a text too short for any
 
 /// The item's own error, if it had one.
 std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
@@ -23,6 +27,8 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
     return error.error();
   } catch (const Failure& failure) {
     return failure.error();
+  } catch (const std::bad_alloc&) {
+    return kNoMemory;
   } catch (const std::exception& bug) {
     return Error{ErrorCode::Internal, bug.what()};
   }
@@ -33,6 +39,19 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
 bool is_damage(const Failure& failure) {
   const auto* const error = dynamic_cast<const SqliteError*>(&failure);
   return error != nullptr && error->is_damage();
+}
+
+bool is_busy(const Failure& failure) {
+  const auto* const error = dynamic_cast<const SqliteError*>(&failure);
+  return error != nullptr && error->is_busy();
+}
+
+constexpr std::chrono::milliseconds kPauseWithoutMemory{50};
+
+/// For so long a transaction waits for the lock of another program that writes.
+void wait_for_lock(Database& database, bool shall_wait) {
+  constexpr int kPatience_ms = 500;
+  sqlite3_busy_timeout(&database.connection(), shall_wait ? kPatience_ms : 0);
 }
 
 }  // namespace
@@ -94,39 +113,51 @@ WriterFailures Writer::failures() const {
 }
 
 void Writer::run() {
-  while (true) {
-    Items items = take_batch();
-    if (!database_ && !reopen_if_due()) {
-      const Error error{ErrorCode::Storage, trouble()};
-      finish_all(items, &error);
-      const std::lock_guard lock(mutex_);
-      if (stopping_ && queue_.empty())
-        return;
-      continue;
-    }
-    if (!items.empty()) {
-      write(items);
-    } else {
-      const std::lock_guard lock(mutex_);
-      if (stopping_ && queue_.empty())
-        break;
-    }
-    checkpoint_if_needed();
+  while (run_once()) {
   }
   close();
 }
 
-/// Empty if the writer shall stop or a try is due: after a failure to reopen, or to empty the WAL.
+/// \return false at the end.
+bool Writer::run_once() try {
+  Items items = take_batch();
+  if (!database_ && !reopen_if_due()) {
+    const Error error{ErrorCode::Storage, trouble()};
+    finish_all(items, &error);
+    const std::lock_guard lock(mutex_);
+    return !stopping_ || !queue_.empty();
+  }
+  if (!items.empty()) {
+    write(items);
+  } else {
+    look();
+    const std::lock_guard lock(mutex_);
+    if (stopping_ && queue_.empty())
+      return false;
+  }
+  checkpoint_if_needed();
+  return true;
+} catch (const std::bad_alloc&) {  // whoever waits is answered with that, or asks again
+  std::unique_lock lock(mutex_);
+  wake_.wait_for(lock, kPauseWithoutMemory);
+  return true;
+}
+
+/// Empty if the writer shall stop, or a look or a try is due: after a failure to reopen, or to
+/// empty the WAL.
 Writer::Items Writer::take_batch() {
   std::unique_lock lock(mutex_);
   const auto something_to_do = [this] { return stopping_ || !queue_.empty(); };
   if (!database_)
     wake_.wait_until(lock, next_try_, something_to_do);
   else if (wal_full())
-    wake_.wait_for(lock, options_.retry_after, something_to_do);
+    wake_.wait_for(lock, std::min(options_.retry_after, options_.look_every), something_to_do);
+  else if (options_.look || is_busy_)
+    wake_.wait_for(lock, options_.look_every, something_to_do);
   else
     wake_.wait(lock, something_to_do);
   Items items;
+  items.reserve(std::min(queue_.size(), options_.batch_cap));  // before any leaves the queue
   std::size_t weight = 0;
   while (!queue_.empty()) {
     const std::size_t next = queue_.front()->weight();
@@ -143,6 +174,7 @@ Writer::Items Writer::take_batch() {
 
 void Writer::write(Items& items) {
   std::vector<std::optional<Error>> errors(items.size());
+  wait_for_lock(*database_, true);
   try {
     if (items.size() != 1 || !write_whole(*items[0])) {
       Transaction transaction(*database_, Transaction::Kind::Write);
@@ -152,7 +184,18 @@ void Writer::write(Items& items) {
       batch.raise_generations();
       transaction.commit();
     }
+    if (options_.look)
+      options_.look(*database_);
+    if (is_busy_)
+      note_busy("");
   } catch (const Failure& failure) {
+    if (is_busy(failure)) {
+      const Error error{ErrorCode::Storage,
+                        "another program writes to the store: " + std::string(failure.what())};
+      note_busy(error.message);
+      finish_all(items, &error);
+      return;
+    }
     if (is_damage(failure)) {
       write_apart(items);
       return;
@@ -162,9 +205,20 @@ void Writer::write(Items& items) {
     finish_all(items, &error);
     reopen_if_due();
     return;
+  } catch (const std::bad_alloc&) {  // the transaction is undone
+    finish_all(items, &kNoMemory);
+    return;
   }
   for (std::size_t i = 0; i < items.size(); ++i)
-    items[i]->finish(errors[i] ? &*errors[i] : nullptr);
+    finish(*items[i], errors[i] ? &*errors[i] : nullptr);
+}
+
+/// An item that finds no memory for its answer has none: who waits for it asks again.
+void Writer::finish(WriteItem& item, const Error* error) {
+  try {
+    item.finish(error);
+  } catch (const std::bad_alloc&) {
+  }
 }
 
 /// Writes one item without savepoints.
@@ -197,7 +251,7 @@ void Writer::write_apart(Items& items) {
       error = Error{ErrorCode::Storage, trouble()};
     else
       error = write_alone(*item);
-    item->finish(error ? &*error : nullptr);
+    finish(*item, error ? &*error : nullptr);
   }
   if (!database_)
     reopen_if_due();
@@ -211,18 +265,27 @@ std::optional<Error> Writer::write_alone(WriteItem& item) {
       std::optional<Error> error = apply_alone(item, batch);
       batch.raise_generations();
       transaction.commit();
+      if (options_.look)
+        options_.look(*database_);
       return error;
     } catch (const Failure& failure) {
-      if (!is_damage(failure))
+      if (!is_damage(failure) && !is_busy(failure))
         fail(failure);
-      if (!database_ || tries == 0)
+      if (is_busy(failure) || !database_ || tries == 0)
         return failure.error();
     }
 }
 
 void Writer::finish_all(Items& items, const Error* error) {
   for (const auto& item : items)
-    item->finish(error);
+    finish(*item, error);
+}
+
+/// \param trouble  empty: not any more.
+void Writer::note_busy(const std::string& trouble) {
+  is_busy_ = !trouble.empty();
+  const std::lock_guard lock(mutex_);
+  trouble_ = trouble;
 }
 
 void Writer::fail(const Failure& failure) {
@@ -231,8 +294,30 @@ void Writer::fail(const Failure& failure) {
   database_.reset();
   const std::lock_guard lock(mutex_);
   trouble_ = failure.what();
+  if (dynamic_cast<const NotTheFile*>(&failure) != nullptr)
+    return;  // the disk did not fail
   failures_.count += 1;
   failures_.last = trouble_;
+}
+
+/// While nothing is written.
+void Writer::look() {
+  if (!database_)
+    return;
+  try {
+    if (options_.look)
+      options_.look(*database_);
+    if (is_busy_) {
+      wait_for_lock(*database_, false);
+      const Transaction probe(*database_, Transaction::Kind::Write);
+      note_busy("");
+    }
+  } catch (const Failure& failure) {
+    if (is_busy(failure))
+      return;
+    fail(failure);
+    reopen_if_due();
+  }
 }
 
 /// A try closes all readers and reads the file, so a stream of items must not bring one each.
@@ -244,12 +329,13 @@ bool Writer::reopen_if_due() {
     watch_wal();
   } catch (const Failure& failure) {
     fail(failure);
+  } catch (const std::bad_alloc&) {
+    fail(Failure(kNoMemory));
   }
   next_try_ = std::chrono::steady_clock::now() + options_.retry_after;
   if (!database_)
     return false;
-  const std::lock_guard lock(mutex_);
-  trouble_.clear();
+  note_busy("");
   return true;
 }
 
@@ -274,6 +360,7 @@ void Writer::checkpoint_if_needed() {
     const std::uint64_t bytes = static_cast<std::uint64_t>(wal_pages_) * frame_bytes_;
     const bool full = bytes > options_.max_wal_bytes;
     if (full || bytes >= options_.checkpoint_bytes) {
+      wait_for_lock(*database_, false);  // reports would wait as well
       const bool done =
           checkpoint(*database_, full ? CheckpointKind::Whole : CheckpointKind::Passive);
       if (done && full)
@@ -287,7 +374,10 @@ void Writer::checkpoint_if_needed() {
 }
 
 void Writer::close() {
+  if (!database_)
+    return;
   try {
+    wait_for_lock(*database_, false);
     checkpoint(*database_, CheckpointKind::Whole);
   } catch (const SqliteError&) {
     // All is durable in the WAL already; the next start checkpoints it.

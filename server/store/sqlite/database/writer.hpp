@@ -63,7 +63,7 @@ class WriteItem {
   virtual void apply(Batch& batch) = 0;
 
   /// Called once, when the item is durable (no error) or undone, outside of any transaction. Must
-  /// not throw or block.
+  /// not block, nor throw anything but std::bad_alloc.
   virtual void finish(const Error* error) = 0;
 };
 
@@ -72,6 +72,10 @@ struct WriterOptions {
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
   std::uint64_t checkpoint_bytes = std::uint64_t{32} << 20U;  ///< of the WAL, to checkpoint it
   std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;    ///< see Writer::wal_full()
+  /// Throws Failure if the connection's files are not those of the store any more. Called after
+  /// each commit, before its items are finished, and so often meanwhile; may be empty.
+  std::function<void(Database&)> look = {};
+  std::chrono::milliseconds look_every{250};
 };
 
 /// Failures of the disk so far.
@@ -86,6 +90,9 @@ struct WriterFailures {
 ///
 /// If a batch meets damage, its items are written one by one, and only the items that need the
 /// damaged data fail.
+///
+/// While another program writes, items are answered with an error that says so, and the connection
+/// stays.
 ///
 /// Fail-stop: on an I/O error or a full disk, in a checkpoint too, it undoes the batch, finishes
 /// every item with the error, closes the connection and opens it again with checks, but never
@@ -120,16 +127,20 @@ class Writer {
   using Items = std::vector<std::unique_ptr<WriteItem>>;
 
   void run();
+  bool run_once();
   Items take_batch();
   void write(Items& items);
   bool write_whole(WriteItem& item);
   void write_apart(Items& items);
   std::optional<Error> write_alone(WriteItem& item);
+  static void finish(WriteItem& item, const Error* error);
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
+  void note_busy(const std::string& trouble);
   bool reopen_if_due();
   void watch_wal();
   void checkpoint_if_needed();
+  void look();
   void close();
 
   const Reopen reopen_;
@@ -137,6 +148,7 @@ class Writer {
   // The writer's thread only:
   std::unique_ptr<Database> database_;                // empty after a failure
   std::int64_t wal_pages_ = 0;                        // as of the last commit
+  bool is_busy_ = false;                              // another program writes
   std::uint64_t frame_bytes_ = 0;                     // of one of these pages
   std::chrono::steady_clock::time_point next_try_{};  // to reopen; long past at first
 

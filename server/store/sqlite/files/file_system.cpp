@@ -56,6 +56,12 @@ void require_local_filesystem(const std::filesystem::path& file,
             "(backups may go there)");
 }
 
+bool is_mount_point(const std::filesystem::path& file) {
+  struct statx status {};
+  return statx(AT_FDCWD, file.c_str(), AT_STATX_DONT_SYNC, STATX_TYPE, &status) == 0 &&
+         (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+}
+
 std::string explain_file_error(int reason, const std::filesystem::path& directory) {
   if (reason == EROFS)
     return "lies on a read-only filesystem; mount it with write access, or name a file elsewhere "

@@ -17,6 +17,9 @@ std::string network_filesystem_of(long type);
 void require_local_filesystem(const std::filesystem::path& file,
                               const std::filesystem::path& directory);
 
+/// Whether the file itself is mounted (mount --bind, Docker's -v FILE:FILE), not a folder above it.
+bool is_mount_point(const std::filesystem::path& file);
+
 /// Explains the error of a file, with what to change about its place; other errors in the system's
 /// words.
 /// \param reason  an errno

@@ -104,21 +104,6 @@ fs::path locate_store(const fs::path& file) {
   return located;
 }
 
-files::LockFile lock_store(const fs::path& located) {
-  const std::string name = located.string() + ".lock";
-  try {
-    if (auto lock = files::LockFile::try_acquire(name))
-      return *std::move(lock);
-  } catch (const files::FileError& error) {
-    throw Failure(
-        ErrorCode::Storage,
-        "lock file '" + name + "': " + explain_file_error(error.reason(), located.parent_path()));
-  }
-  throw Failure(ErrorCode::Unavailable, "store '" + located.string() +
-                                            "' is open in another server, process " +
-                                            files::LockFile::holder(name));
-}
-
 void make_for_owner(const fs::path& file) {
   try {
     const files::File made(file, O_RDWR | O_CREAT | O_EXCL, 0600);
@@ -138,6 +123,11 @@ std::filesystem::path locate_servable(const std::filesystem::path& file) {
   std::filesystem::path located = locate_store(file);
   require_writable(file, located);
   require_local_filesystem(file, located.parent_path());
+  if (is_mount_point(located))
+    refuse_store(file,
+                 "is mounted by itself, so that its WAL, which lies beside it, is not of the same "
+                 "mount; mount the folder '" +
+                     located.parent_path().string() + "' instead of the file");
   return located;
 }
 

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include "proto/files/lock_file.hpp"
 #include "proto/files/new_file.hpp"
 
 namespace kinship::store {
@@ -30,17 +29,12 @@ void require_writable(const std::filesystem::path& file, const std::filesystem::
 /// \throws Failure(Storage) with the store's name and the reason.
 [[noreturn]] void refuse_store(const std::filesystem::path& file, const std::string& why);
 
-/// Takes the store's lock, the file FILE.lock: one process writes one store.
-/// \throws Failure(Unavailable) with the process that holds it, Failure(Storage) if it cannot be
-///         made.
-files::LockFile lock_store(const std::filesystem::path& located);
-
 /// Makes an empty file that only its owner may read and write, unless it exists.
 /// \throws Failure(Storage) if it cannot be made.
 void make_for_owner(const std::filesystem::path& file);
 
 /// locate_store() for a server: also checks the SQLite library, write permission and the file
-/// system.
+/// system, and that the file is no mount point.
 /// \throws Failure(Storage)
 std::filesystem::path locate_servable(const std::filesystem::path& file);
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "proto/types/failure.hpp"
+#include "server/store/sqlite/files/named_store.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 
 namespace kinship::store {
@@ -34,7 +35,11 @@ std::unique_ptr<Database> ReaderPool::take(Clock::time_point& since) {
   constexpr std::chrono::seconds kLongestSuspension{1};
   std::unique_lock lock(mutex_);
   do {
-    if (!changed_.wait_for(lock, kLongestSuspension, [this] { return !suspended_; }))
+    const bool is_over = changed_.wait_for(lock, kLongestSuspension,
+                                           [this] { return !suspended_ || !refused_.empty(); });
+    if (!refused_.empty())
+      throw NotTheFile(refused_);
+    if (!is_over)
       throw Failure(ErrorCode::Storage, "the store is being opened again after a failure");
     changed_.wait(lock, [this] { return suspended_ || lent_.size() < kMaxConnections; });
   } while (suspended_);
@@ -62,6 +67,14 @@ void ReaderPool::give_back(std::unique_ptr<Database> database, Clock::time_point
   changed_.notify_all();
 }
 
+void ReaderPool::refuse(const std::string& why) {
+  {
+    const std::lock_guard lock(mutex_);
+    refused_ = why;
+  }
+  suspend();
+}
+
 void ReaderPool::suspend() {
   std::unique_lock lock(mutex_);
   suspended_ = true;
@@ -73,6 +86,7 @@ void ReaderPool::suspend() {
 void ReaderPool::resume() {
   const std::lock_guard lock(mutex_);
   suspended_ = false;
+  refused_.clear();
   changed_.notify_all();
 }
 

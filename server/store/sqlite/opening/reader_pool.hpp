@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
@@ -50,6 +51,8 @@ class ReaderPool {
 
   /// Waits for the leases to end and closes every connection; lease() waits until resume().
   void suspend();
+  /// The same, and until resume() lease() throws NotTheFile with the reason, at once.
+  void refuse(const std::string& why);
   void resume();
 
  private:
@@ -65,6 +68,7 @@ class ReaderPool {
   std::vector<std::unique_ptr<Database>> idle_;  // guarded by mutex_, like all below
   std::multiset<Clock::time_point> lent_;        // when each was
   bool suspended_ = false;
+  std::string refused_;  // while it is suspended: why; may be empty
 };
 
 }  // namespace kinship::store

@@ -11,6 +11,7 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/files/store_lock.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/upkeep/restoration.hpp"
@@ -54,7 +55,7 @@ class ReadStore {
  public:
   explicit ReadStore(const fs::path& located)
       : file_(located),
-        lock_(lock_store(located)),
+        lock_(located),
         had_wal_(fs::exists(located.string() + "-wal")),
         database_(open_reader(without_journal(located))) {}
   ReadStore(const ReadStore&) = delete;
@@ -70,7 +71,7 @@ class ReadStore {
 
  private:
   fs::path file_;
-  files::LockFile lock_;
+  StoreLock lock_;
   bool had_wal_;
   std::unique_ptr<Database> database_;
 };
@@ -103,7 +104,7 @@ Restored restore_store(const fs::path& backup, const fs::path& file, const Progr
     throw Failure(ErrorCode::NotFound, "backup '" + backup.string() + "': there is no such file");
   return naming(file, [&] {
     const fs::path located = locate_store(file);
-    const files::LockFile lock = lock_store(located);
+    const StoreLock lock(located);
     if (fs::equivalent(backup, located, error))
       throw Failure(ErrorCode::InvalidInput,
                     "backup '" + backup.string() + "': is the store that it shall replace");
@@ -119,7 +120,7 @@ Repaired repair_store(const fs::path& file, const Progress& progress) {
       static_cast<void>(locate_present(file));  // which says so
     // The lock first: beside one a damaged header is not judged.
     const fs::path located = fs::weakly_canonical(fs::absolute(file));
-    const files::LockFile lock = lock_store(located);
+    const StoreLock lock(located);
     static_cast<void>(locate_present(file));
     // The old store is its own backup here: the rows read from it replace it.
     Restoration restoration(located, located);
@@ -132,7 +133,7 @@ Repaired repair_store(const fs::path& file, const Progress& progress) {
 Migrated migrate_store(const fs::path& file) {
   return naming(file, [&] {
     const fs::path located = locate_present(file);
-    const files::LockFile lock = lock_store(located);
+    const StoreLock lock(located);
     Migrated migrated;
     make_wal_durable(located);
     const std::int64_t from = [&] {

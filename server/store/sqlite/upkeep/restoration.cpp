@@ -10,11 +10,11 @@
 #include <cstring>
 #include <utility>
 
-#include "proto/types/time_text.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
+#include "server/store/sqlite/files/leftovers.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/history.hpp"
@@ -24,7 +24,6 @@
 #include "server/store/sqlite/upkeep/store_repair.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/values/audit_texts.hpp"
-#include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {
@@ -36,13 +35,6 @@ void remove_with_sidecars(const fs::path& file) {
     unlink((file.string() + sidecar).c_str());
   unlink((file.string() + std::string(SchemaCopy::kSuffix)).c_str());
   unlink(file.c_str());
-}
-
-/// As time_text(), without signs that not every file system takes in a name.
-std::string stamp() {
-  std::string text = time_text(now_ms());
-  std::erase_if(text, [](char c) { return c == '-' || c == ':'; });
-  return text;
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::string& doing, int error) {
@@ -168,6 +160,7 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
         salvage(file_, *target, copy_, [&](double done) { progress(kSalvageShare * done); });
     repaired.damaged_places = salvaged.damaged_places;
     repaired.lost = std::move(salvaged.lost);
+    repaired.tables = std::move(salvaged.tables);
     epoch_ = write_new_epoch(*target, copy_);
     insert_audit(*target, entry_of_maintenance("repair", file_.string(), "",
                                                "epoch " + epoch_.text() + ", " +
@@ -188,10 +181,10 @@ Restored Restoration::replace() {
   if (fs::exists(file_)) {
     fold_old();
     restored.replaced = name_copy();
-    move_sidecars(restored.replaced);
+    move_sidecars(file_, restored.replaced);
     exchange(restored.replaced);
   } else {
-    move_sidecars(file_.string() + ".replaced-" + stamp());
+    move_sidecars(file_, file_.string() + ".replaced-" + time_stamp());
     require(files::rename_new(copy_, file_), file_, "cannot be named");
   }
   files::sync_folder_of(file_);
@@ -214,19 +207,8 @@ void Restoration::fold_old() {
   }
 }
 
-/// SQLite must not find them beside the new store, nor under a name where it would take them for
-/// files of another one.
-void Restoration::move_sidecars(const fs::path& replaced) const {
-  for (const std::string sidecar : kSidecars) {
-    const fs::path from = file_.string() + sidecar;
-    if (fs::exists(from))
-      require(files::rename_new(from, replaced.string() + "." + sidecar.substr(1)), from,
-              "cannot be set aside");
-  }
-}
-
 fs::path Restoration::name_copy() const {
-  const std::string wanted = file_.string() + ".replaced-" + stamp();
+  const std::string wanted = file_.string() + ".replaced-" + time_stamp();
   constexpr int kTries = 100;
   for (int number = 1; number <= kTries; ++number) {
     const fs::path name = number == 1 ? wanted : wanted + "-" + std::to_string(number);

@@ -34,7 +34,6 @@ class Restoration {
  private:
   void keep_audit_of_old(Database& database) const;
   void fold_old();
-  void move_sidecars(const std::filesystem::path& replaced) const;
   std::filesystem::path name_copy() const;
   void exchange(const std::filesystem::path& replaced) const;
 

@@ -77,10 +77,12 @@ void Scrub::run() {
     std::chrono::milliseconds pause = kIdle;
     try {
       pause = step();
+      log_news();
     } catch (const Failure&) {
       // The store is being opened again, or cannot be read at all, which its readers say.
+    } catch (const std::bad_alloc&) {
+      // The slice is read again.
     }
-    log_news();
     std::unique_lock lock(mutex_);
     if (wake_.wait_for(lock, pause, [this] { return stopping_; }))
       return;

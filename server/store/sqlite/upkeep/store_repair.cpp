@@ -14,6 +14,7 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/sqlite/upkeep/repair_account.hpp"
 #include "server/store/sqlite/upkeep/schema_recovery.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -391,6 +392,7 @@ Salvaged Salvager::run(const Progress& progress) {
     copy_by_id(std::string(kCopiedById[i]));
     progress(static_cast<double>(i + 1) / static_cast<double>(kCopiedById.size()));
   }
+  salvaged_.tables = account_of_rows(*source_, *target_);
   // An attempt that came again stands there twice; the new row is enough.
   for_each_of_source(
       "SELECT id FROM quarantine WHERE of_table = 'attempt' AND " +

@@ -11,6 +11,7 @@ namespace kinship::store {
 struct Salvaged {
   std::uint64_t damaged_places = 0;  ///< as Repaired has them
   std::vector<Repaired::Lost> lost;
+  std::vector<Repaired::Table> tables;
 };
 
 /// Writes into a new store every row that SQL can read of a damaged one and whose checksum is

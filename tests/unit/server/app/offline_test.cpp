@@ -52,6 +52,7 @@ TEST_F(Offline, ARepairSaysWhatIsLostAndWhereTheDamagedStoreIs) {
   EXPECT_EQ(run(OfflineVerb::Repair, store_), kFailed);  // it holds robots to be registered anew
   EXPECT_NE(out_.str().find("; 2 damaged places were left behind\n"), std::string::npos)
       << out_.str();
+  EXPECT_NE(out_.str().find("missing: task 1\n"), std::string::npos) << out_.str();
   EXPECT_NE(out_.str().find("still wrong: robot: 'iiwa': its row is damaged"), std::string::npos)
       << out_.str();
   EXPECT_NE(out_.str().find("the damaged store is now '" + store_.string() + ".replaced-"),
@@ -61,8 +62,12 @@ TEST_F(Offline, ARepairSaysWhatIsLostAndWhereTheDamagedStoreIs) {
 
 TEST_F(Offline, ARepairOfASoundStoreLosesNothing) {
   EXPECT_EQ(run(OfflineVerb::Repair, store_), kDone);
-  EXPECT_NE(out_.str().find("; 0 damaged places were left behind\nkept: "), std::string::npos)
+  EXPECT_NE(out_.str().find("; 0 damaged places were left behind\ntable robot: "),
+            std::string::npos)
       << out_.str();
+  EXPECT_NE(out_.str().find("table path: 14 rows before, 14 after, 0 missing\n"), std::string::npos)
+      << out_.str();
+  EXPECT_EQ(out_.str().find("\nmissing: "), std::string::npos) << out_.str();
   EXPECT_NE(out_.str().find("nothing was lost\n"), std::string::npos) << out_.str();
 }
 

@@ -41,6 +41,15 @@ class HeldPool : public testing::Test {
   WorkerPool pool_{{.threads = 1, .queue_limit = 4, .niceness = 0}};
 };
 
+TEST_F(HeldPool, AJobThatFindsNoMemoryIsDroppedAndTheNextOneRuns) {
+  EXPECT_TRUE(
+      pool_.submit(Priority::Interactive, {.run = [] { throw std::bad_alloc(); }, .abandon = {}}));
+  EXPECT_TRUE(pool_.submit(Priority::Interactive, note('a')));
+  open();
+  pool_.stop(WorkerPool::Leftovers::Run);
+  EXPECT_EQ(order_, "a");
+}
+
 TEST_F(HeldPool, InteractiveJobsGoFirstEachKindInOrder) {
   EXPECT_TRUE(pool_.submit(Priority::Background, note('c')));
   EXPECT_TRUE(pool_.submit(Priority::Interactive, note('a')));

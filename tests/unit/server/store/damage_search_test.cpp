@@ -96,6 +96,23 @@ TEST_F(DamageSearch, AStoreWithoutItsFirstPageIsRefusedAndRepaired) {
   EXPECT_EQ(report(attempt(1)).status, ReceiptStatus::Duplicate);
 }
 
+/// Rows before and after, and every attempt that is missing by the UUID of its report.
+void expect_account(const Repaired& repaired, const std::vector<Attempt>& attempts) {
+  for (const Repaired::Table& table : repaired.tables) {
+    EXPECT_EQ(table.before, table.after + table.missing.size()) << table.name;
+    if (table.name != "attempt" && table.name != "path")
+      continue;
+    EXPECT_EQ(table.before, attempts.size()) << table.name;
+    EXPECT_GT(table.missing.size(), 0U) << table.name;
+    for (const Repaired::Table::Missing& row : table.missing)
+      EXPECT_EQ(table.name == "attempt" ? row.report : std::nullopt,
+                table.name == "attempt"
+                    ? std::optional(attempts.at(static_cast<std::size_t>(row.id - 1)).report_uuid)
+                    : std::nullopt);
+  }
+  EXPECT_EQ(repaired.tables.size(), 6U);
+}
+
 TEST_F(DamageSearch, ARepairSaysWhatIsLost) {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 0; number < 200; ++number)
@@ -121,6 +138,7 @@ TEST_F(DamageSearch, ARepairSaysWhatIsLost) {
   EXPECT_EQ(lost("robot"), 1U);
   EXPECT_GT(lost("path"), 0U);
   EXPECT_GT(lost("attempt"), 0U);
+  expect_account(repaired, attempts);
   store_ = open_sqlite_store(file_);
   EXPECT_TRUE(store_->robots().empty());
   EXPECT_EQ(*store_->register_robot(robot_), RegisterStatus::Registered);

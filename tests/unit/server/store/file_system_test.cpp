@@ -8,13 +8,14 @@
 
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/files/store_lock.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::file_system_test {
 namespace {
 
 template <typename Use = decltype(locate_store)>
-std::string refusal_of(const std::filesystem::path& file, Use& use = locate_store) {
+std::string refusal_of(const std::filesystem::path& file, const Use& use = locate_store) {
   try {
     static_cast<void>(use(file));
   } catch (const Failure& failure) {
@@ -63,11 +64,12 @@ TEST(FileSystem, AnAddressIsNoStore) {
 
 TEST(FileSystem, OneProcessHasAStoreAtATime) {
   const test::TemporaryDirectory directory;
-  const files::LockFile lock = lock_store(directory / "s.db");
-  EXPECT_EQ(refusal_of(directory / "s.db", lock_store),
-            "store '" + (directory / "s.db").string() + "' is open in another server, process " +
-                std::to_string(getpid()));
-  EXPECT_NE(refusal_of("/proc/kinship/s.db", lock_store).find("file '/proc/kinship/s.db.lock': "),
+  const StoreLock held(directory / "s.db");
+  const auto lock = [](const std::filesystem::path& file) { return StoreLock(file); };
+  EXPECT_EQ(refusal_of(directory / "s.db", lock), "store '" + (directory / "s.db").string() +
+                                                      "' is open in another server, process " +
+                                                      std::to_string(getpid()));
+  EXPECT_NE(refusal_of("/proc/kinship/s.db", lock).find("file '/proc/kinship/s.db.lock': "),
             std::string::npos);
 }
 

@@ -61,6 +61,26 @@ class DamagedItem : public WriteItem {
   std::promise<std::string> done_;
 };
 
+/// Finds no memory, to be written or to answer.
+class HungryItem : public WriteItem {
+ public:
+  explicit HungryItem(bool finishes) : finishes_(finishes) {}
+  std::future<std::string> outcome() { return done_.get_future(); }
+  void apply(Batch& batch) override {
+    batch.database().cached("INSERT INTO t VALUES (2000, NULL)")->run();
+    throw std::bad_alloc();
+  }
+  void finish(const Error* error) override {
+    if (!finishes_)
+      throw std::bad_alloc();
+    done_.set_value(error != nullptr ? error->message : "");
+  }
+
+ private:
+  bool finishes_;
+  std::promise<std::string> done_;
+};
+
 /// Holds the writer's thread inside a batch until it is let go.
 class GateItem : public WriteItem {
  public:
@@ -125,6 +145,22 @@ TEST_F(WriterTest, FinishesAnItemWhenOthersCanReadIt) {
   const auto w = writer(connect());
   EXPECT_EQ(get(submit(*w, 1)).error, "");
   EXPECT_EQ(rows(), 1);
+}
+
+TEST_F(WriterTest, GoesOnWithoutMemoryForOneItem) {
+  const auto w = writer(connect());
+  for (const bool finishes : {true, false}) {
+    auto hungry = std::make_unique<HungryItem>(finishes);
+    std::future<std::string> outcome = hungry->outcome();
+    w->submit(std::move(hungry));
+    EXPECT_EQ(get(submit(*w, finishes ? 1 : 2)).error, "");
+    if (finishes)
+      EXPECT_EQ(outcome.get(), "no memory");
+    else
+      EXPECT_THROW(outcome.get(), std::future_error);  // it has no answer
+  }
+  EXPECT_EQ(rows(), 2);
+  EXPECT_EQ(w->trouble(), "");
 }
 
 TEST_F(WriterTest, CommitsTogetherWhatWaitedTogetherUpToTheCap) {

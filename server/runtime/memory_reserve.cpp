@@ -1,0 +1,52 @@
+#include "server/runtime/memory_reserve.hpp"
+
+#include <sys/mman.h>
+
+#include <atomic>
+#include <cstddef>
+#include <new>
+
+namespace kinship::runtime {
+namespace {
+
+constexpr std::size_t kReserve = std::size_t{8} << 20U;
+
+std::atomic<std::uint64_t> refusals{0};
+std::atomic<void*> reserve{nullptr};
+
+/// Of address space: pages that nobody touches are no memory.
+void* take_room(std::size_t bytes) {
+  void* const room =
+      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return room == MAP_FAILED ? nullptr : room;
+}
+
+[[noreturn]] void refuse() {
+  ++refusals;
+  if (void* const room = reserve.exchange(nullptr))
+    munmap(room, kReserve);
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void keep_memory_reserve() {
+  reserve = take_room(kReserve);
+  std::set_new_handler(refuse);
+}
+
+void renew_memory_reserve() {
+  if (reserve != nullptr || refusals == 0)
+    return;
+  void* const room = take_room(2 * kReserve);
+  if (room == nullptr)
+    return;
+  munmap(static_cast<char*>(room) + kReserve, kReserve);
+  void* none = nullptr;
+  if (!reserve.compare_exchange_strong(none, room))
+    munmap(room, kReserve);
+}
+
+std::uint64_t memory_refusals() { return refusals; }
+
+}  // namespace kinship::runtime

@@ -1,0 +1,140 @@
+#include "server/store/sqlite/files/named_store.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace kinship::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where an open file is now; " (deleted)" ends the name of one that has none.
+std::string place_of(const files::File& file) {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/fd/" + std::to_string(file.descriptor()), error).string();
+}
+
+struct stat status_of(const files::File& file) {
+  struct stat status {};
+  fstat(file.descriptor(), &status);
+  return status;
+}
+
+}  // namespace
+
+NamedStore::NamedStore(fs::path file, const files::File& open)
+    : file_(std::move(file)),
+      wal_(file_.string() + "-wal"),
+      open_(&open),
+      folder_(file_.parent_path(), O_PATH | O_DIRECTORY),
+      size_(open.size()) {}
+
+std::optional<NamedStore::Id> NamedStore::id_of(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0)
+    return std::nullopt;
+  return Id{status.st_dev, status.st_ino};
+}
+
+void NamedStore::note_opened() {
+  size_ = open_->size();
+  try {
+    log_.emplace(wal_, O_RDONLY);  // SQLite's locks are on other files
+  } catch (const files::FileError&) {
+    log_.reset();  // the next look says that it is missing
+  }
+}
+
+/// Also right while another program checkpoints: that writes the first page, which says how long
+/// the file is, and last the end.
+bool NamedStore::is_truncated() {
+  const std::uint64_t size = open_->size();
+  if (size >= size_) {
+    size_ = size;
+    return false;
+  }
+  constexpr std::size_t kHeader = 32, kPageSizeAt = 16, kPagesAt = 28;
+  std::array<char, kHeader> header{};
+  if (open_->read(header.data(), header.size(), 0) < kHeader)
+    return true;
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < bytes; ++i)
+      value = value << 8U | static_cast<std::uint8_t>(header[at + i]);
+    return value;
+  };
+  if (size < number(kPageSizeAt, 2) * number(kPagesAt, 4))
+    return true;
+  size_ = size;  // somebody's VACUUM
+  return false;
+}
+
+/// Whether names in the store's own folder, wherever that is now, lead to its files.
+bool NamedStore::is_whole_in_folder() const {
+  const auto leads_to = [&](const fs::path& path, const files::File& file) {
+    struct stat found {};
+    const struct stat wanted = status_of(file);
+    return fstatat(folder_.descriptor(), path.filename().c_str(), &found, 0) == 0 &&
+           found.st_dev == wanted.st_dev && found.st_ino == wanted.st_ino;
+  };
+  return leads_to(file_, *open_) && (!log_ || leads_to(wal_, *log_));
+}
+
+fs::path NamedStore::folder_now() const {
+  const struct stat wanted = status_of(folder_);
+  const fs::path place = place_of(folder_);
+  return id_of(place) == Id{wanted.st_dev, wanted.st_ino} ? place : fs::path();
+}
+
+NamedStore::Finding NamedStore::look_at_file() {
+  const struct stat wanted = status_of(*open_);
+  if (const auto found = id_of(file_); found != Id{wanted.st_dev, wanted.st_ino}) {
+    if (is_whole_in_folder()) {
+      const fs::path now = folder_now();
+      return {StoreChange::FolderGone,
+              now.empty() ? "another file system is mounted over its folder, it is whole below that"
+                          : "its folder is '" + now.string() + "' now, it is whole there"};
+    }
+    if (wanted.st_nlink == 0)
+      return {StoreChange::FileGone,
+              found ? "another file was put in its place" : "it was removed"};
+    return {StoreChange::FileGone,
+            (found ? "another file has its name, it is '" : "it was moved, it is '") +
+                place_of(*open_) + "' now"};
+  }
+  if (is_truncated())
+    return {StoreChange::Truncated,
+            "it was truncated to " + std::to_string(wanted.st_size) + " bytes"};
+  return {};
+}
+
+NamedStore::Finding NamedStore::look() {
+  if (Finding found = look_at_file(); found.change != StoreChange::None)
+    return found;
+  const auto wal = id_of(wal_);
+  if (!wal)
+    return {StoreChange::WalGone, "its WAL '" + wal_.string() + "' was removed"};
+  struct stat wanted {};
+  if (log_)
+    wanted = status_of(*log_);
+  if (wal != Id{wanted.st_dev, wanted.st_ino})
+    return {StoreChange::WalReplaced,
+            "another file has the name of its WAL, '" + wal_.string() + "'"};
+  return {};
+}
+
+NamedStore::Finding NamedStore::look_closed() {
+  std::error_code none;
+  Finding found = look();
+  const bool is_no_wal =
+      found.change == StoreChange::WalGone ||
+      (found.change == StoreChange::WalReplaced && fs::file_size(wal_, none) == 0);
+  return is_no_wal ? Finding{} : found;
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "proto/files/file.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::store {
+
+/// The failure of a store whose names lead elsewhere.
+class NotTheFile : public Failure {
+ public:
+  explicit NotTheFile(const std::string& message) : Failure(ErrorCode::Storage, message) {}
+};
+
+/// What became of the files of an open store.
+enum class StoreChange {
+  None,
+  FolderGone,   ///< the file is whole in its folder, to which its name no longer leads
+  FileGone,     ///< the name leads to no file, or to another one
+  Truncated,    ///< the file lost its end
+  WalGone,      ///< no WAL has the name
+  WalReplaced,  ///< another file has the name of the WAL
+};
+
+/// Whether the names of an open store (FILE, FILE-wal) still lead to the files that are open: to be
+/// asked again and again, each time a few calls of the system. A name may be taken from a file at
+/// any time, and then everything is written where nobody finds it. Used by one thread at a time.
+class NamedStore {
+ public:
+  struct Finding {
+    StoreChange change = StoreChange::None;
+    std::string text;  ///< "it was removed"; empty for None
+  };
+
+  /// \param file  of locate_store().
+  /// \param open  the store's file, open as long as this object lives.
+  NamedStore(std::filesystem::path file, const files::File& open);
+
+  /// Notes the WAL and the size, of a store that was just opened for writing.
+  void note_opened();
+
+  /// While the store is open.
+  Finding look();
+  /// Before it is opened again: a WAL that is missing or empty is none, then.
+  Finding look_closed();
+
+  /// Where the folder of the store is now; empty if nowhere, or below a mount.
+  std::filesystem::path folder_now() const;
+
+ private:
+  struct Id {
+    dev_t device = 0;
+    ino_t inode = 0;
+    bool operator==(const Id&) const = default;
+  };
+  static std::optional<Id> id_of(const std::filesystem::path& path);
+  Finding look_at_file();
+  bool is_truncated();
+  bool is_whole_in_folder() const;
+
+  const std::filesystem::path file_;
+  const std::filesystem::path wal_;
+  const files::File* open_;
+  const files::File folder_;
+  std::uint64_t size_ = 0;          // of the file, so far
+  std::optional<files::File> log_;  // the WAL: while it is open no other file gets its number
+};
+
+}  // namespace kinship::store

@@ -1,0 +1,267 @@
+// The file that is written is the file that is named: what an administrator's hand may do to the
+// files of a store that kinshipd serves, or to those of one that it left behind when it was killed.
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/faults/served_store.hpp"
+#include "tests/support/small_file_system.hpp"
+
+namespace kinship::lost_store_file_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Answer;
+using test::ServedStore;
+
+constexpr std::uint64_t kReports = 20;
+constexpr std::chrono::seconds kSoon{1};
+
+void make_empty(const fs::path& file) { std::ofstream{file}; }
+
+class LostStoreFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    store_.report(kReports);
+    ASSERT_EQ(store_.cell().status().attempts, kReports);
+  }
+
+  /// Does it, and waits until status and log say so, without any report.
+  void lose(const std::function<void()>& attack, const std::string& words) {
+    attack();
+    const auto done = std::chrono::steady_clock::now();
+    ServerStatus said;
+    EXPECT_TRUE(store_.status_becomes([&](const ServerStatus& status) {
+      said = status;
+      return !status.writable;
+    }));
+    EXPECT_LT(std::chrono::steady_clock::now() - done, kSoon);
+    EXPECT_TRUE(store_.status_becomes([&](const ServerStatus& status) {
+      said = status;
+      return status.storage_message.find("being saved") == std::string::npos;
+    }));
+    expect_says(said.storage_message, words);
+    EXPECT_FALSE(store_.offer()) << "a report was acknowledged that nobody finds";
+    expect_says(store_.cell().log(), words);
+  }
+  void expect_says(const std::string& text, const std::string& words) const {
+    for (const std::string& part :
+         {"not writable: '" + store_.file().string() + "' is not the file any more: ", words})
+      EXPECT_NE(text.find(part), std::string::npos) << part << "\nin: " << text;
+  }
+  void expect_all_when_it_goes_on() {
+    EXPECT_TRUE(store_.status_becomes([](const ServerStatus& status) { return status.writable; }));
+    expect_all_in_the_end();
+  }
+  void expect_all_in_the_end() {
+    EXPECT_TRUE(store_.has_all_receipts());
+    store_.report(1);
+    EXPECT_EQ(store_.cell().terminate(), 0);
+    EXPECT_EQ(store_.missing(store_.file()), 0U);
+  }
+  /// The one copy that the server made before it is killed, put in the store's place.
+  void restore_rescued(bool repair_it = false) {
+    store_.cell().kill();
+    const auto rescued = store_.named("fleet.db.rescued-");
+    ASSERT_EQ(rescued.size(), 1U);
+    if (repair_it) {
+      EXPECT_EQ(ServedStore::offline_of(rescued[0], "repair").code, 0);
+    }
+    const Answer answer = store_.offline("restore", {rescued[0].string()});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    store_.cell().start();
+  }
+
+  ServedStore store_;
+};
+
+TEST_F(LostStoreFile, RemovedIsSavedBesideIt) {
+  lose([&] { fs::remove(store_.file()); }, "it was removed; all of it is in '");
+  const Answer started = store_.start_in_vain(store_.file());
+  EXPECT_NE(started.code, 0);
+  restore_rescued();
+  expect_all_in_the_end();
+}
+
+TEST_F(LostStoreFile, MovedIsSavedAndGoesOnWhenItIsBack) {
+  const fs::path elsewhere = store_.folder() / "old.db";
+  lose([&] { fs::rename(store_.file(), elsewhere); }, "it was moved, it is '" + elsewhere.string());
+  EXPECT_EQ(store_.named("fleet.db.rescued-").size(), 1U);
+  fs::rename(elsewhere, store_.file());
+  expect_all_when_it_goes_on();
+  expect_says(store_.cell().log(), "' is the file again: reports are taken");
+}
+
+TEST_F(LostStoreFile, ReplacedIsSavedAndTheOtherFileIsLeftAlone) {
+  const fs::path other = store_.beside() / "other.db";
+  {
+    test::Stranger stranger(other, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    stranger.run("CREATE TABLE t (x); INSERT INTO t VALUES (7)");
+  }
+  const std::string content = test::read_text(other);
+  lose([&] { fs::rename(other, store_.file()); }, "another file was put in its place; all of it");
+  EXPECT_EQ(test::read_text(store_.file()), content);
+  restore_rescued();
+  expect_all_in_the_end();
+}
+
+TEST_F(LostStoreFile, TruncatedIsSavedAsFarAsItIsThere) {
+  // Nothing was checkpointed yet but the first page: all is in the WAL.
+  lose([&] { fs::resize_file(store_.file(), 0); }, "it was truncated to 0 bytes; what is left");
+  const Answer started = store_.start_in_vain(store_.file());
+  EXPECT_TRUE(started.says("the file is empty, but '")) << started.err;
+  restore_rescued(true);
+  expect_all_in_the_end();
+}
+
+TEST_F(LostStoreFile, WhoseFolderWasMovedGoesOnWhenItIsBack) {
+  const fs::path elsewhere = store_.beside() / "elsewhere";
+  lose([&] { fs::rename(store_.folder(), elsewhere); },
+       "its folder is '" + elsewhere.string() + "' now, it is whole there");
+  EXPECT_EQ(store_.cell().status().attempts, kReports) << "as counted before";
+  fs::rename(elsewhere, store_.folder());
+  EXPECT_EQ(store_.named("fleet.db.rescued-").size(), 0U);
+  expect_all_when_it_goes_on();
+}
+
+TEST_F(LostStoreFile, WithoutItsFolderIsSavedAboveIt) {
+  lose([&] { fs::remove_all(store_.folder()); }, "it was removed; all of it is in '");
+  store_.cell().kill();
+  fs::path rescued;
+  for (const auto& entry : fs::directory_iterator(store_.beside()))
+    if (entry.path().filename().string().starts_with("fleet.db.rescued-"))
+      rescued = entry.path();
+  ASSERT_FALSE(rescued.empty());
+  EXPECT_EQ(store_.missing(rescued), 1U) << "only what was not acknowledged";
+}
+
+TEST_F(LostStoreFile, WithoutItsWalGoesOnByItself) {
+  fs::remove(store_.wal());
+  const auto is_noticed = [this](const ServerStatus&) {
+    return store_.cell().log().find("is the file again") != std::string::npos;
+  };
+  EXPECT_TRUE(store_.status_becomes(is_noticed));
+  expect_says(store_.cell().log(), "the store itself has all reports");
+  expect_all_when_it_goes_on();
+}
+
+TEST_F(LostStoreFile, WithAnotherWalGoesOnWhenThatIsAway) {
+  const fs::path other = store_.beside() / "wal";
+  std::ofstream(other) << "no WAL at all";
+  lose([&] { fs::rename(other, store_.wal()); }, "another file has the name of its WAL");
+  EXPECT_EQ(test::read_text(store_.wal()), "no WAL at all");
+  fs::remove(store_.wal());
+  expect_all_when_it_goes_on();
+}
+
+TEST(LostStoreFileBelowAMount, GoesOnWhenTheMountIsGone) {
+  const test::TemporaryDirectory apart;
+  const test::SmallFileSystem own_namespace(apart.path(), "1m");
+  if (!own_namespace.is_mounted())
+    GTEST_SKIP() << "nothing can be mounted here: " << own_namespace.why();
+  ServedStore store;
+  store.report(kReports);
+  ASSERT_EQ(mount("tmpfs", store.folder().c_str(), "tmpfs", 0, "size=1m"), 0);
+  EXPECT_TRUE(store.status_becomes([](const ServerStatus& status) {
+    return !status.writable &&
+           status.storage_message.find(
+               "another file system is mounted over its folder, it is whole below that") !=
+               std::string::npos;
+  }));
+  EXPECT_FALSE(store.offer());
+  ASSERT_EQ(umount(store.folder().c_str()), 0);
+  EXPECT_TRUE(store.has_all_receipts());
+  EXPECT_EQ(store.cell().terminate(), 0);
+  EXPECT_EQ(store.missing(store.file()), 0U);
+}
+
+// --- at the start ---
+
+TEST_F(LostStoreFile, IsNoNewStoreWhileItsWalIsThere) {
+  store_.cell().kill();
+  const fs::path away = store_.beside() / "away.db";
+  fs::rename(store_.file(), away);
+  const auto wal_bytes = fs::file_size(store_.wal());
+  const Answer started = store_.start_in_vain(store_.file());
+  EXPECT_NE(started.code, 0);
+  for (const char* const part : {"the file is missing, but '", "fleet.db-wal'", "--new-store"})
+    EXPECT_TRUE(started.says(part)) << part << "\nin: " << started.err;
+  EXPECT_FALSE(fs::exists(store_.file()));
+  EXPECT_EQ(fs::file_size(store_.wal()), wal_bytes);
+  make_empty(store_.file());
+  EXPECT_TRUE(store_.start_in_vain(store_.file()).says("the file is empty, but '"));
+  fs::rename(away, store_.file());
+  store_.cell().start();
+  expect_all_in_the_end();
+}
+
+TEST_F(LostStoreFile, IsNoNewStoreWhileItsMarkOrItsLockIsThere) {
+  EXPECT_EQ(store_.cell().terminate(), 0);
+  fs::remove(store_.file());
+  EXPECT_TRUE(store_.start_in_vain(store_.file()).says("fleet.db.high-water-mark'"));
+  fs::remove(store_.file().string() + ".high-water-mark");
+  EXPECT_TRUE(store_.start_in_vain(store_.file()).says("fleet.db.lock' is there"));
+}
+
+TEST_F(LostStoreFile, IsReplacedByANewOneOnDemandAlone) {
+  store_.cell().kill();
+  EXPECT_TRUE(store_.start_in_vain(store_.file(), {"--new-store"}).says("is there; --new-store"));
+  const std::string wal = test::read_text(store_.wal());
+  fs::remove(store_.file());
+  {
+    const test::ReservedDomain domain;
+    test::ServerProcess server(
+        {.store = store_.file(), .domain = domain.number(), .arguments = {"--new-store"}});
+    EXPECT_EQ(server.terminate(), 0);
+  }
+  EXPECT_EQ(store_.missing(store_.file()), kReports);
+  const auto aside = store_.named("fleet.db.replaced-");
+  ASSERT_FALSE(aside.empty());
+  std::string kept;
+  for (const fs::path& path : aside)
+    if (path.extension() == ".wal")
+      kept = test::read_text(path);
+  EXPECT_EQ(kept, wal);
+}
+
+// --- its lock ---
+
+TEST_F(LostStoreFile, IsLockedAlsoWhenTheLockFileIsRemoved) {
+  fs::remove(store_.file().string() + ".lock");
+  const Answer second = store_.start_in_vain(store_.file());
+  EXPECT_NE(second.code, 0);
+  EXPECT_TRUE(second.says("is open in another server, process ")) << second.err;
+  EXPECT_FALSE(second.says("process unknown")) << second.err;
+  EXPECT_NE(store_.offline("check").code, 0);
+  expect_all_in_the_end();
+}
+
+TEST(StoreThatIsAMount, IsRefusedWithTheFolderToMount) {
+  const test::TemporaryDirectory apart;
+  const test::SmallFileSystem own_namespace(apart.path(), "1m");
+  if (!own_namespace.is_mounted())
+    GTEST_SKIP() << "nothing can be mounted here: " << own_namespace.why();
+  ServedStore store;
+  store.report(kReports);
+  const test::TemporaryDirectory container;
+  const fs::path mounted = container / "fleet.db";
+  make_empty(mounted);
+  ASSERT_EQ(mount(store.file().c_str(), mounted.c_str(), nullptr, MS_BIND, nullptr), 0);
+  const Answer second = store.start_in_vain(mounted);
+  EXPECT_NE(second.code, 0);
+  EXPECT_TRUE(second.says("is mounted by itself")) << second.err;
+  EXPECT_TRUE(second.says("mount the folder '" + container.path().string())) << second.err;
+  const Answer check = ServedStore::offline_of(mounted, "check");
+  EXPECT_TRUE(check.says("is open in another server, process " +
+                         std::to_string(store.cell().server().pid())))
+      << check.err;
+  umount(mounted.c_str());
+}
+
+}  // namespace
+}  // namespace kinship::lost_store_file_test
