@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "server/store/store.hpp"
+#include "server/store/values/put_off_reports.hpp"
 
 namespace kinship::store {
 
@@ -28,6 +29,8 @@ struct SqliteOptions {
   std::uint64_t max_distribution_bytes = 0;
   /// Cap of the paths of a robot and task (rules/report_resolver.hpp); 0: none.
   std::uint64_t max_paths_per_pair = 0;
+  /// How long a report that the database did not take is answered without asking it again.
+  std::chrono::milliseconds put_off_for = PutOffReports::kRemembered;
   std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: no search
   /// Takes a line when damage is found, from a thread of the store's own; may be empty.
   std::function<void(std::string_view)> log = {};

@@ -84,8 +84,9 @@ struct WriterFailures {
 /// up to the cap, and finishes them after the commit is durable, without a timer. When the WAL is
 /// long enough it checkpoints after that, so that no item waits for it.
 ///
-/// If a batch meets damage, its items are written one by one, and only the items that need the
-/// damaged data fail.
+/// If a batch meets damage, or a trigger that undoes it, its items are written one by one, and only
+/// the items that need the damaged data fail. Once another program has migrated the store nothing
+/// is written any more.
 ///
 /// Fail-stop: on an I/O error or a full disk, in a checkpoint too, it undoes the batch, finishes
 /// every item with the error, closes the connection and opens it again with checks, but never
@@ -125,6 +126,7 @@ class Writer {
   bool write_whole(WriteItem& item);
   void write_apart(Items& items);
   std::optional<Error> write_alone(WriteItem& item);
+  void require_schema();
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
   bool reopen_if_due();
@@ -138,6 +140,7 @@ class Writer {
   std::unique_ptr<Database> database_;                // empty after a failure
   std::int64_t wal_pages_ = 0;                        // as of the last commit
   std::uint64_t frame_bytes_ = 0;                     // of one of these pages
+  std::int64_t schema_ = 0;                           // version, when it was opened
   std::chrono::steady_clock::time_point next_try_{};  // to reopen; long past at first
 
   std::atomic<std::uint64_t> wal_bytes_ = 0;
