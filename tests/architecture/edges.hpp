@@ -121,7 +121,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          inverse, evidence, types},
         {"Eigen"}}},
       {"server/app",
-       {{service, access, quotas, metrics, security, dds, codec, json, manual, tables, types,
+       {{service, access, quotas, metrics, security, dds, codec, json, manual, sites, tables, types,
          store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

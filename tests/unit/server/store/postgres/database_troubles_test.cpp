@@ -1,9 +1,12 @@
 // What the database refuses of reports that break no rule: they wait, and nothing waits with them.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <thread>
 
 #include "proto/types/hex.hpp"
@@ -11,6 +14,7 @@
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/postgres_store.hpp"
 #include "tests/support/postgres_programs.hpp"
+#include "tests/support/small_file_system.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/store/postgres/fresh_database.hpp"
@@ -207,6 +211,51 @@ TEST_F(DatabaseTroubles, WhatIsPutOffIsAnsweredFromMemoryForAWhile) {
   EXPECT_NE(store_->status().message.find("put off 1 time since"), std::string::npos);
   EXPECT_TRUE(store_->why_put_off(poison_.report_uuid));
   EXPECT_FALSE(store_->why_put_off(attempt(1).report_uuid));
+}
+
+TEST(DatabaseOnAFullDisk, PutsEverythingOffUntilThereIsRoom) {
+  if (const std::string missing = test::missing_postgres(); !missing.empty())
+    GTEST_SKIP() << missing;
+  const test::TemporaryDirectory folder;
+  const test::SmallFileSystem disk(folder.path(), "2m");
+  if (!disk.is_mounted())
+    GTEST_SKIP() << disk.why();
+  const test::PostgresCluster cluster;
+  struct stat owner {};
+  ASSERT_EQ(stat(cluster.folder().c_str(), &owner), 0);
+  const std::filesystem::path space = folder / "space", ballast = folder / "ballast";
+  std::filesystem::create_directory(space);
+  ASSERT_EQ(chown(space.c_str(), owner.st_uid, owner.st_gid), 0);
+  const auto store = open_postgres_store(cluster.create_database("full"),
+                                         {.retry_after = 1ms, .put_off_for = 0ms});
+  const RobotRecord robot = test::make_robot("panda", 1);
+  ASSERT_TRUE(store->register_robot(robot));
+  cluster.query("CREATE TABLESPACE small LOCATION '" + space.string() + "'");
+  cluster.query("ALTER TABLE attempt SET TABLESPACE small", "full");
+  {
+    std::ofstream filling(ballast, std::ios::binary);
+    while (filling << std::string(4096, 'x') << std::flush)
+      continue;
+  }
+  const auto attempt = [&](std::uint64_t number) {
+    return test::make_unsolved(robot.digest, "shelf", number);
+  };
+  constexpr std::uint64_t kMost = 10'000;
+  std::uint64_t number = 0;
+  Receipt receipt;
+  do
+    receipt = test::report(*store, {attempt(++number)}).at(0);
+  while (receipt.status == ReceiptStatus::Recorded && number < kMost);
+  EXPECT_EQ(receipt.status, ReceiptStatus::TryAgain);
+  EXPECT_NE(receipt.message.find("[53100]"), std::string::npos) << receipt.message;
+  const StoreStatus status = store->status();
+  EXPECT_FALSE(status.writable);
+  EXPECT_NE(status.message.find("[53100]"), std::string::npos) << status.message;
+  std::filesystem::remove(ballast);
+  for (std::uint64_t i = 0; i < kMost && receipt.status == ReceiptStatus::TryAgain; ++i)
+    receipt = test::report(*store, {attempt(number)}).at(0);
+  EXPECT_EQ(receipt.status, ReceiptStatus::Recorded) << receipt.message;
+  EXPECT_EQ(cluster.query("SELECT count(*) FROM attempt", "full"), std::to_string(number));
 }
 
 /// A newer server migrates the database that this one serves.
