@@ -71,8 +71,9 @@ int resend(const Session& session, link::Outbox& outbox, const std::vector<std::
 void add_outbox(CLI::App& app, Session& session) {
   CLI::App* group =
       add_group(app, session, "outbox", "Reports on this host that have no receipt (no server)");
-  CLI::App* list = add_command(*group, "list", "Reports that wait, or are kept for somebody to look",
-                               "kinship outbox list\n  kinship outbox list --outbox FOLDER --json");
+  CLI::App* list =
+      add_command(*group, "list", "Reports that wait, or are kept for somebody to look",
+                  "kinship outbox list\n  kinship outbox list --outbox FOLDER --json");
   const auto list_folder = add_folder(*list);
   add_json(*list, session);
   on_run(*list, session, [&session, list_folder] {
