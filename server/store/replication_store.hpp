@@ -45,8 +45,8 @@ class ReplicationStore {
   /// retired there is retired here.
   virtual void commit_replicated(std::vector<ReplicatedReport> reports,
                                  ReportStore::ReportsDone done) = 0;
-  /// Why a report was answered TryAgain by itself, while others were stored: lately the database did
-  /// not take it. From memory.
+  /// Why a report was answered TryAgain by itself, while others were stored: lately the database
+  /// did not take it. From memory.
   virtual std::optional<std::string> why_put_off(const Uuid& report) const = 0;
   /// Retires the paths of reports that another store retired, durable on return, in one
   /// transaction. The UUID of an unknown report is kept, so that its path is retired on arrival.
