@@ -109,8 +109,8 @@ TEST_F(SetAside, AServerThatTakesNothingForAYearIsNoReason) {
     unix_ms_ += 24 * 365 * kHour_ms / 20;
     sender->retry();
   }
-  EXPECT_EQ(sender->counts().set_aside, 0U);
-  EXPECT_TRUE(fs::exists(file("pending", report)));
+  ASSERT_EQ(sender->counts().set_aside, 0U);
+  ASSERT_TRUE(fs::exists(file("pending", report)));
   takes_nothing_ = false;
   while (sender->counts().accepted == 0)
     sender->retry();
