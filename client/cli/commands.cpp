@@ -37,6 +37,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_paths(app, session);
   add_distributions(app, session);
   add_configurations(app, session);
+  add_outbox(app, session);
   add_completion(app, session);
   try {
     app.parse(argc, argv);

@@ -94,6 +94,7 @@ void add_tasks(CLI::App& app, Session& session);
 void add_paths(CLI::App& app, Session& session);
 void add_distributions(CLI::App& app, Session& session);
 void add_configurations(CLI::App& app, Session& session);
+void add_outbox(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);  ///< completion and candidates
 
 }  // namespace kinship::cli

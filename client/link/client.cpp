@@ -160,7 +160,7 @@ Client::OutboxState Client::outbox() const {
     return {};
   ReportSender::Counts counts = line_->sender->counts();
   return {line_->outbox->pending_count(), counts.accepted, counts.refused,
-          std::move(counts.problem)};
+          std::move(counts.problem), counts.set_aside};
 }
 
 Client::OutboxState Client::flush(milliseconds deadline) {

@@ -64,10 +64,11 @@ class Client {
   void report(const Attempt& attempt);
 
   struct OutboxState {
-    std::size_t pending = 0;   ///< not yet acknowledged
-    std::size_t accepted = 0;  ///< since this client started: stored, duplicate or recorded
-    std::size_t refused = 0;   ///< since this client started; kept in the rejected folder
-    std::string problem;       ///< why sending fails; empty: no known problem
+    std::size_t pending = 0;    ///< not yet acknowledged
+    std::size_t accepted = 0;   ///< since this client started: stored, duplicate or recorded
+    std::size_t refused = 0;    ///< since this client started; kept in the rejected folder
+    std::string problem;        ///< why sending fails; empty: no known problem
+    std::size_t set_aside = 0;  ///< since this client started; see 'kinship outbox'
   };
   OutboxState outbox() const;  ///< zeros without an outbox
 

@@ -72,7 +72,7 @@ void make_folder_durably(const std::filesystem::path& folder) {
 
 std::string read_file(const std::filesystem::path& path, std::size_t limit) {
   try {
-    return files::read_file(path, limit);
+    return files::read_regular_file(path, limit);
   } catch (const files::FileError& error) {  // another folder to write to would not help
     throw Failure(ErrorCode::Storage,
                   failure_text(error.file(),

@@ -34,6 +34,7 @@ void write_whole(const std::filesystem::path& path, std::string_view content);
 /// \throws Failure(Storage) naming the folder and the system's error.
 void make_folder_durably(const std::filesystem::path& folder);
 
+/// Never waits, whatever is there (files::read_regular_file).
 /// \throws Failure(Storage) if it cannot be read, Failure(TooLarge) above `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t limit);
 

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPending = "pending";
 constexpr std::string_view kRejected = "rejected";
+constexpr std::string_view kSetAside = "set_aside";
 constexpr std::string_view kRobots = "robots";
 constexpr std::string_view kEpoch = "store_epoch";
 constexpr std::string_view kToken = "consistency_token";
@@ -38,21 +39,20 @@ void remove_older_than(const fs::directory_entry& entry, std::chrono::hours age)
   // Whatever failed here is tried again at the next purge.
 }
 
-/// \return TooLarge, as a value, for a file that cannot be ours.
+/// \return as a value: TooLarge for a file that cannot be ours, Storage for one that cannot be
+/// read.
 Result<std::string> read_limited(const fs::path& path) {
   try {
     return read_file(path, kMaxFileBytes);
   } catch (const Failure& failure) {
-    if (failure.code() == ErrorCode::TooLarge)
-      return failure.error();
-    throw;
+    return failure.error();
   }
 }
 
 }  // namespace
 
 Outbox::Outbox(fs::path folder) : folder_(std::move(folder)), sent_(folder_) {
-  for (const std::string_view part : {kPending, kRejected, kRobots})
+  for (const std::string_view part : {kPending, kRejected, kSetAside, kRobots})
     make_folder_durably(folder_ / part);
 }
 
@@ -60,14 +60,20 @@ fs::path Outbox::file(std::string_view part, const Uuid& report_uuid) const {
   return folder_ / part / report_file_name(report_uuid);
 }
 
+fs::path Outbox::reason_file(std::string_view part, const Uuid& report_uuid) const {
+  return folder_ / part / (report_uuid.text() + ".reason.txt");
+}
+
 void Outbox::add(const Attempt& attempt) {
   write_durably(file(kPending, attempt.report_uuid), json::to_json(attempt) + "\n");
 }
 
-std::size_t Outbox::pending_count() const {
+std::size_t Outbox::pending_count(const std::set<Uuid>& without) const {
   std::size_t count = 0;
   for_each_entry(folder_ / kPending, [&](const fs::directory_entry& entry) {
-    if (report_uuid_of(entry.path()))
+    const auto uuid = report_uuid_of(entry.path());
+    std::error_code error;
+    if (uuid && !without.contains(*uuid) && entry.is_regular_file(error))
       ++count;
   });
   return count;
@@ -78,8 +84,8 @@ std::vector<Uuid> Outbox::pending() const {
   for_each_entry(folder_ / kPending, [&](const fs::directory_entry& entry) {
     const auto uuid = report_uuid_of(entry.path());
     std::error_code error;
-    const fs::file_time_type written = entry.last_write_time(error);
-    if (uuid && !error)
+    const fs::file_time_type written = entry.last_write_time(error);  // min() of a dangling link
+    if (uuid)
       found.emplace_back(written, *uuid);
   });
   std::sort(found.begin(), found.end());
@@ -92,7 +98,7 @@ std::vector<Uuid> Outbox::pending() const {
 Result<Attempt> Outbox::read(const Uuid& report_uuid) const {
   const fs::path path = file(kPending, report_uuid);
   std::error_code error;
-  if (!fs::exists(path, error))
+  if (!fs::exists(fs::symlink_status(path, error)))
     return Error{ErrorCode::NotFound, path.string() + ": is gone"};
   const auto text = read_limited(path);
   if (!text)
@@ -112,10 +118,54 @@ void Outbox::mark_sent(const Uuid& report_uuid) {
   move_file(file(kPending, report_uuid), sent_.file(report_uuid));
 }
 
+void Outbox::put_away(std::string_view part, const Uuid& report_uuid, std::string_view reason) {
+  write_durably(reason_file(part, report_uuid), std::string(reason) + "\n");
+  move_file(file(kPending, report_uuid), file(part, report_uuid));
+}
+
 void Outbox::reject(const Uuid& report_uuid, std::string_view reason) {
-  write_durably(folder_ / kRejected / (report_uuid.text() + ".reason.txt"),
-                std::string(reason) + "\n");
-  move_file(file(kPending, report_uuid), file(kRejected, report_uuid));
+  put_away(kRejected, report_uuid, reason);
+}
+
+void Outbox::set_aside(const Uuid& report_uuid, std::string_view reason) {
+  put_away(kSetAside, report_uuid, reason);
+}
+
+std::vector<Uuid> Outbox::reports_in(std::string_view part) const {
+  std::vector<Uuid> reports;
+  for_each_entry(folder_ / part, [&](const fs::directory_entry& entry) {
+    if (const auto uuid = report_uuid_of(entry.path()))
+      reports.push_back(*uuid);
+  });
+  std::sort(reports.begin(), reports.end());
+  return reports;
+}
+
+std::vector<Uuid> Outbox::reports_set_aside() const { return reports_in(kSetAside); }
+
+bool Outbox::resend(const Uuid& report_uuid) {
+  if (!move_file(file(kSetAside, report_uuid), file(kPending, report_uuid)))
+    return false;
+  std::error_code error;  // a reason without its report is not looked at
+  fs::remove(reason_file(kSetAside, report_uuid), error);
+  return true;
+}
+
+std::vector<OutboxEntry> Outbox::entries() const {
+  std::vector<OutboxEntry> entries;
+  for (const Uuid& uuid : reports_in(kPending)) {
+    const Result<Attempt> attempt = read(uuid);
+    if (attempt || attempt.error().code != ErrorCode::NotFound)
+      entries.push_back({fs::path(kPending) / report_file_name(uuid), "pending",
+                         attempt ? "" : attempt.error().message});
+  }
+  for (const auto& [part, state] : {std::pair(kRejected, "rejected"), {kSetAside, "set aside"}})
+    for (const Uuid& uuid : reports_in(part)) {
+      const Result<std::string> why = read_limited(reason_file(part, uuid));
+      entries.push_back({fs::path(part) / report_file_name(uuid), state,
+                         why ? why->substr(0, why->find('\n')) : why.error().message});
+    }
+  return entries;
 }
 
 void Outbox::keep_robot(const Digest& robot, const RobotDescription& description) {
@@ -188,7 +238,7 @@ void Outbox::age(std::chrono::milliseconds sending) {
   sent_.make_folders();  // a rotating process may have been killed in between
   sent_.age(sending);
   for (const fs::path& folder :
-       {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})
+       {folder_ / kPending, folder_ / kRejected, folder_ / kSetAside, folder_ / kRobots, folder_})
     for_each_entry(folder, [](const fs::directory_entry& entry) {
       if (files::is_part(entry.path()))
         remove_older_than(entry, kKeepTemporary);

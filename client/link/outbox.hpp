@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/outbox_entry.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/uuid.hpp"
@@ -20,8 +22,9 @@
 namespace kinship::link {
 
 /// Reports of a client on disk, one file each, named by report UUID: `pending/` until the server's
-/// receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good. Beside them `robots/`: the
-/// descriptions that register their robots.
+/// receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good. `set_aside/`: those that the
+/// server neither takes nor refuses, until resend(). Beside them `robots/`: the descriptions that
+/// register their robots.
 ///
 /// Processes may share one: each may add, only the holder of the sender lock (ReportSender) moves.
 /// Methods throw Failure(Storage) naming the file. May be shared between threads.
@@ -34,20 +37,30 @@ class Outbox {
 
   void add(const Attempt& attempt);  ///< into pending; durable on return
 
-  std::size_t pending_count() const;
-  std::vector<Uuid> pending() const;  ///< oldest first
+  /// Regular files that have the name of a report, but these.
+  std::size_t pending_count(const std::set<Uuid>& without = {}) const;
+  std::vector<Uuid> pending() const;  ///< oldest first; also what only has the name of a report
 
+  /// Never waits, whatever has the name of the report.
   /// \return a pending attempt; NotFound if it is gone, InvalidInput or TooLarge if its file is
-  ///         damaged.
+  ///         damaged, Storage if it cannot be read: a folder, a FIFO, a file of somebody else, ...
   Result<Attempt> read(const Uuid& report_uuid) const;
 
   void mark_sent(const Uuid& report_uuid);
-  void reject(const Uuid& report_uuid, std::string_view reason);  ///< reason: <uuid>.reason.txt
+  void reject(const Uuid& report_uuid, std::string_view reason);     ///< reason: <uuid>.reason.txt
+  void set_aside(const Uuid& report_uuid, std::string_view reason);  ///< the same
+
+  std::vector<Uuid> reports_set_aside() const;
+  /// Makes a report that is set aside pending again. \return false if it is gone.
+  bool resend(const Uuid& report_uuid);
+
+  /// Reports that wait or are kept apart, by folder and file. Reads all pending ones.
+  std::vector<OutboxEntry> entries() const;
 
   void keep_robot(const Digest& robot, const RobotDescription& description);  ///< durably
 
-  /// \return the description that keep_robot() kept last; NotFound if there is none, InvalidInput
-  ///         or TooLarge if its file is damaged.
+  /// \return the description that keep_robot() kept last; NotFound if there is none, InvalidInput,
+  ///         TooLarge or Storage if its file is damaged or cannot be read.
   Result<RobotDescription> robot(const Digest& robot) const;
 
   /// Takes the state of the server's store from a reply; to be called before its receipts are
@@ -66,6 +79,9 @@ class Outbox {
 
  private:
   std::filesystem::path file(std::string_view part, const Uuid& report_uuid) const;
+  std::filesystem::path reason_file(std::string_view part, const Uuid& report_uuid) const;
+  void put_away(std::string_view part, const Uuid& report_uuid, std::string_view reason);
+  std::vector<Uuid> reports_in(std::string_view part) const;
 
   std::filesystem::path folder_;
   SentReports sent_;

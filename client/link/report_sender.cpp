@@ -20,10 +20,12 @@ constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
 constexpr std::chrono::hours kAgeing{1};
 constexpr std::chrono::minutes kBetweenProbes{10};
+constexpr std::chrono::minutes kPassBy{1};         // a file that cannot be read
 constexpr std::chrono::milliseconds kPoll = 50ms;  // for reports that another process sends
 
-bool is_final(ReceiptStatus status) {
-  return status != ReceiptStatus::TryAgain && status != ReceiptStatus::UnknownRobot;
+bool is_taken(ReceiptStatus status) {
+  return status == ReceiptStatus::Stored || status == ReceiptStatus::Duplicate ||
+         status == ReceiptStatus::Recorded;
 }
 
 /// The right to send from an outbox; empty if another owner on this machine has it.
@@ -39,12 +41,13 @@ std::optional<files::LockFile> try_to_become_sender(const std::filesystem::path&
 }  // namespace
 
 ReportSender::ReportSender(Outbox& outbox, Send send, Register register_robot, Now now,
-                           CountServers count_servers)
+                           CountServers count_servers, SetAsideRule set_aside)
     : outbox_(outbox),
       send_(std::move(send)),
       register_robot_(std::move(register_robot)),
       now_(std::move(now)),
       count_servers_(std::move(count_servers)),
+      tries_(outbox.folder(), std::move(set_aside)),
       thread_([this] { run(); }) {}
 
 ReportSender::~ReportSender() {
@@ -74,7 +77,16 @@ void ReportSender::retry() {
 
 ReportSender::Counts ReportSender::counts() const {
   const std::lock_guard lock(mutex_);
-  return counts_;
+  Counts counts = counts_;
+  counts.passed_by = passed_by_.size();
+  if (counts.problem.empty() && counts.passed_by > 0)
+    counts.problem = std::to_string(counts.passed_by) +
+                     " reports are passed by ('kinship outbox list'), e.g. " + last_passed_by_;
+  if (counts.problem.empty() && counts.set_aside > 0)
+    counts.problem = std::to_string(counts.set_aside) +
+                     " reports are set aside until 'kinship outbox resend', e.g. " +
+                     last_set_aside_;
+  return counts;
 }
 
 bool ReportSender::is_stopped() const {
@@ -83,7 +95,7 @@ bool ReportSender::is_stopped() const {
 }
 
 void ReportSender::wait_until_empty(std::chrono::steady_clock::time_point deadline) {
-  while (outbox_.pending_count() > 0) {
+  while (is_anything_to_send()) {
     std::unique_lock lock(mutex_);
     const auto now = std::chrono::steady_clock::now();
     if (is_stopped_ || now >= deadline)
@@ -112,8 +124,10 @@ void ReportSender::run() {
       return is_stopped_ || is_retry_due_ || (is_woken_ && pause == kIdle);
     });
   }
-  if (lock)
+  if (lock) {
     age_now_and_then(true);
+    tries_.save();
+  }
 }
 
 /// One round. \return how long to pause.
@@ -122,6 +136,7 @@ std::chrono::milliseconds ReportSender::work(std::optional<files::LockFile>& loc
     lock = try_to_become_sender(outbox_.folder());
     if (!lock)
       return kLockRetry;
+    tries_.load();
   }
   age_now_and_then(false);
   is_resending_ = false;
@@ -144,6 +159,19 @@ void ReportSender::age_now_and_then(bool is_end) {
     report_problem(failure.what());
   }
   aged_ = now;
+  tries_.save();
+}
+
+/// The pending reports, those that the server put off last time behind the others.
+std::vector<Uuid> ReportSender::in_turn() {
+  std::vector<Uuid> pending = outbox_.pending();
+  const std::set<Uuid> there(pending.begin(), pending.end());
+  std::erase_if(put_off_, [&](const Uuid& uuid) { return !there.contains(uuid); });
+  std::stable_partition(pending.begin(), pending.end(),
+                        [&](const Uuid& uuid) { return !put_off_.contains(uuid); });
+  const std::lock_guard lock(mutex_);
+  std::erase_if(passed_by_, [&](const auto& each) { return !there.contains(each.first); });
+  return pending;
 }
 
 /// \return false if something is left that should be tried again.
@@ -151,14 +179,19 @@ bool ReportSender::send_all_pending() {
   ReportRequest batch;
   BatchBytes bytes;
   unknown_.clear();
-  for (const Uuid& uuid : outbox_.pending()) {
+  for (const Uuid& uuid : in_turn()) {
     if (is_stopped())
       return false;
+    if (is_passed_by(uuid))
+      continue;
     Result<Attempt> attempt = outbox_.read(uuid);
-    if (!attempt && attempt.error().code != ErrorCode::NotFound)
+    if (!attempt && attempt.error().code == ErrorCode::Storage)
+      pass_by(uuid, attempt.error().message);
+    else if (!attempt && attempt.error().code != ErrorCode::NotFound)
       apply({uuid, ReceiptStatus::Refused, attempt.error().message});
     if (!attempt || unknown_.contains(attempt->robot))
       continue;
+    read_on(uuid);
     const BatchBytes size = batch_bytes(*attempt);
     if (batch.attempts.size() == kMaxAttemptsPerBatch || !(bytes + size).fits()) {
       if (!deliver(batch))
@@ -222,14 +255,8 @@ bool ReportSender::send_batch(ReportRequest& batch) {
     report_problem(reply.error().message);
     return false;
   }
-  std::map<Uuid, const Receipt*> receipts;  // no entry: none, or try again
   std::string problem;
-  for (const Receipt& receipt : reply->receipts) {
-    if (!is_final(receipt.status))
-      problem = receipt.message;
-    if (receipt.status != ReceiptStatus::TryAgain)
-      receipts.emplace(receipt.report_uuid, &receipt);
-  }
+  const std::map<Uuid, Receipt> receipts = final_receipts(*reply, problem);
   const auto open = std::count_if(
       batch.attempts.begin(), batch.attempts.end(),
       [&](const Attempt& attempt) { return !receipts.contains(attempt.report_uuid); });
@@ -245,13 +272,40 @@ bool ReportSender::send_batch(ReportRequest& batch) {
     const auto found = receipts.find(attempt.report_uuid);
     if (found == receipts.end())
       continue;
-    if (found->second->status == ReceiptStatus::UnknownRobot)
+    if (found->second.status == ReceiptStatus::UnknownRobot)
       of_unknown_robots.push_back(std::move(attempt));
     else
-      apply(*found->second);
+      apply(found->second);
   }
   batch.attempts = std::move(of_unknown_robots);
   return open == 0;
+}
+
+/// \param problem  gets the reason of the last report that is not taken.
+/// \return the receipts after which a report is not sent again as it is: a "try again" only if the
+///         report is to be set aside, with the reason.
+std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
+                                                     std::string& problem) {
+  std::map<Uuid, Receipt> receipts;
+  for (const Receipt& receipt : reply.receipts)
+    if (is_taken(receipt.status))
+      tries_.note_taken();
+  for (const Receipt& receipt : reply.receipts) {
+    if (receipt.status != ReceiptStatus::TryAgain) {
+      receipts.emplace(receipt.report_uuid, receipt);
+      if (receipt.status == ReceiptStatus::UnknownRobot)
+        problem = receipt.message;
+      continue;
+    }
+    put_off_.insert(receipt.report_uuid);
+    const std::string why = tries_.put_off(receipt.report_uuid, receipt.message);
+    if (why.empty())
+      problem = receipt.message;
+    else
+      receipts.emplace(receipt.report_uuid,
+                       Receipt{receipt.report_uuid, ReceiptStatus::TryAgain, why});
+  }
+  return receipts;
 }
 
 /// Registers the robots of a batch as the outbox describes them.
@@ -279,14 +333,56 @@ bool ReportSender::register_robots(const ReportRequest& batch) {
   return is_registered;
 }
 
+/// Moves a report where its receipt says. What is in the way of one holds up no other.
 void ReportSender::apply(const Receipt& receipt) {
+  const Uuid& uuid = receipt.report_uuid;
   const bool is_refused = receipt.status == ReceiptStatus::Refused;
-  if (is_refused)
-    outbox_.reject(receipt.report_uuid, receipt.message);
-  else
-    outbox_.mark_sent(receipt.report_uuid);
+  const bool is_set_aside = receipt.status == ReceiptStatus::TryAgain;
+  try {
+    if (is_refused)
+      outbox_.reject(uuid, receipt.message);
+    else if (is_set_aside)
+      outbox_.set_aside(uuid, receipt.message);
+    else
+      outbox_.mark_sent(uuid);
+  } catch (const Failure& failure) {
+    return pass_by(uuid, failure.what());
+  }
+  tries_.forget(uuid);
   const std::lock_guard lock(mutex_);
-  ++(is_refused ? counts_.refused : counts_.accepted);
+  ++(is_refused ? counts_.refused : is_set_aside ? counts_.set_aside : counts_.accepted);
+  if (is_set_aside)
+    last_set_aside_ = uuid.text() + ": " + receipt.message;
+}
+
+/// Looks at a report again after a while.
+void ReportSender::pass_by(const Uuid& report_uuid, const std::string& why) {
+  const auto until = now_() + kPassBy;
+  const std::lock_guard lock(mutex_);
+  passed_by_[report_uuid] = until;
+  last_passed_by_ = why;
+}
+
+bool ReportSender::is_passed_by(const Uuid& report_uuid) const {
+  const auto now = now_();
+  const std::lock_guard lock(mutex_);
+  const auto found = passed_by_.find(report_uuid);
+  return found != passed_by_.end() && now < found->second;
+}
+
+void ReportSender::read_on(const Uuid& report_uuid) {
+  const std::lock_guard lock(mutex_);
+  passed_by_.erase(report_uuid);
+}
+
+bool ReportSender::is_anything_to_send() const {
+  std::set<Uuid> passed_by;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [uuid, until] : passed_by_)
+      passed_by.insert(uuid);
+  }
+  return outbox_.pending_count(passed_by) > 0;
 }
 
 void ReportSender::report_problem(const std::string& problem) {

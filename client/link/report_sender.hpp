@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "client/link/outbox.hpp"
+#include "client/link/put_off_tries.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 
@@ -37,9 +39,11 @@ class ReportSender {
   using CountServers = std::function<std::uint64_t()>;
 
   struct Counts {
-    std::size_t accepted = 0;  ///< receipts stored, duplicate or recorded
-    std::size_t refused = 0;   ///< refused by the server or unreadable on disk
-    std::string problem;       ///< why sending fails; empty: no known problem
+    std::size_t accepted = 0;   ///< receipts stored, duplicate or recorded
+    std::size_t refused = 0;    ///< refused by the server or damaged on disk
+    std::size_t set_aside = 0;  ///< put off by the server again and again (SetAsideRule)
+    std::size_t passed_by = 0;  ///< on disk, but they cannot be read; others go
+    std::string problem;        ///< why sending fails; empty: no known problem
   };
 
   /// \param outbox          must outlive the sender.
@@ -49,8 +53,10 @@ class ReportSender {
   /// \param count_servers   a new server is probed if nothing is pending, and every server now and
   ///                        then: its reply shows whether its store has lost sent reports. Empty:
   ///                        no probes.
+  /// \param set_aside       when a report is set aside.
   ReportSender(Outbox& outbox, Send send, Register register_robot = {},
-               Now now = std::chrono::steady_clock::now, CountServers count_servers = {});
+               Now now = std::chrono::steady_clock::now, CountServers count_servers = {},
+               SetAsideRule set_aside = {});
   ~ReportSender();  ///< waits for the call under way; cancel that call first
   ReportSender(const ReportSender&) = delete;
   ReportSender& operator=(const ReportSender&) = delete;
@@ -59,7 +65,8 @@ class ReportSender {
   void retry();  ///< sends at once, also during a pause: the server has changed
   Counts counts() const;
 
-  /// Waits until nothing is pending, also if another process sends, or the deadline has passed.
+  /// Waits until nothing is pending but what cannot be read, also if another process sends, or the
+  /// deadline has passed.
   void wait_until_empty(std::chrono::steady_clock::time_point deadline);
 
  private:
@@ -73,6 +80,12 @@ class ReportSender {
   bool send_batch(ReportRequest& batch);
   bool register_robots(const ReportRequest& batch);
   void apply(const Receipt& receipt);
+  void pass_by(const Uuid& report_uuid, const std::string& why);
+  bool is_passed_by(const Uuid& report_uuid) const;
+  void read_on(const Uuid& report_uuid);
+  bool is_anything_to_send() const;
+  std::map<Uuid, Receipt> final_receipts(const ReportReply& reply, std::string& problem);
+  std::vector<Uuid> in_turn();
   void report_problem(const std::string& problem);
   bool is_stopped() const;
 
@@ -88,10 +101,14 @@ class ReportSender {
   bool is_resending_ = false;  // sent reports are pending again
   RetryAfter retry_after_{0};  // requested by the server in this round
   std::set<Digest> unknown_;   // robots whose reports wait for the next round
+  PutOffTries tries_;
+  std::set<Uuid> put_off_;  // by the server, when they were sent last: the others go first
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   Counts counts_;
+  std::map<Uuid, std::chrono::steady_clock::time_point> passed_by_;  // until when
+  std::string last_passed_by_, last_set_aside_;                      // and why
   bool is_woken_ = false;
   bool is_retry_due_ = false;
   bool is_stopped_ = false;

@@ -202,6 +202,8 @@ void ServerLine::flush() {
   const link::Client::OutboxState state = client_->flush(deadline);
   messages_ << "; outbox: " << state.accepted << " acknowledged, " << state.pending << " pending, "
             << state.refused << " refused";
+  if (state.set_aside > 0)
+    messages_ << ", " << state.set_aside << " set aside ('kinship outbox list')";
   if (state.pending > 0)
     messages_ << " (pending reports are sent when the outbox is next used)";
 }

@@ -180,7 +180,9 @@ void bind_answers(py::module_& module) {
       .def_readonly("pending", &OutboxState::pending, "Not yet acknowledged by the server.")
       .def_readonly("accepted", &OutboxState::accepted, "Since this client started.")
       .def_readonly("refused", &OutboxState::refused, "Since this client started.")
-      .def_readonly("problem", &OutboxState::problem, "Why sending does not get on, or empty.");
+      .def_readonly("problem", &OutboxState::problem, "Why sending does not get on, or empty.")
+      .def_readonly("set_aside", &OutboxState::set_aside,
+                    "Since this client started; see 'kinship outbox'.");
   py::class_<Receipt>(module, "Receipt", "The server's answer to one attempt.")
       .def_property_readonly(
           "report_uuid", [](const Receipt& self) { return self.report_uuid.text(); },

@@ -121,8 +121,9 @@ void File::lock() const {
 
 void File::fail(Step step) const { throw FileError(named_, step, errno); }
 
-std::string read_file(const fs::path& path, std::size_t limit) {
-  const File file(path, O_RDONLY);
+namespace {
+
+std::string read_whole(const File& file, const fs::path& path, std::size_t limit) {
   std::string content;
   char buffer[16 * 1024];
   while (const std::size_t count = file.read(buffer, sizeof buffer, content.size())) {
@@ -132,6 +133,22 @@ std::string read_file(const fs::path& path, std::size_t limit) {
                     path.string() + ": exceeds " + std::to_string(limit) + " bytes");
   }
   return content;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::size_t limit) {
+  return read_whole(File(path, O_RDONLY), path, limit);
+}
+
+std::string read_regular_file(const fs::path& path, std::size_t limit) {
+  const File file(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);  // of a FIFO too: at once
+  struct stat status {};
+  if (::fstat(file.descriptor(), &status) != 0)
+    throw FileError(path, Step::Read, errno);
+  if (!S_ISREG(status.st_mode))
+    throw Failure(ErrorCode::Storage, path.string() + ": is no regular file");
+  return read_whole(file, path, limit);
 }
 
 int rename_new(const fs::path& from, const fs::path& to) {

@@ -69,6 +69,10 @@ class File {
 /// \throws FileError if the file cannot be read, Failure(TooLarge) above `limit` bytes.
 std::string read_file(const std::filesystem::path& file, std::size_t limit);
 
+/// The same for a file that a stranger may have put there: whatever is no regular file (a folder, a
+/// FIFO, a device) is not waited for. \throws Failure(Storage) that says so.
+std::string read_regular_file(const std::filesystem::path& file, std::size_t limit);
+
 /// Renames without replacing. \return 0, or errno: EEXIST if `to` is there.
 int rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
 

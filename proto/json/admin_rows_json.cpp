@@ -77,4 +77,11 @@ std::string download_to_json(const std::string& file, std::uint64_t bytes, const
   return write(object);
 }
 
+std::string outbox_to_json(const std::vector<OutboxEntry>& entries) {
+  OrderedJson rows = OrderedJson::array();
+  for (const OutboxEntry& entry : entries)
+    rows.push_back({{"file", entry.file}, {"state", entry.state}, {"why", entry.why}});
+  return write({{"rows", std::move(rows)}});
+}
+
 }  // namespace kinship::json

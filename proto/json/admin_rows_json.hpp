@@ -8,8 +8,10 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/outbox_entry.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 
@@ -51,5 +53,8 @@ Result<Row> row_from_json(std::string_view text) {
 
 /// The document of `kinship backup download --json`: `{"file", "bytes", "sha256"}`.
 std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256);
+
+/// The document of `kinship outbox list --json`: `{"rows": [{"file", "state", "why"}]}`.
+std::string outbox_to_json(const std::vector<OutboxEntry>& entries);
 
 }  // namespace kinship::json

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <variant>
 
+#include "server/app/check_sites.hpp"
 #include "server/app/migrate_store.hpp"
 #include "server/app/offline.hpp"
 #include "server/app/options.hpp"
@@ -21,6 +22,8 @@ int main(int argc, char** argv) {
       return run_offline(*offline, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
     if (const auto* const move = std::get_if<MigrateStoreOptions>(&options))
       return run_migrate_store(*move, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+    if (const auto* const sites = std::get_if<CheckSitesOptions>(&options))
+      return run_check_sites(*sites, std::cout, std::cerr);
     if (const auto* const secure = std::get_if<SecureOptions>(&options))
       return run_secure(*secure,
                         std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()),

@@ -406,6 +406,8 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   add_secure_verbs(app, secure);
   std::optional<MigrateStoreOptions> move;
   add_migrate_store(app, move);
+  std::optional<CheckSitesOptions> sites;
+  add_check_sites(app, sites);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ConfigError& error) {  // says which option of it, but not where
@@ -424,6 +426,8 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
     return *secure;
   if (move)
     return *move;
+  if (sites)
+    return *sites;
   const bool is_offline = !app.get_subcommands().empty();
   if (const std::string fault = store_fault(app, is_offline ? offline.store : options.store);
       !fault.empty()) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "proto/types/exit_code.hpp"
+#include "server/app/check_sites.hpp"
 #include "server/app/migrate_store_options.hpp"
 #include "server/app/secure_options.hpp"
 
@@ -72,8 +73,8 @@ struct OfflineOptions {
   bool json = false;
 };
 
-using Options =
-    std::variant<ServerOptions, OfflineOptions, MigrateStoreOptions, SecureOptions, int>;
+using Options = std::variant<ServerOptions, OfflineOptions, MigrateStoreOptions, CheckSitesOptions,
+                             SecureOptions, int>;
 
 /// Options from the command line, then from the file of --config; the domain then from the
 /// environment (KINSHIP_DOMAIN).

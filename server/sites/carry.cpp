@@ -63,10 +63,16 @@ std::vector<ReplicatedReport> with_robots(const Way& way, std::vector<Replicated
   return good;
 }
 
-void count(const std::vector<Receipt>& receipts, CarriedReports& carried) {
+/// What the other store puts off alone counts as refused, so that nothing waits behind it.
+void count(const Way& way, const std::vector<Receipt>& receipts, CarriedReports& carried) {
   for (const Receipt& receipt : receipts)
     switch (receipt.status) {
       case ReceiptStatus::TryAgain:
+        if (const std::optional<std::string> why = way.to.why_put_off(receipt.report_uuid)) {
+          carried.refused.push_back({receipt.report_uuid, *why});
+          break;
+        }
+        [[fallthrough]];
       case ReceiptStatus::UnknownRobot:  // removed since it was registered
         throw Failure(ErrorCode::Unavailable,
                       "report " + receipt.report_uuid.text() + ": " + receipt.message);
@@ -114,7 +120,7 @@ CarriedReports carry_reports(const Way& way, std::span<const Uuid> reports, std:
     // Only now: this includes all retirements from before any of these was listed.
     carry_retirements(way, retired, piece);
     carried.left_out += read.looked_at - read.reports.size();
-    count(commit(way, with_robots(way, std::move(read.reports), carried)), carried);
+    count(way, commit(way, with_robots(way, std::move(read.reports), carried)), carried);
     reports = reports.subspan(read.looked_at);
   }
   return carried;
@@ -127,10 +133,12 @@ CarriedPage carry_page(const Way& way, std::string_view task, const std::string&
   std::vector<Uuid> arrived, missing, retired_before;
   for (const store::ArrivedReport& report : feed.rows)
     arrived.push_back(report.report_uuid);
-  const std::set<Uuid> known = arrived.empty() ? std::set<Uuid>() : way.to.known_reports(arrived);
+  const std::map<Uuid, Digest> known =
+      arrived.empty() ? std::map<Uuid, Digest>() : way.to.known_reports(arrived);
   for (const store::ArrivedReport& report : feed.rows) {
-    if (!known.contains(report.report_uuid))
-      missing.push_back(report.report_uuid);
+    const auto there = known.find(report.report_uuid);
+    if (there == known.end() || there->second != report.body)
+      missing.push_back(report.report_uuid);  // another body: `to` says what it thinks of it
     else if (report.is_retired)  // perhaps its list of retirements lost that in a repair
       retired_before.push_back(report.report_uuid);
   }

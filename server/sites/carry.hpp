@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <set>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -67,10 +66,11 @@ struct CarriedPage {
 };
 
 /// Carries the next reports that came to `from` and all its retirements so far. A retired report is
-/// retired at `to` before later reports are carried: content that was reported again stays.
-/// \param task    empty: all.
-/// \param cursor, retired  of `from`'s arrivals, and of its retirements; the latter is advanced.
-/// \throws Failure(Unavailable) if `to` answers TryAgain, or it was stopped; Failure of either
+/// retired at `to` before later reports are carried: content that was reported again stays. A
+/// report that `to` knows with another body is carried, too: `to` refuses it in words. \param task
+/// empty: all. \param cursor, retired  of `from`'s arrivals, and of its retirements; the latter is
+/// advanced. \throws Failure(Unavailable) if `to` answers TryAgain, or it was stopped; Failure of
+/// either
 ///         store. The page is then carried again from `cursor`.
 CarriedPage carry_page(const Way& way, std::string_view task, const std::string& cursor,
                        std::string& retired, const Piece& piece);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <ctime>
+#include <random>
+#include <set>
 #include <utility>
 
 #include "proto/types/limits.hpp"
@@ -36,7 +38,9 @@ Exchange::Exchange(store::Store& site, store::Store& memory, Positions& position
       options_(std::move(options)),
       geometry_(site, memory,
                 hooks_.take_geometry ? hooks_.take_geometry : take_with_registry(site),
-                take_with_registry(memory)) {
+                take_with_registry(memory)),
+      refused_backoff_(options_.first_refused_retry, options_.longest_refused_retry,
+                       std::random_device()()) {
   begin();
 }
 
@@ -149,14 +153,24 @@ std::vector<Retirement> Exchange::retire_here(std::span<const Uuid> reports) {
 std::uint64_t Exchange::take(const CarriedReports& carried, bool is_up) {
   counts_.left_out += carried.left_out;
   for (const RefusedReport& report : carried.refused) {
-    options_.log(text_of(report, is_up));
+    const auto before = positions_.refused().find(report.report_uuid);
+    const bool is_new = before == positions_.refused().end();
+    if (is_new && positions_.refused().size() >= Positions::kMaxRefused)
+      throw Failure(
+          ErrorCode::Unavailable,
+          std::to_string(Positions::kMaxRefused) +
+              " reports are refused: no more are carried before some of them are taken; " +
+              text_of(report, is_up));
+    if (is_new || before->second.why != report.why)
+      options_.log(text_of(report, is_up));
     positions_.refuse(report, is_up);
   }
   return carried.new_there;
 }
 
-/// Once a connection: whatever was in the way may be gone since.
+/// With each connection and, less and less often, while it lasts.
 void Exchange::try_refused_again(const std::stop_token& stop) {
+  bool is_any_taken = positions_.refused().empty();
   for (const bool is_up : {true, false}) {
     std::vector<Uuid> reports;
     for (const auto& [report, refused] : positions_.refused())
@@ -164,15 +178,21 @@ void Exchange::try_refused_again(const std::stop_token& stop) {
         reports.push_back(report);
     if (reports.empty())
       continue;
+    const CarriedReports carried =
+        is_up ? carry_reports(way_up(stop), reports, positions_.up_retired, options_.up)
+              : carry_reports(way_down(stop), reports, positions_.down_retired, options_.down);
+    std::set<Uuid> again;
+    for (const RefusedReport& report : carried.refused)
+      again.insert(report.report_uuid);
     for (const Uuid& report : reports)
-      positions_.accept(report);
-    if (is_up)
-      counts_.sent +=
-          take(carry_reports(way_up(stop), reports, positions_.up_retired, options_.up), is_up);
-    else
-      counts_.received += take(
-          carry_reports(way_down(stop), reports, positions_.down_retired, options_.down), is_up);
+      if (!again.contains(report))
+        positions_.accept(report);
+    is_any_taken = is_any_taken || again.size() < reports.size();
+    (is_up ? counts_.sent : counts_.received) += take(carried, is_up);
   }
+  if (is_any_taken)
+    refused_backoff_.reset();
+  refused_due_ = options_.clock.now() + refused_backoff_.next();
   save_positions();
 }
 
@@ -227,7 +247,7 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
   begin();
   const TimePoint now = options_.clock.now();
   Step step;
-  if (!std::exchange(has_tried_refused_, true))
+  if (refused_due_ <= now)
     try_refused_again(stop);
   if (tasks_due_ <= now) {
     want_tasks();
@@ -254,6 +274,8 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
   step.next = std::min(up_due_, tasks_due_);
   if (positions_.has_changed())
     step.next = std::min(step.next, save_due_);
+  if (!positions_.refused().empty())
+    step.next = std::min(step.next, refused_due_);
   for (const auto& [task, due] : down_due_)
     step.next = std::min(step.next, due);
   step.load = take_load();

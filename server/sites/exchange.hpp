@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "server/runtime/clock.hpp"
+#include "server/sites/backoff.hpp"
 #include "server/sites/carry.hpp"
 #include "server/sites/carry_geometry.hpp"
 #include "server/sites/positions.hpp"
@@ -44,6 +45,10 @@ struct ExchangeOptions {
   /// Shortest interval between saves of the positions: each is a write to the site's store, for
   /// which reporting robots wait.
   std::chrono::milliseconds save_every{1000};
+  /// Refused reports are tried again after this long, twice as long each time they all are refused
+  /// again, up to the longest: whatever was in the way may be gone.
+  std::chrono::milliseconds first_refused_retry{10'000};
+  std::chrono::milliseconds longest_refused_retry{std::chrono::minutes(10)};
   /// A task's experience comes down until this long after its last use here.
   std::chrono::hours task_use{std::chrono::days(30)};
   /// Called between two transactions of a step, with the load on this machine since the last call.
@@ -123,7 +128,8 @@ class Exchange {
   GeometryExchange geometry_;
   std::string last_;  // task of the last turn
   bool is_ups_turn_ = true;
-  bool has_tried_refused_ = false;
+  Backoff refused_backoff_;
+  TimePoint refused_due_{};                       // at once with a connection
   bool has_written_ = false;                      // in this step
   std::chrono::nanoseconds processor_before_{0};  // when it last rested
   /// Time of commits here since then. Shared with their callbacks, which may come after the

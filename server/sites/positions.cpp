@@ -94,9 +94,10 @@ void Positions::want(const std::set<std::string>& names, std::int64_t now_ms) {
 }
 
 void Positions::refuse(const RefusedReport& report, bool is_up) {
-  if (refused_.size() >= kMaxRefused)
+  const auto [refused, is_new] = refused_.try_emplace(report.report_uuid);
+  if (!is_new && refused->second.is_up == is_up && refused->second.why == report.why)
     return;
-  refused_[report.report_uuid] = {is_up, report.why};
+  refused->second = {is_up, report.why};
   refusals_[std::string(kRefused) + report.report_uuid.text()] =
       std::string(is_up ? "0 " : "1 ") + report.why;
 }

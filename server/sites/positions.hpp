@@ -43,7 +43,7 @@ class Positions {
   /// Records tasks as used here now; precise to the hour, so that not every call is a write.
   void want(const std::set<std::string>& names, std::int64_t now_ms);
 
-  /// Refused reports, by UUID; at most kMaxRefused are kept.
+  /// Refused reports, by UUID; nobody adds more than kMaxRefused.
   const std::map<Uuid, Refused>& refused() const noexcept { return refused_; }
   void refuse(const RefusedReport& report, bool is_up);
   void accept(const Uuid& report);

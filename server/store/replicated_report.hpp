@@ -28,6 +28,7 @@ struct ReplicatedReport {
 struct ArrivedReport {
   Uuid report_uuid;
   bool is_retired = false;  ///< its path
+  Digest body;              ///< as ReplicatedReport::body
 };
 
 /// A part of a list that only grows, and the cursor of the next reading.

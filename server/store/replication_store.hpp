@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "proto/types/digest.hpp"
 #include "proto/types/summaries.hpp"
 #include "proto/types/uuid.hpp"
 #include "server/store/replicated_report.hpp"
@@ -31,8 +31,8 @@ class ReplicationStore {
   /// Every report whose path was retired here, or by a retirement from another store; each once.
   /// Dropped paths are not among them.
   virtual Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const = 0;
-  /// The given reports that this store has.
-  virtual std::set<Uuid> known_reports(std::span<const Uuid> reports) const = 0;
+  /// The given reports that this store has, with the digests of their bodies.
+  virtual std::map<Uuid, Digest> known_reports(std::span<const Uuid> reports) const = 0;
   /// Reports with their paths and scenes, also of retired paths, in the order asked for. Left out:
   /// reports that are missing or unreadable, solved ones that lost their path (dropped, damaged),
   /// and those of a removed robot. Ends early once waypoints and scenes exceed `max_bytes`, but
@@ -45,6 +45,9 @@ class ReplicationStore {
   /// retired there is retired here.
   virtual void commit_replicated(std::vector<ReplicatedReport> reports,
                                  ReportStore::ReportsDone done) = 0;
+  /// Why a report was answered TryAgain by itself, while others were stored: lately the database
+  /// did not take it. From memory.
+  virtual std::optional<std::string> why_put_off(const Uuid& report) const = 0;
   /// Retires the paths of reports that another store retired, durable on return, in one
   /// transaction. The UUID of an unknown report is kept, so that its path is retired on arrival.
   /// \return the newly retired paths, by task.

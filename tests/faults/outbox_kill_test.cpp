@@ -3,6 +3,7 @@
 
 #include <sched.h>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include "tests/faults/reporting_fleet.hpp"
 #include "tests/support/long_run.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/small_file_system.hpp"
 
 namespace kinship::outbox_kill_test {
 namespace {
@@ -75,6 +77,50 @@ TEST_F(OutboxKill, WhatWasReportedReachesTheStoreOnceWhoeverIsKilled) {
   std::cout << kills << " kills, " << ledger_.size() << " reports in the ledger, " << attempts
             << " stored, " << in_doubt << " batches sent again after their commit\n";
   EXPECT_TRUE(!test::is_long_run() || in_doubt > 0);
+}
+
+/// Two programs on one outbox whose disk fills up, with a stranger's folder and FIFO among the
+/// reports: one is killed, the other has no room, the server dies in between.
+TEST_F(OutboxKill, OnAFullDiskAmongStrangeFilesTwoProgramsLoseNothing) {
+  const std::filesystem::path folder = directory_.path() / "outbox";
+  std::filesystem::create_directory(folder);
+  std::size_t room_kb = 1024;
+  const test::SmallFileSystem disk(folder, std::to_string(room_kb) + "k");
+  if (!disk.is_mounted())
+    GTEST_SKIP() << disk.why();
+  start_server();
+  register_panda("outbox");
+  const auto strange = [&] { return folder / "pending" / (Uuid::random().text() + ".json"); };
+  const std::filesystem::path fifo = strange();
+  std::filesystem::create_directory(strange());
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  std::uint64_t next = 0;
+  const auto start = [&] { return start_client("outbox", 1'000'000 * ++next, 0); };
+  int full = 0;
+  for (int round = 0; round < rounds(); ++round) {
+    const std::unique_ptr<test::ChildProcess> killed = start(), filling = start();
+    wait_a_while();
+    killed->signal(SIGKILL);
+    EXPECT_FALSE(read_ledger(*killed));
+    if (round % 3 == 1) {
+      kill_server();
+      start_server();
+    }
+    EXPECT_FALSE(read_ledger(*filling)) << "it ends where it has no room";
+    ++full;
+    room_kb += 1024;
+    disk.resize(std::to_string(room_kb) + "k");
+  }
+  const auto last = start_client("outbox", 1'000'000 * ++next, 1);
+  EXPECT_TRUE(read_ledger(*last));
+  EXPECT_EQ(reports_in("outbox", "pending"), 2U) << "the strange ones";
+  EXPECT_TRUE(std::filesystem::is_fifo(fifo));
+  EXPECT_EQ(reports_in("outbox", "rejected"), 0U);
+  EXPECT_EQ(reports_in("outbox", "set_aside"), 0U);
+  const std::uint64_t attempts = expect_ledger_in(store_);
+  EXPECT_EQ(reports_in("outbox", "sent"), attempts);
+  std::cout << full << " times full, " << ledger_.size() << " reports in the ledger, " << attempts
+            << " stored\n";
 }
 
 /// In a child process: its own mounts end with it.

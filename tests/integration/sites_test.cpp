@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/support/cell.hpp"
+#include "tests/support/panda_experience.hpp"
 #include "tests/support/postgres_cluster.hpp"
 #include "tests/support/postgres_programs.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -30,6 +31,13 @@ class Site {
   test::Cell& cell() { return cell_; }
   std::vector<Uuid> report(std::uint64_t first, std::uint64_t count) {
     return cell_.report(panda_, first, count);
+  }
+  /// Durable at the site on return. \param number  of the content.
+  void report_as(const Uuid& report, std::uint64_t number) {
+    Attempt attempt = test::panda_attempt(panda_, "sweep", number);
+    attempt.report_uuid = report;
+    cell_.client().report(attempt);
+    EXPECT_EQ(cell_.client().flush(test::Cell::kEnough).pending, 0U);
   }
   FetchReply fetch() { return cell_.fetch(ur10e_); }
   bool comes_true(const std::function<bool(const ServerStatus&)>& condition) {
@@ -86,6 +94,39 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
             "17\t17");
   EXPECT_EQ(ulm.cell().terminate(), 0);
   EXPECT_EQ(bern.cell().terminate(), 0);
+}
+
+TEST(Sites, NameOneUuidWithTwoContentsAndTryWhatIsRefusedAgainWhileTheLineHolds) {
+  if (const std::string missing = test::missing_postgres(); !missing.empty())
+    GTEST_SKIP() << missing;
+  test::PostgresCluster memory;
+  const std::string url = memory.create_database("kinship");
+  const test::TemporaryDirectory folder;
+  Site ulm(folder.path() / "ulm", url), bern(folder.path() / "bern", url);
+  const Uuid both = Uuid::random();
+  ulm.report_as(both, 1);
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->sent == 1; }));
+  bern.report_as(both, 2);
+  ASSERT_TRUE(
+      bern.comes_true([](const ServerStatus& status) { return status.upstream->refused == 1; }));
+  const std::string refused = bern.cell().status().upstream->first_refused;
+  EXPECT_NE(refused.find(both.text()), std::string::npos) << refused;
+  EXPECT_NE(refused.find("was used for another report"), std::string::npos) << refused;
+
+  const std::int64_t since_ms = ulm.cell().status().upstream->since_ms;
+  memory.query("ALTER TABLE attempt ADD CONSTRAINT hand CHECK (collision_checks < 0) NOT VALID",
+               "kinship");
+  ulm.report(101, 3);
+  ASSERT_TRUE(ulm.comes_true([](const ServerStatus& status) {
+    return status.upstream->refused == 3 && status.upstream->waiting == 0;
+  }));
+  EXPECT_NE(ulm.cell().status().upstream->first_refused.find("[23514]"), std::string::npos);
+  memory.query("ALTER TABLE attempt DROP CONSTRAINT hand", "kinship");
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->refused == 0; }));
+  EXPECT_EQ(ulm.cell().status().upstream->since_ms, since_ms) << "over the same line";
+  EXPECT_EQ(memory.query("SELECT count(*) FROM attempt", "kinship"), "4");
 }
 
 TEST(Sites, StopAtOnceAlsoWhileTheMemoryDoesNotAnswer) {

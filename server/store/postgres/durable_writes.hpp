@@ -7,6 +7,7 @@
 #include "proto/types/failure.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/database/transaction.hpp"
+#include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/report_writer.hpp"
 
 namespace kinship::store::postgres {
@@ -46,12 +47,13 @@ class DurableWrites {
   template <typename Function>
   std::invoke_result_t<Function, Connection&> commit(Connection& connection, Function& function) {
     Transaction transaction(connection, Transaction::Kind::Write);
+    require_schema(transaction.schema());
     if (require_synchronous_)
       require_standby(connection);
     auto value = function(connection);
     const CommitOutcome outcome = transaction.commit();
     if (outcome.certainty == Certainty::NotCommitted)
-      throw PostgresError("40001", outcome.why);
+      throw PostgresError(outcome.sqlstate, outcome.why);
     if (outcome.certainty == Certainty::InDoubt) {
       connection.abandon();
       throw Failure(ErrorCode::Storage, "it is not certain whether it is done: " + outcome.why);

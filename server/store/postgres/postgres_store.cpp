@@ -43,6 +43,7 @@ class PostgresStore : public SqlStore {
         ReportWriterOptions{.max_paths_per_pair = options.max_paths_per_pair,
                             .require_synchronous = options.require_synchronous,
                             .retry_after = options.retry_after,
+                            .put_off_for = options.put_off_for,
                             .log = options.log},
         [this](Connection& anew) { connected(anew); });
     writer_->set_interrupt(interrupt_);
@@ -94,6 +95,8 @@ class PostgresStore : public SqlStore {
     if (status.rollbacks > 0)
       status.message = "rolled back, clients offer again what is missing: " + history_.trouble() +
                        "; " + status.message;
+    if (const std::string told = writer_->put_off().told(); !told.empty())
+      status.message += told + "; ";
     if (const std::size_t damaged = damaged_robots(); damaged > 0)
       status.message += std::to_string(damaged) + " damaged robots left out; ";
     status.damaged = status.damaged || damaged_robots() > 0;
@@ -121,7 +124,7 @@ class PostgresStore : public SqlStore {
         [&](Connection& connection) { return feed_of_retirements(connection, cursor, limit); });
   }
 
-  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+  std::map<Uuid, Digest> known_reports(std::span<const Uuid> reports) const override {
     return readers_.read([&](Connection& connection) { return select_known(connection, reports); });
   }
 
@@ -135,6 +138,10 @@ class PostgresStore : public SqlStore {
 
   void commit_replicated(std::vector<ReplicatedReport> reports, ReportsDone done) override {
     commit(std::move(reports), std::move(done));
+  }
+
+  std::optional<std::string> why_put_off(const Uuid& report) const override {
+    return writer_->put_off().find(report);
   }
 
   std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
@@ -264,7 +271,8 @@ class PostgresStore : public SqlStore {
   template <typename Reported>
   void commit(std::vector<Reported> reported, ReportsDone done) {
     if (writer_->queued_bytes() <= options_.max_queued_bytes)
-      return writer_->submit(prepare_item(std::move(reported), std::move(done)));
+      return writer_->submit(
+          prepare_item(std::move(reported), std::move(done), writer_->put_off()));
     writer_->submit(declined_item(report_uuids(reported), std::move(done),
                                   "the queue of reports is full, try again"));
   }

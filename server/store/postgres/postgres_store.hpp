@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "server/store/store.hpp"
+#include "server/store/values/put_off_reports.hpp"
 
 namespace kinship::store {
 
@@ -21,6 +22,8 @@ struct PostgresOptions {
   /// Beyond it the least recently used distributions are deleted; 0: no limit.
   std::uint64_t max_distribution_bytes = 0;
   std::uint64_t max_paths_per_pair = 0;  ///< of a robot and task; 0: no cap
+  /// How long a report that the database did not take is answered without asking it again.
+  std::chrono::milliseconds put_off_for = PutOffReports::kRemembered;
   /// Receipts are given only for commits that a synchronous standby has.
   bool require_synchronous = false;
   /// Fits may read from standbys named in the URL, see store.hpp.

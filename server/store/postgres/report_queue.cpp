@@ -7,12 +7,17 @@ namespace kinship::store::postgres {
 
 namespace {
 
-void add_prepared(const Uuid& uuid, Result<PreparedAttempt> prepared, QueuedItem& item) {
-  if (!prepared) {
+template <typename Reported>
+void take(const Uuid& uuid, Reported reported, PutOffReports& put_off, QueuedItem& item) {
+  const auto answer = [&](ReceiptStatus status, const std::string& why) {
     item.prepared.emplace_back(std::nullopt);
-    item.receipts.push_back({uuid, ReceiptStatus::Refused, prepared.error().message});
-    return;
-  }
+    item.receipts.push_back({uuid, status, why});
+  };
+  if (const std::optional<std::string> why = put_off.find(uuid))
+    return answer(ReceiptStatus::TryAgain, *why);
+  Result<PreparedAttempt> prepared = prepare(std::move(reported));
+  if (!prepared)
+    return answer(ReceiptStatus::Refused, prepared.error().message);
   item.bytes += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0) +
                 (prepared->scene ? prepared->scene->blob.bytes.size() : 0);
   item.prepared.emplace_back(std::move(prepared).value());
@@ -21,22 +26,24 @@ void add_prepared(const Uuid& uuid, Result<PreparedAttempt> prepared, QueuedItem
 
 }  // namespace
 
-QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done) {
+QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done,
+                        PutOffReports& put_off) {
   QueuedItem item;
   item.done = std::move(done);
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
-    add_prepared(uuid, prepare(std::move(attempt)), item);
+    take(uuid, std::move(attempt), put_off, item);
   }
   return item;
 }
 
-QueuedItem prepare_item(std::vector<ReplicatedReport> reports, Store::ReportsDone done) {
+QueuedItem prepare_item(std::vector<ReplicatedReport> reports, Store::ReportsDone done,
+                        PutOffReports& put_off) {
   QueuedItem item;
   item.done = std::move(done);
   for (ReplicatedReport& report : reports) {
     const Uuid uuid = report.attempt.report_uuid;
-    add_prepared(uuid, prepare(std::move(report)), item);
+    take(uuid, std::move(report), put_off, item);
   }
   return item;
 }

@@ -13,6 +13,7 @@
 #include "server/store/postgres/database/connection.hpp"
 #include "server/store/store.hpp"
 #include "server/store/values/prepared_attempt.hpp"
+#include "server/store/values/put_off_reports.hpp"
 
 namespace kinship::store::postgres {
 
@@ -28,11 +29,13 @@ struct QueuedItem {
 };
 
 /// Encodes and hashes on the caller's thread, which spares the writer's. Refuses attempts that
-/// cannot be stored.
-QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done);
+/// cannot be stored; those that are put off are answered so.
+QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done,
+                        PutOffReports& put_off);
 
 /// The same for reports from another store.
-QueuedItem prepare_item(std::vector<ReplicatedReport> reports, Store::ReportsDone done);
+QueuedItem prepare_item(std::vector<ReplicatedReport> reports, Store::ReportsDone done,
+                        PutOffReports& put_off);
 
 /// For reports that the queue has no room for: each is answered TryAgain, in order.
 QueuedItem declined_item(const std::vector<Uuid>& reports, Store::ReportsDone done,

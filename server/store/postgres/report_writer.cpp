@@ -51,6 +51,7 @@ ReportWriter::ReportWriter(Primary& primary, History& history,
     : primary_(primary),
       history_(history),
       options_(std::move(options)),
+      put_off_(options_.put_off_for),
       connected_(std::move(connected)),
       connection_(std::move(connection)),
       thread_([this] { run(); }) {}
@@ -121,7 +122,7 @@ void ReportWriter::write(std::vector<QueuedItem>& items) {
       write_alone(item.write);
 }
 
-/// One bad attempt is found by halves, and refused alone.
+/// An attempt that the database does not take is found by halves, and put off alone.
 void ReportWriter::write_reports(std::span<Pending> pending) {
   if (!connection_)
     return answer(pending, trouble());
@@ -132,7 +133,7 @@ void ReportWriter::write_reports(std::span<Pending> pending) {
   write_reports(pending.subspan(half));
 }
 
-/// \return false if one of several is bad.
+/// \return false if the database does not take one of several.
 bool ReportWriter::try_reports(std::span<Pending> pending) {
   std::vector<const PreparedAttempt*> attempts;
   for (const Pending& each : pending)
@@ -140,6 +141,7 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
   for (int tries = 1;; ++tries) {
     try {
       Transaction transaction(*connection_, Transaction::Kind::Write);
+      require_schema(transaction.schema());
       if (options_.require_synchronous)
         require_standby(*connection_);
       const std::int64_t now = now_ms();
@@ -154,7 +156,7 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
         const CommitOutcome outcome = transaction.commit();
         waits_since_ms_ = 0;
         if (outcome.certainty == Certainty::NotCommitted)
-          throw PostgresError("40001", outcome.why);
+          throw PostgresError(outcome.sqlstate, outcome.why);
         if (outcome.certainty == Certainty::InDoubt) {
           give_up(outcome.why);
           answer(pending, in_doubt(outcome.why));
@@ -167,15 +169,15 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
       note("");
       return true;
     } catch (const PostgresError& error) {
-      if (error.kind() == ErrorKind::OneRow) {
-        if (pending.size() > 1)
-          return false;
-        *pending.front().receipt = {pending.front().prepared->attempt.report_uuid,
-                                    ReceiptStatus::Refused, error.what()};
-        return true;
-      }
       if (error.kind() == ErrorKind::Conflict && tries < kTries)
         continue;
+      if (error.kind() == ErrorKind::OneRow || error.kind() == ErrorKind::Conflict) {
+        if (pending.size() > 1)
+          return false;
+        put_off_.note(pending.front().prepared->attempt.report_uuid, error.what());
+        answer(pending, error.what());
+        return true;
+      }
       if (error.kind() == ErrorKind::Forgotten && tries < kTries) {
         give_up(error.what());
         next_try_ = {};
@@ -198,6 +200,7 @@ void ReportWriter::write_alone(const std::function<void(Connection&)>& write) {
     return;  // a write without a waiter may be lost
   try {
     Transaction transaction(*connection_, Transaction::Kind::Write);
+    require_schema(transaction.schema());
     write(*connection_);
     if (const CommitOutcome outcome = transaction.commit(); outcome.certainty == Certainty::InDoubt)
       give_up(outcome.why);
@@ -237,6 +240,7 @@ void ReportWriter::look_around() {
   try {
     if (connection_->query("SELECT pg_is_in_recovery()").front().column_integer(0) != 0)
       return give_up("the database has become a standby");
+    require_schema(schema_of(*connection_));
     history_.refresh(*connection_);
     if (options_.require_synchronous)
       require_standby(*connection_);

@@ -16,6 +16,7 @@
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/report_queue.hpp"
+#include "server/store/values/put_off_reports.hpp"
 
 namespace kinship::store::postgres {
 
@@ -23,6 +24,7 @@ struct ReportWriterOptions {
   std::uint64_t max_paths_per_pair = 0;
   bool require_synchronous = false;
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to connect again
+  std::chrono::milliseconds put_off_for{0};     ///< see PutOffReports
   std::function<void(std::string_view)> log = {};
 };
 
@@ -52,6 +54,8 @@ class ReportWriter {
   std::size_t queued_bytes() const { return queue_.bytes(); }
   /// Empty while reports are stored; else the reason why not.
   std::string trouble() const;
+  /// The reports that the database did not take.
+  PutOffReports& put_off() noexcept { return put_off_; }
 
   /// Ends the waits of the connection: the interrupt that `primary` was made with.
   void set_interrupt(Interrupt& interrupt) noexcept { interrupt_ = &interrupt; }
@@ -78,6 +82,7 @@ class ReportWriter {
   Primary& primary_;
   History& history_;
   const ReportWriterOptions options_;
+  PutOffReports put_off_;
   const std::function<void(Connection&)> connected_;
   Interrupt* interrupt_ = nullptr;
   ReportQueue queue_;

@@ -15,10 +15,10 @@ std::string describe(const Uuid& report_uuid, const std::string& what) {
 }
 
 /// \param is_only_one  nothing else is written by its item.
-Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedReports& damaged,
+Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, PutOffReports& put_off,
                      std::uint64_t max_paths, bool is_only_one) {
   const Uuid& uuid = prepared.attempt.report_uuid;
-  if (const std::optional<std::string> why = damaged.find(uuid))
+  if (const std::optional<std::string> why = put_off.find(uuid))
     return {uuid, ReceiptStatus::TryAgain, *why};  // in a second try of its batch
   if (batch.is_undone_whole() && is_only_one)
     return write_report(batch, prepared, max_paths);
@@ -28,51 +28,32 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
     savepoint.keep();
     return receipt;
   } catch (const SqliteError& error) {
-    if (error.is_damage()) {
-      const std::string why = describe(uuid, error.what());
-      damaged.note(uuid, why);
-      if (error.is_of_row())
-        return {uuid, ReceiptStatus::TryAgain, why};
-    }
-    if (!error.concerns_one_row())
+    if (!error.is_damage() && !error.concerns_one_row())
       throw;
-    return {uuid, ReceiptStatus::Refused, error.what()};
+    const std::string why = error.is_damage() ? describe(uuid, error.what()) : error.what();
+    put_off.note(uuid, why);
+    // A trigger may have undone the whole transaction, damage often does.
+    if ((error.is_damage() && !error.is_of_row()) || !batch.database().in_transaction())
+      throw;
+    return {uuid, ReceiptStatus::TryAgain, why};
   }
 }
 
 }  // namespace
 
-void DamagedReports::note(const Uuid& report_uuid, const std::string& why, Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
-  if (reports_.size() >= kMaxReports)
-    reports_.clear();
-  reports_[report_uuid] = {why, now + kRemembered};
-}
-
-std::optional<std::string> DamagedReports::find(const Uuid& report_uuid, Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
-  const auto found = reports_.find(report_uuid);
-  if (found == reports_.end())
-    return std::nullopt;
-  if (now < found->second.until)
-    return found->second.why;
-  reports_.erase(found);
-  return std::nullopt;
-}
-
-ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
+ReportItem::ReportItem(History& history, PutOffReports& put_off, std::vector<Attempt> attempts,
                        Store::ReportsDone done, std::uint64_t max_paths)
-    : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {
+    : history_(history), put_off_(put_off), max_paths_(max_paths), done_(std::move(done)) {
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
     take(uuid, std::move(attempt));
   }
 }
 
-ReportItem::ReportItem(History& history, DamagedReports& damaged,
+ReportItem::ReportItem(History& history, PutOffReports& put_off,
                        std::vector<ReplicatedReport> reports, Store::ReportsDone done,
                        std::uint64_t max_paths)
-    : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {
+    : history_(history), put_off_(put_off), max_paths_(max_paths), done_(std::move(done)) {
   for (ReplicatedReport& report : reports) {
     const Uuid uuid = report.attempt.report_uuid;
     take(uuid, std::move(report));
@@ -81,7 +62,7 @@ ReportItem::ReportItem(History& history, DamagedReports& damaged,
 
 template <typename Reported>
 void ReportItem::take(const Uuid& report_uuid, Reported reported) {
-  if (const std::optional<std::string> why = damaged_.find(report_uuid)) {
+  if (const std::optional<std::string> why = put_off_.find(report_uuid)) {
     prepared_.emplace_back(std::nullopt);
     receipts_.push_back({report_uuid, ReceiptStatus::TryAgain, *why});
     return;
@@ -98,11 +79,11 @@ void ReportItem::take(const Uuid& report_uuid, Reported reported) {
   receipts_.push_back({report_uuid, ReceiptStatus::TryAgain, ""});
 }
 
-std::unique_ptr<ReportItem> ReportItem::declined(History& history, DamagedReports& damaged,
+std::unique_ptr<ReportItem> ReportItem::declined(History& history, PutOffReports& put_off,
                                                  const std::vector<Uuid>& reports,
                                                  Store::ReportsDone done, const std::string& why) {
   auto item =
-      std::make_unique<ReportItem>(history, damaged, std::vector<Attempt>(), std::move(done));
+      std::make_unique<ReportItem>(history, put_off, std::vector<Attempt>(), std::move(done));
   for (const Uuid& report : reports) {
     item->prepared_.emplace_back(std::nullopt);
     item->receipts_.push_back({report, ReceiptStatus::TryAgain, why});
@@ -114,7 +95,7 @@ void ReportItem::apply(Batch& batch) {
   for (std::size_t i = 0; i < prepared_.size(); ++i)
     if (prepared_[i])
       receipts_[i] =
-          insert_alone(batch, *prepared_[i], damaged_, max_paths_, prepared_.size() == 1);
+          insert_alone(batch, *prepared_[i], put_off_, max_paths_, prepared_.size() == 1);
   history_.write_run(batch.database());
   position_ = position_of(batch.database());
 }

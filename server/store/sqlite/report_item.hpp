@@ -1,13 +1,9 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "proto/types/uuid.hpp"
@@ -15,49 +11,27 @@
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/store.hpp"
 #include "server/store/values/prepared_attempt.hpp"
+#include "server/store/values/put_off_reports.hpp"
 
 namespace kinship::store {
 
-/// The reports that could not be written because of damage, with the reasons. Their clients keep
-/// resending them: for a while they are answered without reading the disk, and without a second try
-/// of their batch. May be shared between threads.
-class DamagedReports {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  void note(const Uuid& report_uuid, const std::string& why, Clock::time_point now = Clock::now());
-  /// The reason why a report could not be written; nothing if it is none or too old.
-  std::optional<std::string> find(const Uuid& report_uuid, Clock::time_point now = Clock::now());
-
-  static constexpr std::chrono::seconds kRemembered{10};
-  static constexpr std::size_t kMaxReports = 4096;  ///< beyond it all are forgotten
-
- private:
-  struct Noted {
-    std::string why;
-    Clock::time_point until;
-  };
-  std::mutex mutex_;
-  std::map<Uuid, Noted> reports_;  // guarded by mutex_
-};
-
-/// A client's batch of attempts in the writer's queue. One bad attempt is refused alone.
+/// A client's batch of attempts in the writer's queue. One that the database does not take is put
+/// off alone.
 class ReportItem : public WriteItem {
  public:
   /// Encodes and hashes on the caller's thread, which spares the writer's.
   /// \param history  gets the item's position before `done` is called.
-  /// \param damaged  keeps the reports that cannot be written because of damage. Both outlive the
-  ///                 item.
+  /// \param put_off  keeps the reports that the database does not take. Both outlive the item.
   /// \param max_paths  of a robot and task (rules/report_resolver.hpp); 0: no cap.
-  ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
+  ReportItem(History& history, PutOffReports& put_off, std::vector<Attempt> attempts,
              Store::ReportsDone done, std::uint64_t max_paths = 0);
 
   /// For reports from another store.
-  ReportItem(History& history, DamagedReports& damaged, std::vector<ReplicatedReport> reports,
+  ReportItem(History& history, PutOffReports& put_off, std::vector<ReplicatedReport> reports,
              Store::ReportsDone done, std::uint64_t max_paths);
 
   /// For attempts that the queue has no room for: each is answered TryAgain, in order.
-  static std::unique_ptr<ReportItem> declined(History& history, DamagedReports& damaged,
+  static std::unique_ptr<ReportItem> declined(History& history, PutOffReports& put_off,
                                               const std::vector<Uuid>& reports,
                                               Store::ReportsDone done, const std::string& why);
 
@@ -71,7 +45,7 @@ class ReportItem : public WriteItem {
   void take(const Uuid& report_uuid, Reported reported);
 
   History& history_;
-  DamagedReports& damaged_;
+  PutOffReports& put_off_;
   std::uint64_t position_ = 0;
   std::vector<std::optional<PreparedAttempt>> prepared_;  // empty: answered already
   std::vector<Receipt> receipts_;

@@ -110,6 +110,8 @@ class SqliteStore : public SqlStore {
     status.message += uncounted;
     if (!watch_.trouble().empty())
       status.message += "what is counted was so before; ";
+    if (const std::string told = put_off_.told(); !told.empty())
+      status.message += told + "; ";
     describe_damage(status, damaged_robots(), scrub_->findings());
     status.scrubbed_ms = scrub_->progress().ended_ms;
     status.scrub_part = scrub_->progress().part;
@@ -135,7 +137,7 @@ class SqliteStore : public SqlStore {
     return page_of_retirements(*reader, cursor, limit);
   }
 
-  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+  std::map<Uuid, Digest> known_reports(std::span<const Uuid> reports) const override {
     const ReaderPool::Lease reader = readers_.lease();
     return select_known(*reader, reports);
   }
@@ -150,6 +152,10 @@ class SqliteStore : public SqlStore {
 
   void commit_replicated(std::vector<ReplicatedReport> reports, ReportsDone done) override {
     commit(std::move(reports), std::move(done));
+  }
+
+  std::optional<std::string> why_put_off(const Uuid& report) const override {
+    return put_off_.find(report);
   }
 
   std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
@@ -248,9 +254,9 @@ class SqliteStore : public SqlStore {
     if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
       why = "the queue of reports is full, try again";
     if (!why.empty())
-      return writer_->submit(ReportItem::declined(history_, damaged_reports_,
-                                                  report_uuids(reported), std::move(done), why));
-    writer_->submit(std::make_unique<ReportItem>(history_, damaged_reports_, std::move(reported),
+      return writer_->submit(
+          ReportItem::declined(history_, put_off_, report_uuids(reported), std::move(done), why));
+    writer_->submit(std::make_unique<ReportItem>(history_, put_off_, std::move(reported),
                                                  std::move(done), options_.max_paths_per_pair));
     take_ballast_later();
   }
@@ -350,7 +356,7 @@ class SqliteStore : public SqlStore {
   mutable ReaderPool readers_;
   FileWatch watch_;
   mutable DiskSpace space_;
-  DamagedReports damaged_reports_;
+  mutable PutOffReports put_off_{options_.put_off_for};
   mutable std::mutex counted_mutex_;
   mutable StoreStatus counted_;     // guarded by counted_mutex_
   std::unique_ptr<Writer> writer_;  // destroyed before all above, which it uses

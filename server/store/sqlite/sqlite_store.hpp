@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "server/store/store.hpp"
+#include "server/store/values/put_off_reports.hpp"
 
 namespace kinship::store {
 
@@ -31,6 +32,8 @@ struct SqliteOptions {
   /// A store that is to be made although files of one that is gone lie beside it, which are set
   /// aside; refused if there is a store.
   bool new_store = false;
+  /// How long a report that the database did not take is answered without asking it again.
+  std::chrono::milliseconds put_off_for = PutOffReports::kRemembered;
   std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: no search
   /// Takes a line when damage is found, from a thread of the store's own; may be empty.
   std::function<void(std::string_view)> log = {};

@@ -46,7 +46,7 @@ class TroubledStore final : public store::Store {
   store::Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const override {
     return exchange([&] { return store_.list_retirements(cursor, limit); });
   }
-  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+  std::map<Uuid, Digest> known_reports(std::span<const Uuid> reports) const override {
     return exchange([&] { return store_.known_reports(reports); });
   }
   store::ReplicatedReports read_reports(std::span<const Uuid> reports,
@@ -63,6 +63,9 @@ class TroubledStore final : public store::Store {
       on_commit(std::move(reports), std::move(done));
       return true;
     });
+  }
+  std::optional<std::string> why_put_off(const Uuid& report) const override {
+    return store_.why_put_off(report);
   }
   /// Called when reports of another store are to be retired.
   std::function<void(std::span<const Uuid>)> on_retire = [](std::span<const Uuid>) {};

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <exception>
+#include <vector>
 
 #include "server/store/postgres/database/postgres_error.hpp"
 
@@ -14,7 +15,9 @@ constexpr std::string_view kWriteSettings =
     "SELECT set_config('statement_timeout', '0', true), set_config('lock_timeout', '8s', true),"
     " set_config('plan_cache_mode', 'force_generic_plan', true),"
     " set_config('synchronous_commit', CASE current_setting('synchronous_commit')"
-    " WHEN 'remote_apply' THEN 'remote_apply' ELSE 'on' END, true)";
+    " WHEN 'remote_apply' THEN 'remote_apply' ELSE 'on' END, true),"
+    " (SELECT coalesce(max(version), 0) FROM schema_migration)";
+constexpr int kSchemaOfSettings = 4;  // column of it; its table stays locked against migrations
 
 constexpr std::string_view kLocalSettings =
     "SELECT set_config('statement_timeout', '0', true), set_config('lock_timeout', '8s', true),"
@@ -35,7 +38,9 @@ Transaction::Transaction(Connection& connection, Kind kind) : connection_(&conne
   const std::array<Request, 2> begin = {
       Request{"BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE"},
       Request{kind == Kind::Write ? kWriteSettings : kLocalSettings}};
-  connection.query_all(begin);
+  const std::vector<Rows> begun = connection.query_all(begin);
+  if (kind == Kind::Write)
+    schema_ = begun.back().front().column_integer(kSchemaOfSettings);
 }
 
 Transaction::~Transaction() {
@@ -59,7 +64,8 @@ CommitOutcome Transaction::commit() noexcept {
       return {Certainty::InDoubt, std::move(warning)};
     return {Certainty::Committed, ""};
   } catch (const PostgresError& error) {
-    return {is_undone(error) ? Certainty::NotCommitted : Certainty::InDoubt, error.what()};
+    return {is_undone(error) ? Certainty::NotCommitted : Certainty::InDoubt, error.what(),
+            error.sqlstate()};
   } catch (const std::exception& error) {
     connection_->abandon();
     return {Certainty::InDoubt, error.what()};

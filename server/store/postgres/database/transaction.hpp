@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -16,7 +17,8 @@ enum class Certainty {
 
 struct CommitOutcome {
   Certainty certainty = Certainty::InDoubt;
-  std::string why;  ///< empty if it is committed
+  std::string why;                 ///< empty if it is committed
+  std::string sqlstate = "40001";  ///< of what undid it
 };
 
 /// A transaction, rolled back on destruction unless it was ended.
@@ -39,8 +41,12 @@ class Transaction {
   /// interrupt of the connection is raised. Never throws.
   CommitOutcome commit() noexcept;
 
+  /// Of Write: version of the schema, which stays that as long as the transaction lasts; 0: none.
+  std::int64_t schema() const noexcept { return schema_; }
+
  private:
   Connection* connection_;
+  std::int64_t schema_ = 0;
   bool is_open_ = true;
 };
 

@@ -61,12 +61,25 @@ void migrate(Connection& connection, std::span<const Migration> migrations) {
   // Of the transaction, not of the session: a pooler may give each transaction another session.
   connection.query("SELECT pg_advisory_xact_lock($1) IS NULL", kMigrationLock);
   const std::int64_t version = checked_version(connection, migrations);
+  if (version > 0)  // writers of the old schema end first, and see the new one when they begin
+    connection.execute("LOCK TABLE schema_migration IN ACCESS EXCLUSIVE MODE");
   for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
     apply(connection, migration);
   if (version > 0)
     insert_audit(connection, entry_of_migration(connection.description(), version, newest));
   if (const CommitOutcome outcome = transaction.commit(); outcome.certainty != Certainty::Committed)
     throw Failure(ErrorCode::Storage, "its schema could not be made: " + outcome.why);
+}
+
+std::int64_t schema_of(Connection& connection) {
+  return connection.query("SELECT coalesce(max(version), 0) FROM schema_migration")
+      .front()
+      .column_integer(0);
+}
+
+void require_schema(std::int64_t version) {
+  if (const std::int64_t newest = std::ssize(embedded_migrations()); version != newest)
+    throw PostgresError("55000", "the database has schema " + newer_schema(version, newest));
 }
 
 }  // namespace kinship::store::postgres

@@ -25,4 +25,9 @@ std::span<const Migration> embedded_migrations();
 ///         of another text, or has other tables with the names of a store's.
 void migrate(Connection& connection, std::span<const Migration> migrations);
 
+/// Of a store that another server may have migrated meanwhile.
+std::int64_t schema_of(Connection& connection);
+/// \throws PostgresError unless `version` is the newest that this binary knows.
+void require_schema(std::int64_t version);
+
 }  // namespace kinship::store::postgres

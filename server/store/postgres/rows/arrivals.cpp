@@ -146,11 +146,12 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, std::span<con
   return arrived;
 }
 
-std::set<Uuid> select_known(Connection& connection, std::span<const Uuid> reports) {
-  std::set<Uuid> known;
-  for (const Row row : connection.query(
-           "SELECT report_uuid FROM attempt WHERE report_uuid = ANY ($1)", bytes_of(reports)))
-    known.insert(id_of<Uuid>(row.column_blob(0)));
+std::map<Uuid, Digest> select_known(Connection& connection, std::span<const Uuid> reports) {
+  std::map<Uuid, Digest> known;
+  for (const Row row :
+       connection.query("SELECT report_uuid, body_sha256 FROM attempt WHERE report_uuid = ANY ($1)",
+                        bytes_of(reports)))
+    known.emplace(id_of<Uuid>(row.column_blob(0)), id_of<Digest>(row.column_blob(1)));
   return known;
 }
 
@@ -162,13 +163,15 @@ Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view ta
   const std::string page = next_arrivals(connection, filter, parameters, std::string(kIsSettled));
   return read_feed<ArrivedReport>(
       connection.query_with(
-          "SELECT attempt.arrived_in::text::bigint, attempt.id, attempt.report_uuid," +
+          "SELECT attempt.arrived_in::text::bigint, attempt.id, attempt.report_uuid,"
+          " attempt.body_sha256," +
               std::string(kReportIsRetired) + "FROM (" + page + std::string(kAttemptOfPage) +
               std::string(kPathOfAttempt) + "ORDER BY attempt.arrived_in, attempt.id",
           parameters),
       cursor, limit,
       [](const store::Row& row) {
-        return ArrivedReport{id_of<Uuid>(row.column_blob(2)), row.column_integer(3) != 0};
+        return ArrivedReport{id_of<Uuid>(row.column_blob(2)), row.column_integer(4) != 0,
+                             id_of<Digest>(row.column_blob(3))};
       },
       cursor_behind);
 }

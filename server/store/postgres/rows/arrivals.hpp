@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,7 +53,7 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFil
 
 /// The attempts of the known ones of some reports, in no order.
 std::vector<ArrivedAttempt> select_arrived(Connection& connection, std::span<const Uuid> reports);
-std::set<Uuid> select_known(Connection& connection, std::span<const Uuid> reports);
+std::map<Uuid, Digest> select_known(Connection& connection, std::span<const Uuid> reports);
 std::vector<Bytes> bytes_of(std::span<const Uuid> reports);
 
 /// Reports for another store, see Store::list_arrivals(). A feed ends before the first transaction

@@ -177,7 +177,9 @@ Database::CachedStatement Database::cached(std::string_view sql) {
   return CachedStatement(&found->second);
 }
 
-std::int64_t Database::last_insert_id() const noexcept {
+std::int64_t Database::inserted_id() const {
+  if (changed_rows() != 1)
+    throw SqliteError(SQLITE_CONSTRAINT_TRIGGER, "a trigger of the store took a row away");
   return sqlite3_last_insert_rowid(connection_.get());
 }
 

@@ -53,7 +53,9 @@ class Database : public Session {
   /// The statement for `sql`, prepared once per connection. One loan of the same text at a time.
   CachedStatement cached(std::string_view sql);
 
-  std::int64_t last_insert_id() const noexcept;
+  /// The id of the row that the last INSERT made. \throws SqliteError, a constraint, if a trigger
+  /// took the row away.
+  std::int64_t inserted_id() const;
   std::int64_t changed_rows() const noexcept;  ///< by the last INSERT, UPDATE or DELETE
   bool in_transaction() const noexcept;
   sqlite3& connection() noexcept { return *connection_; }

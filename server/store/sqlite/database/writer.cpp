@@ -15,6 +15,7 @@ namespace kinship::store {
 namespace {
 
 const Error kNoMemory{ErrorCode::Unavailable, "no memory"};  // a text too short for any
+constexpr const char* kSchema = "PRAGMA user_version";
 
 /// The item's own error, if it had one.
 std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
@@ -22,7 +23,7 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
   try {
     item.apply(batch);
   } catch (const SqliteError& error) {
-    if (!error.concerns_one_row())
+    if (!error.concerns_one_row() || !batch.database().in_transaction())
       throw;
     return error.error();
   } catch (const Failure& failure) {
@@ -36,9 +37,10 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
   return std::nullopt;
 }
 
-bool is_damage(const Failure& failure) {
+/// Whether the rest of the file takes writes: damage, or a trigger, undid this transaction.
+bool is_of_batch(const Failure& failure) {
   const auto* const error = dynamic_cast<const SqliteError*>(&failure);
-  return error != nullptr && error->is_damage();
+  return error != nullptr && (error->is_damage() || error->concerns_one_row());
 }
 
 bool is_busy(const Failure& failure) {
@@ -178,6 +180,7 @@ void Writer::write(Items& items) {
   try {
     if (items.size() != 1 || !write_whole(*items[0])) {
       Transaction transaction(*database_, Transaction::Kind::Write);
+      require_schema();
       Batch batch(*database_);
       for (std::size_t i = 0; i < items.size(); ++i)
         errors[i] = apply_alone(*items[i], batch);
@@ -196,7 +199,7 @@ void Writer::write(Items& items) {
       finish_all(items, &error);
       return;
     }
-    if (is_damage(failure)) {
+    if (is_of_batch(failure)) {
       write_apart(items);
       return;
     }
@@ -226,6 +229,7 @@ void Writer::finish(WriteItem& item, const Error* error) {
 ///         which find the fault.
 bool Writer::write_whole(WriteItem& item) {
   Transaction transaction(*database_, Transaction::Kind::Write);
+  require_schema();
   Batch batch(*database_, true);
   try {
     item.apply(batch);
@@ -261,6 +265,7 @@ std::optional<Error> Writer::write_alone(WriteItem& item) {
   for (std::size_t tries = item.weight(); true; --tries)
     try {
       Transaction transaction(*database_, Transaction::Kind::Write);
+      require_schema();
       Batch batch(*database_);
       std::optional<Error> error = apply_alone(item, batch);
       batch.raise_generations();
@@ -269,11 +274,18 @@ std::optional<Error> Writer::write_alone(WriteItem& item) {
         options_.look(*database_);
       return error;
     } catch (const Failure& failure) {
-      if (!is_damage(failure) && !is_busy(failure))
+      if (!is_of_batch(failure) && !is_busy(failure))
         fail(failure);
       if (is_busy(failure) || !database_ || tries == 0)
         return failure.error();
     }
+}
+
+/// Another program may have migrated the store meanwhile.
+void Writer::require_schema() {
+  const auto query = database_->cached(kSchema);
+  if (!query->step() || query->column_integer(0) != schema_)
+    throw Failure(ErrorCode::Storage, "its schema is not the one that it was opened with");
 }
 
 void Writer::finish_all(Items& items, const Error* error) {
@@ -339,11 +351,13 @@ bool Writer::reopen_if_due() {
   return true;
 }
 
-/// From now on each commit tells how many pages the WAL has.
+/// From now on each commit tells how many pages the WAL has, and each transaction looks whether the
+/// schema is still that of now.
 void Writer::watch_wal() {
   constexpr std::uint64_t kFrameHeader = 24;
   wal_pages_ = 0;
   wal_bytes_ = 0;
+  schema_ = database_->integer(kSchema);
   frame_bytes_ = kFrameHeader + static_cast<std::uint64_t>(database_->integer("PRAGMA page_size"));
   const auto note = [](void* pages, sqlite3*, const char*, int count) {
     *static_cast<std::int64_t*>(pages) = count;

@@ -88,8 +88,9 @@ struct WriterFailures {
 /// up to the cap, and finishes them after the commit is durable, without a timer. When the WAL is
 /// long enough it checkpoints after that, so that no item waits for it.
 ///
-/// If a batch meets damage, its items are written one by one, and only the items that need the
-/// damaged data fail.
+/// If a batch meets damage, or a trigger that undoes it, its items are written one by one, and only
+/// the items that need the damaged data fail. Once another program has migrated the store nothing
+/// is written any more.
 ///
 /// While another program writes, items are answered with an error that says so, and the connection
 /// stays.
@@ -134,6 +135,7 @@ class Writer {
   void write_apart(Items& items);
   std::optional<Error> write_alone(WriteItem& item);
   static void finish(WriteItem& item, const Error* error);
+  void require_schema();
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
   void note_busy(const std::string& trouble);
@@ -150,6 +152,7 @@ class Writer {
   std::int64_t wal_pages_ = 0;                        // as of the last commit
   bool is_busy_ = false;                              // another program writes
   std::uint64_t frame_bytes_ = 0;                     // of one of these pages
+  std::int64_t schema_ = 0;                           // version, when it was opened
   std::chrono::steady_clock::time_point next_try_{};  // to reopen; long past at first
 
   std::atomic<std::uint64_t> wal_bytes_ = 0;

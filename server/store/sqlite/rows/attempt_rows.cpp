@@ -41,7 +41,7 @@ std::int64_t insert_attempt(Database& database, const NewAttempt& added,
     statement->bind(++place, column_value(attempt.record.*field.member));
   });
   statement->run();
-  return database.last_insert_id();
+  return database.inserted_id();
 }
 
 ReportRows find_report(Database& database, const Uuid& report_uuid) {

@@ -152,7 +152,8 @@ std::optional<ArrivedReport> read_arrived(Database& database, std::int64_t id) {
     ExperienceKey key;
     {
       const auto query = database.cached(
-          "SELECT report_uuid, task_id, robot_id, path_id FROM attempt WHERE id = ? AND " +
+          "SELECT report_uuid, task_id, robot_id, path_id, body_sha256 FROM attempt"
+          " WHERE id = ? AND " +
           database.is_intact("attempt"));
       if (!query->bind(1, id).step())
         return std::nullopt;
@@ -160,6 +161,7 @@ std::optional<ArrivedReport> read_arrived(Database& database, std::int64_t id) {
       key = {query->column_integer(1), query->column_integer(2)};
       if (!query->column_is_null(3))
         path_id = query->column_integer(3);
+      report.body = id_of<Digest>(query->column_blob(4));
     }
     report.is_retired = is_report_retired(database, report.report_uuid) ||
                         (path_id && is_path_retired(database, key, *path_id));
@@ -277,11 +279,11 @@ Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
   return feed;
 }
 
-std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports) {
-  std::set<Uuid> known;
+std::map<Uuid, Digest> select_known(Database& database, std::span<const Uuid> reports) {
+  std::map<Uuid, Digest> known;
   for (const Uuid& report : reports)
-    if (find_report(database, report).row)
-      known.insert(report);
+    if (const ReportRows rows = find_report(database, report); rows.row)
+      known.emplace(report, select_body(database, *rows.row));
   return known;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <set>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -37,7 +37,7 @@ Result<Attempt> find_attempt(Database& database, const Uuid& report_uuid, Damage
 /// \throws Failure(InvalidInput) for a cursor of another list.
 Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
                                      std::string_view cursor, std::size_t limit);
-std::set<Uuid> select_known(Database& database, std::span<const Uuid> reports);
+std::map<Uuid, Digest> select_known(Database& database, std::span<const Uuid> reports);
 ReplicatedRead select_replicated(Database& database, std::span<const Uuid> reports,
                                  std::size_t max_bytes);
 

@@ -58,7 +58,7 @@ std::int64_t insert_scene(Database& database, const PreparedScene& scene, std::i
           "VALUES (?, ?, ?, ?, ?, ?)")
       ->bind_all(content, received_ms, scene.blob.size, encoding, crc, bytes)
       .run();
-  const std::int64_t id = database.last_insert_id();
+  const std::int64_t id = database.inserted_id();
   for (const std::int64_t old : damaged)
     quarantine_row(database, "scene", old, id);
   return id;

@@ -1,6 +1,8 @@
 #include "server/sites/carry.hpp"
 
+#include "proto/types/hex.hpp"
 #include "proto/types/limits.hpp"
+#include "server/store/sqlite/database/database.hpp"
 #include "tests/unit/server/sites/site_and_memory.hpp"
 
 namespace kinship::sites {
@@ -76,14 +78,26 @@ TEST_F(Carry, WhatIsRefusedIsNamedAndHoldsNothingUp) {
   other.report_uuid = solved(1).report_uuid;
   test::report(*memory_, {other});
   test::report(*site_, {solved(1), solved(2)});
-  // Whoever was there first is known by its UUID; only a second look compares the bodies.
-  const std::vector<Uuid> both = reports_of(*site_);
-  const CarriedReports carried =
-      carry_reports({.from = *site_, .to = *memory_}, both, retired_, {});
+  const CarriedReports carried = carry().reports;
   ASSERT_EQ(carried.refused.size(), 1U);
   EXPECT_EQ(carried.refused[0].report_uuid, solved(1).report_uuid);
   EXPECT_NE(carried.refused[0].why.find("another report"), std::string::npos);
   EXPECT_EQ(carried.new_there, 1U);
+}
+
+TEST_F(Carry, WhatTheOtherStorePutsOffAloneHoldsNothingUp) {
+  ASSERT_TRUE(memory_->register_robot(panda_));
+  store::Database(directory_ / "memory.db", store::Access::ReadWrite)
+      .execute("CREATE TRIGGER object BEFORE INSERT ON attempt WHEN NEW.report_uuid = x'" +
+               to_hex(solved(1).report_uuid.bytes) +
+               "' BEGIN SELECT RAISE(ABORT, 'the administrator objects'); END");
+  for (const std::uint64_t number : {1U, 2U, 3U})
+    test::report(*site_, {solved(number)});
+  const CarriedReports carried = carry({.commit = 1}).reports;
+  ASSERT_EQ(carried.refused.size(), 1U);
+  EXPECT_EQ(carried.refused[0].report_uuid, solved(1).report_uuid);
+  EXPECT_NE(carried.refused[0].why.find("the administrator objects"), std::string::npos);
+  EXPECT_EQ(carried.new_there, 2U);
 }
 
 TEST_F(Carry, WhatIsFoundWrongOnTheWayIsNotCommitted) {

@@ -178,6 +178,62 @@ TEST_F(ExchangeTest, WhatIsRefusedIsSetAsideAndTriedWithTheNextConnection) {
   EXPECT_EQ(site_->status().attempts, 2U);
 }
 
+TEST_F(ExchangeTest, WhatIsRefusedIsTriedAgainLessAndLessOftenWhileTheLineHolds) {
+  auto now = std::chrono::steady_clock::now();
+  options_.clock.now = [&] { return now; };
+  int tries = 0;
+  bool is_refusing = true;
+  store::TroubledStore memory(*memory_);
+  memory.on_commit = [&](std::vector<store::ReplicatedReport> reports,
+                         const store::Store::ReportsDone& done) {
+    ++tries;
+    if (!is_refusing)
+      return memory_->commit_replicated(std::move(reports), done);
+    std::vector<Receipt> receipts;
+    for (const store::ReplicatedReport& report : reports)
+      receipts.push_back({report.attempt.report_uuid, ReceiptStatus::Refused, "not here"});
+    done(receipts);
+  };
+  test::report(*site_, {solved(1)});
+  positions_.emplace(*site_);
+  exchange_.emplace(*site_, memory, *positions_, counts_, hooks_, options_);
+  const auto step_for = [&](std::chrono::seconds time) {
+    for (const auto end = now + time; now < end; now += std::chrono::seconds(5))
+      for (int stream = 0; stream < 4; ++stream)
+        exchange_->step();
+  };
+  step_for(std::chrono::hours(2));
+  EXPECT_GT(tries, 10) << "every ten minutes in the end";
+  EXPECT_LT(tries, 40);
+  EXPECT_EQ(std::ranges::count_if(
+                lines_,
+                [](const std::string& line) { return line.find("not here") != std::string::npos; }),
+            1)
+      << "told once";
+  ASSERT_EQ(positions_->refused().size(), 1U);
+  is_refusing = false;
+  step_for(options_.longest_refused_retry / std::chrono::seconds(1) * std::chrono::seconds(1));
+  EXPECT_TRUE(positions_->refused().empty());
+  EXPECT_EQ(reports_of(*memory_), reports_of(*site_));
+  exchange_.reset();
+}
+
+TEST_F(ExchangeTest, OneUuidWithTwoContentsIsNamedWhereItMeetsTheOther) {
+  Attempt other = solved(9);
+  other.report_uuid = solved(1).report_uuid;
+  test::report(*memory_, {other});
+  test::report(*site_, {solved(1), solved(2)});
+  in_use_ = {"shelf"};
+  exchange();
+  ASSERT_EQ(positions_->refused().size(), 1U);
+  EXPECT_EQ(positions_->refused().begin()->first, other.report_uuid);
+  EXPECT_NE(positions_->refused().begin()->second.why.find("was used for another report"),
+            std::string::npos);
+  EXPECT_EQ(site_->find_attempt(other.report_uuid)->path->waypoints(), solved(1).path->waypoints())
+      << "each keeps its own";
+  EXPECT_EQ(memory_->find_attempt(other.report_uuid)->path->waypoints(), other.path->waypoints());
+}
+
 TEST_F(ExchangeTest, WhatCameDownIsHandedToTheServerOfTheSite) {
   std::size_t most = 0, all = 0;
   hooks_.commit = [&](std::vector<store::ReplicatedReport> reports,

@@ -130,10 +130,14 @@ TEST_P(StoreSharing, WhatIsKnownIsToldFromWhatIsNot) {
   report(test::make_unsolved(panda_.digest, "shelf", 2));
   const std::vector<Uuid> asked = {solved(1).report_uuid, test::id_from<Uuid>(2),
                                    test::id_from<Uuid>(3)};
-  EXPECT_EQ(store_->known_reports(asked), (std::set<Uuid>{asked[0], asked[1]}));
   const ReplicatedReports read = store_->read_reports(asked, kManyBytes);
   EXPECT_EQ(read.looked_at, 3U);
   ASSERT_EQ(read.reports.size(), 2U);
+  EXPECT_EQ(
+      store_->known_reports(asked),
+      (std::map<Uuid, Digest>{{asked[0], read.reports[0].body}, {asked[1], read.reports[1].body}}));
+  for (const ArrivedReport& arrived : store_->list_arrivals("", "", 10).rows)
+    EXPECT_EQ(arrived.body, store_->known_reports(asked).at(arrived.report_uuid));
   EXPECT_FALSE(read.reports[1].attempt.path);
   const ReplicatedReports few = store_->read_reports(asked, 1);
   EXPECT_EQ(few.looked_at, 1U) << "one at least";
