@@ -222,7 +222,10 @@ RowColumns<ClientUse> columns_of_clients() {
           {{"STORED", Fit::Wide}, [](const Row& row) { return size_text(row.stored_bytes); }}};
 }
 
+/// How the server knows it, where that is in the log: "address 10.0.0.7, token shown".
 std::string place_text(const AuditEntry& entry) {
+  if (const auto end = entry.client.find(", "); end != std::string::npos)
+    return entry.client.substr(end + 2);
   return entry.is_local ? "this machine" : "another host";
 }
 

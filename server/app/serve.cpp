@@ -12,12 +12,15 @@
 #include <ostream>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/log.hpp"
+#include "proto/dds/packet_guard.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/security/admin_token.hpp"
 #include "proto/types/names.hpp"
 #include "server/access/access.hpp"
 #include "server/app/endpoints.hpp"
@@ -146,6 +149,37 @@ void tell_what_is_served(const ServerStatus& status, std::uint32_t domain,
     spdlog::warn("store: {}", status.storage_message);
 }
 
+/// What the packet guard dropped, as troubles.
+std::vector<TroubleCount> network_troubles() {
+  std::vector<TroubleCount> rows;
+  for (const dds::DroppedPackets& each : dds::dropped_packets())
+    if (each.count > 0)
+      rows.push_back({.what = std::string(each.reason),
+                      .count = each.count,
+                      .last = "dropped, the last one from " + each.last_source,
+                      .last_ms = each.last_ms});
+  return rows;
+}
+
+/// The status tells of the network, and of the token that changes need.
+void set_network(service::ServiceOptions& settings, security::AdminTokenCheck* token) {
+  settings.network_troubles = network_troubles;
+  settings.network_bounds = [] {
+    return std::vector<BoundUse>{{"participants", dds::known_peers(), dds::PeerTable::kMaxPeers}};
+  };
+  if (token != nullptr)
+    settings.challenge = [token] { return token->challenge(std::chrono::steady_clock::now()); };
+}
+
+/// Null where changes need no token.
+std::unique_ptr<security::AdminTokenCheck> check_of_token(const ServerOptions& options) {
+  const std::filesystem::path file = token_file_of(options);
+  if (file.empty())
+    return nullptr;
+  return std::make_unique<security::AdminTokenCheck>(security::make_admin_token(file),
+                                                     std::chrono::steady_clock::now());
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
@@ -171,9 +205,12 @@ int serve(const ServerOptions& options, std::ostream& out) {
   set_upstream(options, settings);
   publish_with(settings, events, announcements);
   settings.wake = [&loop] { loop.wake(); };
-  service::Service service(store::open_store(options.store.string(), store_options(options)),
-                           std::move(settings));
-  const Endpoints endpoints(participant, loop, service);
+  std::unique_ptr<store::Store> store =
+      store::open_store(options.store.string(), store_options(options));
+  const std::unique_ptr<security::AdminTokenCheck> token = check_of_token(options);
+  set_network(settings, token.get());
+  service::Service service(std::move(store), std::move(settings));
+  const Endpoints endpoints(participant, loop, service, token.get());
   const SignalWatcher signals([&loop](int signal) {
     spdlog::info("signal {}: draining", signal);
     loop.stop();
