@@ -25,6 +25,7 @@
 #include "server/access/access.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/expiry_watch.hpp"
+#include "server/app/heap_trim.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
 #include "server/app/metrics_listener.hpp"
@@ -180,6 +181,18 @@ std::unique_ptr<security::AdminTokenCheck> check_of_token(const ServerOptions& o
                                                      std::chrono::steady_clock::now());
 }
 
+/// Serves until the loop is stopped.
+void run(dds::WaitLoop& loop, service::Service& service, ExpiryWatch& expiry) {
+  Watchdog watchdog;
+  HeapTrim heap;
+  loop.run([&] {
+    const auto now = WaitClock::now();
+    service.expire(now);
+    return std::min({watchdog.beat(now), expiry.beat(now), heap.beat(now, dds::known_peers()),
+                     service.next_deadline().value_or(WaitClock::time_point::max())});
+  });
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
@@ -228,13 +241,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   }
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
-  Watchdog watchdog;
-  loop.run([&service, &watchdog, &expiry] {
-    const auto now = WaitClock::now();
-    service.expire(now);
-    return std::min({watchdog.beat(now), expiry.beat(now),
-                     service.next_deadline().value_or(WaitClock::time_point::max())});
-  });
+  run(loop, service, expiry);
 
   notify_service_manager("STOPPING=1");
   metrics.reset();

@@ -82,7 +82,7 @@ TEST_F(PeerTableTest, AFloodOfOnePortLeavesOthersTheirShare) {
   std::uint64_t who = 100;
   for (int ms = 0; ms < 10'000; ms += 2, now_ += milliseconds(2))
     heard += announce(++who, kElsewhere) == Heard ? 1 : 0;
-  EXPECT_NEAR(heard, 32 + 8 * 10, 2);
+  EXPECT_NEAR(heard, 64 + 16 * 10, 2);
   EXPECT_EQ(announce(++who, kElsewhere), PortRate);
   EXPECT_EQ(announce(1, PacketSource::ipv4({10, 0, 0, 9}, 40'001)), Heard);
   EXPECT_EQ(announce(2, kHere), Heard);
