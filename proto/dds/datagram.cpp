@@ -146,10 +146,18 @@ bool read_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, Datagram& 
                      int& announcements) {
   constexpr std::size_t kWriterAt = 8;
   switch (id) {
-    case kInfoSource:
-      return false;
+    case kInfoSource: {
+      constexpr std::size_t kMaxOthers = 255;
+      const auto prefix = Reader(body, true).bytes(kPrefixAt, datagram.sender.size());
+      if (!prefix || datagram.others.size() >= kMaxOthers)
+        return false;
+      announcements = 0;
+      std::ranges::copy(*prefix, datagram.others.emplace_back().sender.begin());
+      return true;
+    }
     case kData:
-      return read_data(body, flags, datagram, announcements);
+      return read_data(body, flags, datagram.others.empty() ? datagram : datagram.others.back(),
+                       announcements);
     case kDataFragment: {
       const auto writer = Reader(body, true).bytes(kWriterAt, 4);
       return writer && !is_announcer(*writer);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace kinship::dds {
 
@@ -23,13 +24,15 @@ struct ParticipantAnnouncement {
 struct Datagram {
   GuidPrefix sender{};
   std::optional<ParticipantAnnouncement> announcement;
+  /// Further senders, after INFO_SRC: Cyclone DDS packs what the participants of a process send.
+  std::vector<Datagram> others = {};
 };
 
 /// Reads hostile bytes: every length is checked. Understands the framing of RTPS 2.1 and later as
 /// Cyclone DDS 0.10.2 does.
 /// \return nothing for a datagram that no participant of ours sends and that is not to be heard:
-///         broken, of several senders (INFO_SRC), with an announcement that is broken, cut in
-///         pieces (DATA_FRAG), in more than two copies, or about another participant.
+///         broken, of too many senders, with an announcement that is broken, cut in pieces
+///         (DATA_FRAG), in more than two copies, or about another participant than its sender.
 std::optional<Datagram> read_datagram(std::span<const std::uint8_t> bytes);
 
 }  // namespace kinship::dds

@@ -65,16 +65,11 @@ class GuardedPeers {
     const std::optional<Datagram> datagram = read_datagram(bytes);
     const auto now = Clock::now();
     const std::lock_guard lock(mutex_);
-    // An address is looked up for newcomers, and for who is heard from a second one.
-    const bool is_local = datagram && is_own(*datagram, source, now);
-    const PacketVerdict verdict = table_.take(datagram, source, is_local, needs_identity, now);
-    if (verdict == PacketVerdict::Heard)
-      return true;
-    Dropped& dropped = dropped_.at(static_cast<std::size_t>(verdict));
-    ++dropped.count;
-    dropped.source = source;
-    dropped.time = std::chrono::system_clock::now();
-    return false;
+    if (!take(datagram, source, needs_identity, now))
+      return false;
+    return std::ranges::all_of(datagram->others, [&](const Datagram& other) {
+      return take(other, source, needs_identity, now);
+    });
   }
 
   std::optional<PeerTable::Peer> find(const GuidPrefix& prefix) {
@@ -114,6 +109,21 @@ class GuardedPeers {
     PacketSource source;
     std::chrono::system_clock::time_point time;
   };
+
+  /// With mutex_ held. An address is looked up for newcomers, and for who is heard from a second
+  /// one.
+  bool take(const std::optional<Datagram>& datagram, const PacketSource& source,
+            bool needs_identity, Clock::time_point now) {
+    const bool is_local = datagram && is_own(*datagram, source, now);
+    const PacketVerdict verdict = table_.take(datagram, source, is_local, needs_identity, now);
+    if (verdict == PacketVerdict::Heard)
+      return true;
+    Dropped& dropped = dropped_.at(static_cast<std::size_t>(verdict));
+    ++dropped.count;
+    dropped.source = source;
+    dropped.time = std::chrono::system_clock::now();
+    return false;
+  }
 
   bool is_own(const Datagram& datagram, const PacketSource& source, Clock::time_point now) {
     const auto known = table_.find(datagram.sender);

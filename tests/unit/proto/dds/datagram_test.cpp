@@ -49,12 +49,25 @@ TEST(Datagram, WithoutAnAnnouncementTellsItsSender) {
   EXPECT_FALSE(datagram->announcement);
 }
 
+TEST(Datagram, TellsEachOfItsSenders) {
+  Bytes bytes = test::announcement();
+  Bytes source(8);
+  source.insert(source.end(), 12, 7);
+  test::append(bytes, test::submessage(0x0c, 1, source));  // INFO_SRC
+  const GuidPrefix second{7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
+  test::append(bytes, test::announcement_submessage({.sender = second, .lease_s = 9}));
+  const auto datagram = read_exactly(bytes);
+  ASSERT_TRUE(datagram && datagram->announcement && datagram->others.size() == 1);
+  EXPECT_EQ(datagram->others[0].sender, second);
+  ASSERT_TRUE(datagram->others[0].announcement);
+  EXPECT_EQ(datagram->others[0].announcement->lease, std::chrono::seconds(9));
+  test::append(bytes, test::announcement_submessage({}));
+  EXPECT_FALSE(read_exactly(bytes)) << "the first one's, by the second one";
+}
+
 TEST(Datagram, IsNotHeardIfItMightBeAnothersAnnouncement) {
   EXPECT_FALSE(read_exactly(test::announcement({.about = GuidPrefix{8}})));
   EXPECT_FALSE(read_exactly(test::announcement({.submessage = 0x16}))) << "in fragments";
-  Bytes other_source = test::rtps_header({1});
-  test::append(other_source, test::submessage(0x0c, 1, Bytes(20)));
-  EXPECT_FALSE(read_exactly(other_source)) << "INFO_SRC";
   Bytes copies = test::announcement();
   test::append(copies, test::announcement_submessage({}));
   EXPECT_TRUE(read_exactly(copies));
