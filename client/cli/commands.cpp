@@ -25,6 +25,11 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   app.require_subcommand(1);
   app.fallthrough();
   arguments::add_server_address(app, {session.host, session.domain, session.security});
+  app.add_option("--token", session.token,
+                 "file with a copy of the server's token, to change and remove at a server that "
+                 "serves other hosts without security (kinshipd --token-file)")
+      ->envname("KINSHIP_TOKEN")
+      ->type_name("FILE");
   app.add_option("--timeout", session.timeout_s, "Seconds to wait for an answer (default 5)")
       ->check(arguments::between(0.01, 86'400.0));
   app.add_flag("--progress", session.is_verbose,

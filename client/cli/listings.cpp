@@ -226,6 +226,12 @@ std::string place_text(const AuditEntry& entry) {
   return entry.is_local ? "this machine" : "another host";
 }
 
+/// With how the server knows it, where the log has that: "address 10.0.0.7, token shown".
+std::string known_place_text(const AuditEntry& entry) {
+  const auto end = entry.client.find(", ");
+  return end == std::string::npos ? place_text(entry) : entry.client.substr(end + 2);
+}
+
 RowColumns<AuditEntry> columns_of_audit() {
   using Row = AuditEntry;
   return {{"AGE", age(&Row::time_ms)},
@@ -240,8 +246,12 @@ RowColumns<AuditEntry> columns_of_audit() {
            }},
           {{"BEFORE", Fit::Wide}, or_none(&Row::before)},
           {{"ROLE", Fit::Wide}, or_none(&Row::role)},
-          {{"CLIENT", Fit::Wide}, or_none(&Row::client)},
-          {{"FROM", Fit::Wide}, place_text},
+          {{"CLIENT", Fit::Wide},
+           [](const Row& entry) {
+             const std::string client = entry.client.substr(0, entry.client.find(", "));
+             return client.empty() ? "-" : client;
+           }},
+          {{"FROM", Fit::Wide}, known_place_text},
           {{"WHEN", Fit::Wide}, time(&Row::time_ms)}};
 }
 

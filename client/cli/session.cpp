@@ -19,6 +19,7 @@ int Session::with_server(const std::function<int(link::Client&)>& use) const {
   options.domain = domain;
   options.timeout = milliseconds(timeout_s);
   options.security = security;
+  options.token = token;
   link::Client server(options);
   if (const auto warning = server.expiry_warning())
     err << *warning << '\n';

@@ -21,6 +21,7 @@ struct Session {
   std::string host = link::ClientOptions().server;
   std::uint32_t domain = 0;
   std::filesystem::path security = {};  ///< folder of credentials; empty: none
+  std::filesystem::path token = {};     ///< file of the server's token; empty: none
   double timeout_s = 5;
   bool json = false;
   bool is_wide = false;               ///< tables with every column

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/link/admin_rows.hpp"
 #include "client/link/delivery.hpp"
 #include "client/link/environment.hpp"
 #include "client/link/interruptible_sleep.hpp"
@@ -13,6 +14,7 @@
 #include "client/link/report_sender.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/requester.hpp"
+#include "proto/security/admin_token.hpp"
 #include "proto/security/credentials.hpp"
 #include "robots/kinematics/urdf.hpp"
 
@@ -63,6 +65,7 @@ std::optional<milliseconds> pause_after(const Result<FetchReply>& reply) {
 struct Client::Line {
   explicit Line(const ClientOptions& options)
       : timeout(options.timeout),
+        token(options.token.empty() ? token_from_environment() : options.token),
         participant(std::make_shared<const dds::Participant>(dds::ParticipantOptions{
             .domain = options.domain,
             .server = options.server,
@@ -93,6 +96,7 @@ struct Client::Line {
 
   const dds::OwningProcess process;
   const milliseconds timeout;
+  const std::filesystem::path token;  // empty: none
   const Uuid client_id = Uuid::random();
   std::optional<Outbox> outbox;
   const std::shared_ptr<const dds::Participant> participant;  // with followers and watchers
@@ -229,9 +233,26 @@ Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
 }
 
 Result<AdminReply> Client::admin(const AdminRequest& request) {
+  if (!line_->token.empty() && rule_of(request.verb).is(VerbRule::Changes))
+    return change(request);
   const Clock::time_point deadline = Clock::now() + line_->timeout + request.deadline;
   return ask_until_final<AdminReply>(deadline, line_->sleep,
                                      [&] { return line_->administering.call(request, deadline); });
+}
+
+/// With a proof of its own each time that it is sent anew.
+Result<AdminReply> Client::change(const AdminRequest& request) {
+  const Digest token = security::read_admin_token(line_->token);
+  const Clock::time_point deadline = Clock::now() + line_->timeout + request.deadline;
+  return ask_until_final<AdminReply>(deadline, line_->sleep, [&]() -> Result<AdminReply> {
+    const Result<ServerStatus> status = row_of<ServerStatus>(*this, AdminRequest());
+    if (!status)
+      return status.error();
+    AdminRequest shown = request;
+    if (!status->challenge.empty())
+      shown.proof = security::prove_admin_token(token, status->challenge, request);
+    return line_->administering.call(shown, deadline);
+  });
 }
 
 bool Client::is_forked() const { return line_->process.is_forked(); }

@@ -27,6 +27,9 @@ struct ClientOptions {
   std::string server = "127.0.0.1";  ///< host of kinshipd
   /// Folder of credentials (kinshipd secure add); empty: that of KINSHIP_SECURITY, or none.
   std::filesystem::path security = {};
+  /// File with a copy of the server's token, for changes of a server that serves other hosts
+  /// without security (kinshipd --token-file); empty: that of KINSHIP_TOKEN, or none.
+  std::filesystem::path token = {};
   std::filesystem::path outbox;  ///< folder; empty: default_outbox_folder()
   bool has_outbox = true;        ///< false: delivers nothing, report() is not allowed
   /// Of register, deliver (per batch, without the pauses that the server asks for) and admin.
@@ -99,7 +102,9 @@ class Client {
   ///         attempts may have arrived then.
   Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts);
 
-  /// Waits for the reply up to the timeout, for ShowJob longer by the request's deadline.
+  /// Waits for the reply up to the timeout, for ShowJob longer by the request's deadline. A change
+  /// shows the token, if there is one and the server wants it.
+  /// \throws Failure if the token's file cannot be read.
   Result<AdminReply> admin(const AdminRequest& request);
 
   /// Ends every wait for a reply, from another thread; it and later ones return Unavailable.
@@ -115,6 +120,7 @@ class Client {
 
  private:
   struct Line;
+  Result<AdminReply> change(const AdminRequest& request);
   std::unique_ptr<Line> line_;
 };
 

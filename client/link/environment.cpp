@@ -19,6 +19,11 @@ std::filesystem::path security_from_environment() {
   return folder != nullptr ? folder : "";
 }
 
+std::filesystem::path token_from_environment() {
+  const char* const file = std::getenv("KINSHIP_TOKEN");
+  return file != nullptr ? file : "";
+}
+
 ClientOptions options_from_environment() {
   ClientOptions options;
   if (const char* const text = std::getenv("KINSHIP_DOMAIN"); text != nullptr && *text != '\0') {

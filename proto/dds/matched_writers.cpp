@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
 #include <utility>
-#include <vector>
 
 #include "proto/dds/endpoint.hpp"
-#include "proto/dds/network_interface.hpp"
+#include "proto/dds/packet_guard.hpp"
 #include "proto/security/certificate_name.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/types/uuid.hpp"
@@ -25,25 +23,13 @@ std::string text_of(const dds_guid_t& guid) {
   return uuid.text();
 }
 
-bool is_own(const std::string& address) {
-  if (address.starts_with("127."))
-    return true;
-  const std::vector<NetworkInterface> interfaces = network_interfaces();
-  return std::ranges::any_of(interfaces, [&](const NetworkInterface& each) {
-    return std::ranges::find(each.addresses, address) != each.addresses.end();
-  });
+GuidPrefix prefix_of(const dds_guid_t& guid) {
+  GuidPrefix prefix;
+  std::copy_n(std::begin(guid.v), prefix.size(), prefix.begin());
+  return prefix;
 }
 
 }  // namespace
-
-bool are_own_addresses(const std::string& addresses) {
-  if (addresses == "localprocess")
-    return true;
-  static const std::regex address(R"((\d+\.\d+\.\d+\.\d+):\d+)");
-  const std::sregex_iterator begin(addresses.begin(), addresses.end(), address), end;
-  return begin != end &&
-         std::all_of(begin, end, [](const std::smatch& found) { return is_own(found[1]); });
-}
 
 std::optional<std::string> client_of_partitions(const dds_qos* qos) {
   std::uint32_t count = 0;
@@ -89,21 +75,27 @@ std::optional<Sender> MatchedWriters::look_up(const Entity& reader, std::uint64_
   const Endpoint endpoint(dds_get_matched_publication_data(reader.get(), writer));
   if (!endpoint)
     return std::nullopt;
-  const bool is_here = is_local(endpoint->participant_instance_handle);
-  if (!has_security_)
-    return Sender{.client = text_of(endpoint->participant_key),
-                  .is_local = is_here,
-                  .participant = endpoint->participant_instance_handle};
+  Sender sender{.participant = endpoint->participant_instance_handle};
+  if (const auto peer = find_peer(prefix_of(endpoint->participant_key))) {
+    sender.is_local = peer->is_local;
+    sender.address = peer->source.address_text();
+  } else {
+    sender.is_local = is_in_this_process(sender.participant);
+  }
+  if (!has_security_) {
+    sender.client = text_of(endpoint->participant_key);
+    return sender;
+  }
   const std::optional<std::string> name = client_of_partitions(endpoint->qos);
   if (!name)
     return std::nullopt;
-  return Sender{.client = security::client_of(*name),
-                .name = *name,
-                .is_local = is_here,
-                .participant = endpoint->participant_instance_handle};
+  sender.client = security::client_of(*name);
+  sender.name = *name;
+  return sender;
 }
 
-bool MatchedWriters::is_local(std::uint64_t participant) const {
+/// Cyclone DDS sets that text itself, whatever a participant announces.
+bool MatchedWriters::is_in_this_process(std::uint64_t participant) const {
   std::array<void*, 1> samples{};
   std::array<dds_sample_info_t, 1> infos{};
   const dds_return_t count =
@@ -115,7 +107,7 @@ bool MatchedWriters::is_local(std::uint64_t participant) const {
     const auto& data = *static_cast<const dds_builtintopic_participant_t*>(samples[0]);
     char* addresses = nullptr;
     if (dds_qget_prop(data.qos, "__NetworkAddresses", &addresses)) {
-      is_here = are_own_addresses(addresses);
+      is_here = std::string_view(addresses) == "localprocess";
       dds_free(addresses);
     }
   }

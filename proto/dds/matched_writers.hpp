@@ -24,10 +24,9 @@ struct Sender {
   /// The client's name; without security the identifier of its participant, which differs in each
   /// process.
   std::string client;
-  std::string name = {};  ///< common name of its certificate; empty without security
-  /// All of its participant's addresses are of this machine. Without security the participant
-  /// states them itself.
-  bool is_local = false;
+  std::string name = {};          ///< common name of its certificate; empty without security
+  bool is_local = false;          ///< its packets come from this machine (packet_guard)
+  std::string address = {};       ///< that its packets come from; empty: it is in this process
   std::uint64_t participant = 0;  ///< its instance handle
   Hearing hearing = Hearing::Unknown;
 };
@@ -48,7 +47,7 @@ class MatchedWriters {
 
  private:
   std::optional<Sender> look_up(const Entity& reader, std::uint64_t writer) const;
-  bool is_local(std::uint64_t participant) const;
+  bool is_in_this_process(std::uint64_t participant) const;
 
   bool has_security_;
   Entity participants_;                              // reader of the built-in topic of participants
@@ -58,9 +57,5 @@ class MatchedWriters {
 /// The common name of the client's certificate if the QoS of a reader or writer has that client's
 /// partition and no other.
 std::optional<std::string> client_of_partitions(const dds_qos* qos);
-
-/// Whether all addresses are of this machine: the form of Cyclone DDS, "udp/10.0.0.5:7411,...", or
-/// "localprocess".
-bool are_own_addresses(const std::string& addresses);
 
 }  // namespace kinship::dds

@@ -13,6 +13,7 @@
 #include "proto/dds/log.hpp"
 #include "proto/dds/loopback_guard.hpp"
 #include "proto/dds/network_interface.hpp"
+#include "proto/dds/packet_guard.hpp"
 #include "proto/dds/qos.hpp"
 #include "proto/types/failure.hpp"
 
@@ -177,6 +178,9 @@ Participant::Participant(const ParticipantOptions& options)
     : options_(options),
       credentials_(credentials_of(options)),
       guard_(guard_of(options)),
+      packets_(options.role == Role::Server
+                   ? std::make_unique<PacketGuard>(!options.security.empty())
+                   : nullptr),
       domain_(Domain::join(options)),
       entity_(create_participant(options)) {}
 

@@ -33,6 +33,7 @@ class OwningProcess {
 std::string forked_process_advice();
 
 class EndpointGuard;
+class PacketGuard;
 
 enum class Role {
   Server,  ///< takes the first discovery port of the domain; knows no peers
@@ -104,6 +105,7 @@ class Participant {
   ParticipantOptions options_;
   std::optional<security::Credentials> credentials_;
   std::unique_ptr<EndpointGuard> guard_;  // with security
+  std::unique_ptr<PacketGuard> packets_;  // of a server
   std::shared_ptr<Domain> domain_;  // shared by the participants of this process on one domain
   Entity entity_;
 };

@@ -166,8 +166,10 @@ class Replier<Conversation>::Implementation {
   /// \return why the sender is refused if it is.
   Result<Caller> caller_of(const Sender& sender) const {
     if (!has_security_)
-      return Caller{
-          .client = sender.client, .role = AccessRole::Admin, .is_local = sender.is_local};
+      return Caller{.client = sender.client,
+                    .role = AccessRole::Admin,
+                    .is_local = sender.is_local,
+                    .address = sender.address};
     if (!directory_)
       return Error{ErrorCode::Internal, "the server knows no clients"};
     Result<Caller> caller = directory_(sender.name);
@@ -175,6 +177,7 @@ class Replier<Conversation>::Implementation {
       return caller;
     Caller known = *std::move(caller);
     known.is_local = sender.is_local;
+    known.address = sender.address;
     return known;
   }
 

@@ -48,7 +48,7 @@ enum class VerbArgument { Other, Robot, Task, Report, Distribution, Job };
 
 struct VerbRule {
   enum Trait : unsigned {
-    Changes = 1,     ///< logged in the audit log; without security only from this machine
+    Changes = 1,     ///< logged in the audit log; without security by place or token
     OfAll = 2,       ///< about all tasks and robots: not for a certificate limited to some of them
     Lists = 4,       ///< a page may have fewer rows than requested
     NamesRobot = 8,  ///< its request may name a robot, beside `argument`

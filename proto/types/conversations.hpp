@@ -186,6 +186,8 @@ struct AdminRequest {
   std::string cursor = {};  ///< from the page before; empty: the first page
   std::uint32_t limit = 100;              ///< rows a page
   std::chrono::milliseconds deadline{0};  ///< of ShowJob: longest wait for the end
+  /// That the sender has the server's token (proto/security/admin_token); empty: none is shown.
+  std::string proof = {};
 };
 
 template <>
@@ -196,7 +198,8 @@ inline constexpr std::tuple kFieldsOf<AdminRequest>{
     Field{"task", &AdminRequest::task, {.limit = kMaxTaskBytes}},
     Field{"cursor", &AdminRequest::cursor, {.limit = kMaxCursorBytes}},
     Field{"limit", &AdminRequest::limit, between(1, kMaxPageRows)},
-    Field{"deadline_ms", &AdminRequest::deadline, between(0, kMaxFetchDeadline_ms)}};
+    Field{"deadline_ms", &AdminRequest::deadline, between(0, kMaxFetchDeadline_ms)},
+    Field{"proof", &AdminRequest::proof, {.limit = kMaxProofBytes}}};
 
 enum class AdminStatus { Ok, NotFound, Refused, Failed };
 

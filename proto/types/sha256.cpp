@@ -2,6 +2,7 @@
 
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -66,6 +67,19 @@ Digest Sha256::finish() {
   unsigned int size = 0;
   require(EVP_DigestFinal_ex(context_.get(), digest.bytes.data(), &size));
   return digest;
+}
+
+/// The block of SHA-256 has 64 bytes.
+Digest hmac_sha256(const Digest& key, std::span<const std::uint8_t> message) {
+  std::array<std::uint8_t, 64> inner{}, outer{};
+  std::copy(key.bytes.begin(), key.bytes.end(), inner.begin());
+  outer = inner;
+  for (std::uint8_t& byte : inner)
+    byte ^= 0x36;
+  for (std::uint8_t& byte : outer)
+    byte ^= 0x5c;
+  const Digest within = Sha256().add(std::span<const std::uint8_t>(inner)).add(message).finish();
+  return Sha256().add(std::span<const std::uint8_t>(outer)).add(within).finish();
 }
 
 }  // namespace kinship

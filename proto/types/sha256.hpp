@@ -36,4 +36,7 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
+/// HMAC (RFC 2104) of a message with SHA-256.
+Digest hmac_sha256(const Digest& key, std::span<const std::uint8_t> message);
+
 }  // namespace kinship

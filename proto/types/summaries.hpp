@@ -370,6 +370,8 @@ struct ServerStatus {
   std::int64_t credentials_expire_ms = 0;       ///< the server's own; 0: it runs without security
   std::optional<UpstreamStatus> upstream = {};  ///< of a site
   std::vector<ReplicaUse> replicas = {};        ///< hosts of a database that fits may read
+  /// Goes into the proof that a change needs (AdminRequest::proof); empty: none is needed.
+  std::string challenge = {};
 };
 
 template <>
@@ -407,7 +409,8 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"dropped_paths", &ServerStatus::dropped_paths, {.may_be_missing = true}},
     Field{"credentials_expire_ms", &ServerStatus::credentials_expire_ms, {.may_be_missing = true}},
     Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}},
-    Field{"replicas", &ServerStatus::replicas, {.limit = kMaxStatusRows, .may_be_missing = true}}};
+    Field{"replicas", &ServerStatus::replicas, {.limit = kMaxStatusRows, .may_be_missing = true}},
+    Field{"challenge", &ServerStatus::challenge, {.limit = kMaxWordBytes, .may_be_missing = true}}};
 
 /// A row of the admin conversation, and its name in a refusal.
 template <typename Row>

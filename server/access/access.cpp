@@ -39,7 +39,24 @@ bool has_role(const Caller& caller, AccessRole least) {
 }
 
 std::optional<Error> refusal_by_place(const Caller& caller, std::string_view act) {
-  if (!caller.name.empty() || caller.is_local)
+  if (!caller.name.empty())
+    return std::nullopt;
+  switch (caller.token) {
+    case TokenProof::Shown:
+      return std::nullopt;
+    case TokenProof::Missing:
+      return refused(caller, act,
+                     "this server serves other hosts without security, where that needs its token: "
+                     "kinship --token FILE, a copy of the file that kinshipd names at its start; "
+                     "kinshipd --security has certificates tell who may do it");
+    case TokenProof::Wrong:
+      return refused(caller, act,
+                     "the proof of the token is wrong: another token, or a request that was sent "
+                     "before");
+    case TokenProof::NotNeeded:
+      break;
+  }
+  if (caller.is_local)
     return std::nullopt;
   return refused(caller, act,
                  "this server runs without security, where that is for its own machine alone; "

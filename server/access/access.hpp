@@ -28,8 +28,8 @@ bool is_narrowed(const Caller& caller) noexcept;
 bool may_see(const Caller& caller, std::string_view task, std::string_view robot);
 
 /// By role, and for a caller limited to tasks or robots by the verb's reach; without security,
-/// verbs that change something also by the place of the caller. CancelJob is allowed here to every
-/// caller that may have begun a job: see refusal_of_job().
+/// verbs that change something also by the place of the caller, or by the token that it shows.
+/// CancelJob is allowed here to every caller that may have begun a job: see refusal_of_job().
 std::optional<Error> refusal_of(const Caller& caller, AdminVerb verb);
 
 /// For a task or robot (label) that a request names.

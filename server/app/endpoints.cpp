@@ -53,23 +53,28 @@ auto gate_of(service::Service& service, const Reply& busy) {
 /// Answers with the part of the service's answer that begins at a place. Rows of one page can
 /// exceed the limit of a message: a listing is then asked for with fewer, a single row cut.
 void administer(service::AdminService& service, const AdminRequest& request, const RowCursor& begin,
-                const dds::Answer<AdminConversation>& answer) {
+                const Caller& caller, const dds::Answer<AdminConversation>& answer) {
   service.administer(
       request, request_key_of(answer),
       [=, &service](const service::AdminPage& page) {
         AdminReply reply = to_reply(page);
         if (!fits_page(reply))
           if (const auto smaller = for_fewer_rows(request, page.rows.size()))
-            return administer(service, *smaller, begin, answer);
+            return administer(service, *smaller, begin, caller, answer);
         answer(page_of(std::move(reply), begin));
       },
-      answer.caller());
+      caller);
 }
 
-void administer(service::AdminService& service, const AdminRequest& request,
-                const dds::Answer<AdminConversation>& answer) {
+/// \param token  null: none is needed.
+void administer(service::AdminService& service, security::AdminTokenCheck* token,
+                const AdminRequest& request, const dds::Answer<AdminConversation>& answer) {
   const RowCursor begin = read_row_cursor(request.cursor).value_or_throw();
-  administer(service, for_rest(request, begin), begin, answer);
+  Caller caller = answer.caller();
+  if (token != nullptr && rule_of(request.verb).is(VerbRule::Changes))
+    caller.token = token->check(request, request_key_of(answer),
+                                security::AdminTokenCheck::TimePoint::clock::now());
+  administer(service, for_rest(request, begin), begin, caller, answer);
 }
 
 }  // namespace
@@ -77,7 +82,7 @@ void administer(service::AdminService& service, const AdminRequest& request,
 class Endpoints::Implementation {
  public:
   Implementation(const dds::Participant& participant, dds::WaitLoop& loop,
-                 service::Service& service)
+                 service::Service& service, security::AdminTokenCheck* token)
       : register_(
             participant, loop,
             [&service](RobotDescription description,
@@ -104,8 +109,9 @@ class Endpoints::Implementation {
             gate_of(service, with_status(FetchReply(), FetchStatus::Busy))),
         admin_(
             participant, loop,
-            [&service](const AdminRequest& request, const dds::Answer<AdminConversation>& answer) {
-              administer(service.administration(), request, answer);
+            [&service, token](const AdminRequest& request,
+                              const dds::Answer<AdminConversation>& answer) {
+              administer(service.administration(), token, request, answer);
             },
             gate_of(service, with_status(AdminReply(), AdminStatus::Failed))) {}
 
@@ -122,8 +128,8 @@ class Endpoints::Implementation {
 };
 
 Endpoints::Endpoints(const dds::Participant& participant, dds::WaitLoop& loop,
-                     service::Service& service)
-    : implementation_(std::make_unique<Implementation>(participant, loop, service)) {}
+                     service::Service& service, security::AdminTokenCheck* token)
+    : implementation_(std::make_unique<Implementation>(participant, loop, service, token)) {}
 
 Endpoints::~Endpoints() = default;
 

@@ -5,6 +5,7 @@
 
 #include "proto/dds/participant.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/security/admin_token.hpp"
 #include "server/service/service.hpp"
 
 namespace kinship::app {
@@ -14,8 +15,10 @@ namespace kinship::app {
 class Endpoints {
  public:
   /// \param participant, loop, service  outlive the endpoints.
+  /// \param token  that changes need to show; outlives them. Null: none.
   /// \throws Failure(Internal) if a DDS entity cannot be created.
-  Endpoints(const dds::Participant& participant, dds::WaitLoop& loop, service::Service& service);
+  Endpoints(const dds::Participant& participant, dds::WaitLoop& loop, service::Service& service,
+            security::AdminTokenCheck* token);
   ~Endpoints();
   Endpoints(const Endpoints&) = delete;
   Endpoints& operator=(const Endpoints&) = delete;

@@ -1,5 +1,8 @@
 #include "server/app/metrics_page.hpp"
 
+#include <algorithm>
+
+#include "proto/dds/packet_guard.hpp"
 #include "server/app/process_metrics.hpp"
 
 namespace kinship::app {
@@ -10,6 +13,15 @@ std::string metrics_page(const service::Service& service, std::size_t clients) {
   page.sample(std::uint64_t{1}, {{"version", KINSHIP_VERSION}, {"compiler", __VERSION__}});
   page.gauge("kinship_clients", "Clients on the network that could ask for something now.",
              std::uint64_t{clients});
+  page.gauge("kinship_participants", "Participants of other processes that are known.",
+             std::uint64_t{dds::known_peers()});
+  page.family("kinship_dropped_packets_total", metrics::Type::Counter,
+              "Packets that were dropped before anything was made of them, by reason.");
+  for (const dds::DroppedPackets& each : dds::dropped_packets()) {
+    std::string reason(each.reason);
+    std::ranges::replace(reason, ' ', '_');
+    page.sample(each.count, {{"reason", reason}});
+  }
   service.expose(page);
   expose_process(page);
   return page.text();

@@ -209,7 +209,12 @@ void add_place_options(CLI::App& app, ServerOptions& options) {
       ->type_name("FOLDER");
   app.add_flag("--insecure", options.insecure,
                "Serve other hosts without --security: whoever reaches the ports may read, report "
-               "and register; what changes or removes is for this machine alone");
+               "and register; what changes or removes needs the token of --token-file");
+  app.add_option(
+         "--token-file", options.token_file,
+         "Of --insecure: file with the token that 'kinship --token FILE' shows to change or "
+         "remove, made with mode 0600 if there is none; default: STORE.token")
+      ->type_name("FILE");
 }
 
 /// Options for serving, each also in a file that --config names.
@@ -339,21 +344,37 @@ std::string store_option_fault(const ServerOptions& options) {
                                  options.store.string() + "' is a file";
 }
 
+bool replaces_configuration() {
+  return std::getenv("CYCLONEDDS_URI") != nullptr;  // NOLINT(concurrency-mt-unsafe): as below
+}
+
 }  // namespace
 
 std::string insecurity_of(const ServerOptions& options) {
-  if (!options.security.empty())
+  const std::filesystem::path token = token_file_of(options);
+  if (token.empty())
     return {};
-  if (std::getenv("CYCLONEDDS_URI") != nullptr)  // NOLINT(concurrency-mt-unsafe): as below
-    return "CYCLONEDDS_URI is set, which replaces the interface, and there is no security: whoever "
-           "reaches the ports that it opens reads every robot and path, reports and registers "
-           "under "
-           "any name";
-  if (options.network_interface.empty() || options.network_interface == kLoopback)
+  const std::string served = replaces_configuration()
+                                 ? "CYCLONEDDS_URI is set, which replaces the interface, and there "
+                                   "is no security: whoever reaches the ports that it opens"
+                                 : "interface '" + options.network_interface +
+                                       "' is served without security: whoever reaches its ports";
+  return served +
+         " reads every robot and path, reports and registers under any name; what changes or "
+         "removes needs the token in '" +
+         token.string() + "' (kinship --token FILE)";
+}
+
+std::filesystem::path token_file_of(const ServerOptions& options) {
+  const bool is_loopback =
+      options.network_interface.empty() || options.network_interface == kLoopback;
+  if (!options.security.empty() || (is_loopback && !replaces_configuration()))
     return {};
-  return "interface '" + options.network_interface +
-         "' is served without security: whoever reaches its ports reads every robot and path, "
-         "reports and registers under any name; what changes or removes is for this machine alone";
+  if (!options.token_file.empty())
+    return options.token_file;
+  std::filesystem::path store =
+      is_database_url(options.store.string()) ? default_store() : options.store;
+  return store += ".token";
 }
 
 std::filesystem::path default_store() {

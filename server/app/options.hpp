@@ -38,7 +38,9 @@ struct ServerOptions {
   std::string network_interface;  ///< empty: loopback
   /// Folder of certificates and records of clients (kinshipd secure init); empty: no security.
   std::filesystem::path security;
-  bool insecure = false;                ///< may serve other hosts without security
+  bool insecure = false;  ///< may serve other hosts without security
+  /// Of the token that changes then need; empty: beside the store.
+  std::filesystem::path token_file;
   std::size_t workers = 1;              ///< threads that transfer and fit
   std::filesystem::path backup_folder;  ///< empty: the folder of the store
   std::size_t fit_memory_mb = 2048;     ///< of all fits together, at most
@@ -84,6 +86,10 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
 /// A warning, for people, of the risks of serving without security; empty if only this machine is
 /// served or security is on.
 std::string insecurity_of(const ServerOptions& options);
+
+/// The file of the token that changes need; empty if they need none: with security, or if only this
+/// machine is served.
+std::filesystem::path token_file_of(const ServerOptions& options);
 
 /// experience.db under $XDG_STATE_HOME/kinship, or under ~/.local/state/kinship. Empty if neither
 /// variable gives a folder.

@@ -12,16 +12,20 @@
 #include <ostream>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/log.hpp"
+#include "proto/dds/packet_guard.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/security/admin_token.hpp"
 #include "proto/types/names.hpp"
 #include "server/access/access.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/expiry_watch.hpp"
+#include "server/app/heap_trim.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
 #include "server/app/metrics_listener.hpp"
@@ -173,6 +177,49 @@ void tell_what_is_served(const ServerStatus& status, std::uint32_t domain,
     spdlog::warn("store: {}", status.storage_message);
 }
 
+/// What the packet guard dropped, as troubles.
+std::vector<TroubleCount> network_troubles() {
+  std::vector<TroubleCount> rows;
+  for (const dds::DroppedPackets& each : dds::dropped_packets())
+    if (each.count > 0)
+      rows.push_back({.what = std::string(each.reason),
+                      .count = each.count,
+                      .last = "dropped, the last one from " + each.last_source,
+                      .last_ms = each.last_ms});
+  return rows;
+}
+
+/// The status tells of the network, and of the token that changes need.
+void set_network(service::ServiceOptions& settings, security::AdminTokenCheck* token) {
+  settings.network_troubles = network_troubles;
+  settings.network_bounds = [] {
+    return std::vector<BoundUse>{{"participants", dds::known_peers(), dds::PeerTable::kMaxPeers}};
+  };
+  if (token != nullptr)
+    settings.challenge = [token] { return token->challenge(std::chrono::steady_clock::now()); };
+}
+
+/// Null where changes need no token.
+std::unique_ptr<security::AdminTokenCheck> check_of_token(const ServerOptions& options) {
+  const std::filesystem::path file = token_file_of(options);
+  if (file.empty())
+    return nullptr;
+  return std::make_unique<security::AdminTokenCheck>(security::make_admin_token(file),
+                                                     std::chrono::steady_clock::now());
+}
+
+/// Serves until the loop is stopped.
+void run(dds::WaitLoop& loop, service::Service& service, ExpiryWatch& expiry) {
+  Watchdog watchdog;
+  HeapTrim heap;
+  loop.run([&] {
+    const auto now = WaitClock::now();
+    service.expire(now);
+    return std::min({watchdog.beat(now), expiry.beat(now), heap.beat(now, dds::known_peers()),
+                     service.next_deadline().value_or(WaitClock::time_point::max())});
+  });
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
@@ -201,9 +248,11 @@ int serve(const ServerOptions& options, std::ostream& out) {
   std::unique_ptr<store::Store> opened =
       store::open_store(options.store.string(), store_options(options));
   store::Store& store = *opened;
+  const std::unique_ptr<security::AdminTokenCheck> token = check_of_token(options);
+  set_network(settings, token.get());
   service::Service service(std::move(opened), std::move(settings));
   const auto revocations = watch_revocations(options, clients, store);
-  const Endpoints endpoints(participant, loop, service);
+  const Endpoints endpoints(participant, loop, service, token.get());
   const SignalWatcher signals([&loop](int signal) {
     spdlog::info("signal {}: draining", signal);
     loop.stop();
@@ -223,13 +272,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   }
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
-  Watchdog watchdog;
-  loop.run([&service, &watchdog, &expiry] {
-    const auto now = WaitClock::now();
-    service.expire(now);
-    return std::min({watchdog.beat(now), expiry.beat(now),
-                     service.next_deadline().value_or(WaitClock::time_point::max())});
-  });
+  run(loop, service, expiry);
 
   notify_service_manager("STOPPING=1");
   metrics.reset();

@@ -17,6 +17,18 @@ bool is_begun_first(const AuditEntry& entry) {
   });
 }
 
+/// A caller without a certificate, and how the server knows where it is: "..., this machine, by
+/// packet address 127.0.0.1", "..., address 10.0.0.7, token shown".
+std::string client_text(const Caller& caller) {
+  if (!caller.name.empty() || (caller.address.empty() && !caller.is_local))
+    return caller.client;
+  const std::string place =
+      caller.address.empty()
+          ? "the server's own process"
+          : (caller.is_local ? "this machine, by packet address " : "address ") + caller.address;
+  return caller.client + ", " + place + (caller.token == TokenProof::Shown ? ", token shown" : "");
+}
+
 }  // namespace
 
 AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
@@ -24,7 +36,7 @@ AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
   entry.name = caller.name;
   if (!caller.name.empty())
     entry.role = to_text(caller.role);
-  entry.client = caller.client;
+  entry.client = client_text(caller);
   entry.is_local = caller.is_local;
   entry.verb = rule_of(request.verb).name;
   entry.target = request.verb == AdminVerb::RenameRobot ? request.robot + " to " + request.argument

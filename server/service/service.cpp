@@ -1,5 +1,7 @@
 #include "server/service/service.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/runtime/memory_reserve.hpp"
@@ -115,10 +117,12 @@ ServerStatus Service::status() const {
   status.queued_rehearsals = rehearsals.queued;
   status.rehearsal_time_s = rehearsals.processor_time_s;
   status.troubles = troubles_.counts();
+  std::ranges::move(options_.network_troubles(), std::back_inserter(status.troubles));
   status.dropped_paths = store.dropped_paths;
   status.bounds = bounds(store);
   status.credentials_expire_ms = options_.credentials_expire_ms;
   status.upstream = upstream_.status(store.attempts);
+  status.challenge = options_.challenge();
   return status;
 }
 
@@ -141,6 +145,7 @@ std::vector<BoundUse> Service::bounds(const store::StoreStatus& store) const {
        options_.experience.paths.bytes >> 20U},
       {"MB that fits keep for the next ones", use.fit_memory_bytes >> 20U,
        fitting::FitMemory::kDefaultBytes >> 20U}};
+  std::ranges::move(options_.network_bounds(), std::back_inserter(bounds));
   if (store.max_distribution_bytes > 0)
     bounds.push_back({"MB of distributions in the store", store.distribution_bytes >> 20U,
                       store.max_distribution_bytes >> 20U});

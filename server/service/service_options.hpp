@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "proto/types/publications.hpp"
+#include "proto/types/summaries.hpp"
 #include "server/catalog/catalog.hpp"
 #include "server/catalog/experience_index.hpp"
 #include "server/quotas/client_quotas.hpp"
@@ -60,6 +61,13 @@ struct ServiceOptions {
   std::function<void(const Digest& id)> on_unfollowed = [](const Digest&) {};
   /// next_deadline() is earlier than it was. Called from any thread.
   std::function<void()> wake = [] {};
+  /// Of the status (ServerStatus::challenge), for requests that show the server's token.
+  std::function<std::string()> challenge = [] { return std::string(); };
+  /// Rows of the status about the network, which the service does not know.
+  std::function<std::vector<TroubleCount>()> network_troubles = [] {
+    return std::vector<TroubleCount>();
+  };
+  std::function<std::vector<BoundUse>()> network_bounds = [] { return std::vector<BoundUse>(); };
   /// A line for people, without a line feed. Called from any thread, must not block for long.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };

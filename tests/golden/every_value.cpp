@@ -404,6 +404,7 @@ AdminRequest every_admin_request() {
   request.cursor = next.text("cursor");
   request.limit = 321;
   request.deadline = std::chrono::milliseconds(next.count());
+  request.proof = next.text("proof");
   return request;
 }
 

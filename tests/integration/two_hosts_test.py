@@ -6,8 +6,11 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
+import time
 import unittest
+from typing import NamedTuple
 
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
@@ -60,6 +63,45 @@ class Host:
         self.holder.stdout.close()
 
 
+def capturing(file: str) -> str:
+    """The configuration of a client of 10.77.0.1, with a capture of its packets."""
+    return ('<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="eth0" multicast="false"/></Interfaces>'
+            "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>none</ParticipantIndex>"
+            '<Peers><Peer address="10.77.0.1:7410"/></Peers></Discovery>'
+            f"<Tracing><PacketCaptureFile>{file}</PacketCaptureFile></Tracing></Domain></CycloneDDS>")
+
+
+class Capture(NamedTuple):
+    sent: "list[tuple[int, bytes]]"  # port of the receiver, packet
+    server: bytes                    # its GUID prefix
+
+
+def read_capture(file: pathlib.Path) -> Capture:
+    capture = file.read_bytes()
+    at, sent, server = 24, [], b""
+    while at + 16 < len(capture):
+        size = int.from_bytes(capture[at + 8:at + 12], sys.byteorder)
+        record = capture[at + 16:at + 16 + size]
+        at += 16 + size
+        if record[28:32] != b"RTPS":
+            continue
+        if record[8] == 255:  # so is sent, says Cyclone DDS's manual
+            sent.append((int.from_bytes(record[22:24], "big"), record[28:]))
+        else:
+            server = record[36:48]
+    return Capture(sent, server)
+
+
+# As blind as an attacker without an answer; slowly enough for a busy server to follow.
+REPLAY = """
+import socket, time
+sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+for port, packet in {packets!r}:
+    sender.sendto(bytes.fromhex(packet), ("10.77.0.1", port))
+    time.sleep(0.02)
+"""
+
+
 class TwoHosts(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -81,16 +123,17 @@ class TwoHosts(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         self.serve(serve)
 
-    def serve(self, serve: str) -> None:
-        log = open(self.server.folder / "kinshipd.log", "w")
+    def serve(self, serve: str, host: "Host | None" = None) -> None:
+        host = host or self.server
+        log = open(host.folder / "kinshipd.log", "w")
         self.addCleanup(log.close)
-        kinshipd = subprocess.Popen(self.server.command("exec " + serve), cwd=self.server.folder, stdout=subprocess.PIPE,
-                                    env=self.server.environment(), stderr=log, text=True)
+        kinshipd = subprocess.Popen(host.command("exec " + serve), cwd=host.folder, stdout=subprocess.PIPE,
+                                    env=host.environment(), stderr=log, text=True)
         self.addCleanup(kinshipd.stdout.close)
         self.addCleanup(kinshipd.wait)
         self.addCleanup(kinshipd.terminate)
         first_line = kinshipd.stdout.readline()
-        self.assertTrue(first_line.startswith("ready "), first_line + (self.server.folder / "kinshipd.log").read_text())
+        self.assertTrue(first_line.startswith("ready "), first_line + (host.folder / "kinshipd.log").read_text())
 
     def test_commands_lead_to_a_secured_fetch(self):
         self.start_server()
@@ -132,20 +175,67 @@ class TwoHosts(unittest.TestCase):
         changes = [f"paths retire {paths[0]['report_uuid']}", f"distributions evict {distributions[0]['id']}",
                    "backup night.db", "robots rename ur10e arm", "tasks reset load_machine --yes",
                    "robots remove ur10e --yes"]
-        for change in changes:
-            refused = self.robot.run(f"kinship --server 10.77.0.1 {change}")
-            self.assertNotIn(refused.returncode, (0, 4), change)
-            self.assertIn("a client on another host may not", refused.stdout)
-            self.assertIn("this server runs without security, where that is for its own machine alone", refused.stdout)
+        for host in (self.robot, self.server):  # also on the server's own machine
+            for change in changes:
+                refused = host.run(f"kinship --server 10.77.0.1 {change}")
+                self.assertNotIn(refused.returncode, (0, 4), change)
+                self.assertIn("this server serves other hosts without security, where that needs its token", refused.stdout)
         self.assertEqual((listed("paths"), listed("distributions")), (paths, distributions))
         self.assertEqual(list((self.server.folder / "backups").iterdir()), [])
         self.assertEqual([robot["label"] for robot in listed("robots")], ["ur10e"])
-        # On the server's own machine each of them is done.
-        for change in changes:
-            done = self.server.run(f"kinship --server 10.77.0.1 {change.replace('remove ur10e', 'remove arm')}")
+        # With a copy of the token each of them is done, from wherever.
+        token = self.server.folder / "fleet.db.token"
+        self.assertEqual(token.stat().st_mode & 0o777, 0o600)
+        shutil.copy(token, self.robot.folder / "token")
+        for host, shown, change in zip((self.robot, self.server) * 3, ("token", "fleet.db.token") * 3, changes):
+            done = host.run(f"KINSHIP_TOKEN={shown} kinship --server 10.77.0.1 {change.replace('remove ur10e', 'remove arm')}")
             self.assertEqual(done.returncode, 0, f"{change}: {done.stdout}")
         self.assertEqual(listed("robots"), [])
         self.assertTrue((self.server.folder / "backups" / "night.db").exists())
+        (self.robot.folder / "token").write_text("0" * 64 + "\n")
+        wrong = self.robot.run("kinship --server 10.77.0.1 --token token tasks reset load_machine --yes")
+        self.assertIn("the proof of the token is wrong", wrong.stdout)
+        said = self.server.run("kinship --server 10.77.0.1 audit -o wide").stdout
+        self.assertIn("address 10.77.0.2, token shown", said)
+        self.assertIn("this machine, by packet address 10.77.0.1, token shown", said)
+
+    def test_replayed_packets_of_a_lab_are_not_of_the_servers_machine(self):
+        """The robot's host captures how a reset is done on the server's machine, in a lab of its own with the server's address."""
+        serve = "kinshipd --interface eth0 --insecure --store fleet.db"
+        self.serve(serve)
+        of_robot = [command for command in self.of_robot if "guided" not in command]
+        report = "\n".join(of_robot).replace("KINSHIP_SECURITY=", "UNUSED=")
+        done = self.robot.run(report)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        paths = self.robot.run("kinship --server 10.77.0.1 paths list --json").stdout
+        self.assertNotEqual(json.loads(paths)["rows"], [])
+        self.robot.run(f"CYCLONEDDS_URI='{capturing('target.pcap')}' kinship --server 10.77.0.1 status")
+        target = read_capture(self.robot.folder / "target.pcap")
+
+        lab = Host(self.robot.folder.parent / "lab", "10.77.0.1")
+        self.addCleanup(lab.end)
+        lab.run("ip link add eth0 type veth peer name eth1 && ip link set eth1 up")
+        lab.configure_network()
+        self.serve(serve, lab)
+        done = lab.run(report)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        lab.run(f"CYCLONEDDS_URI='{capturing('lab.pcap')}' kinship --server 10.77.0.1 tasks reset load_machine --yes")
+        captured = read_capture(lab.folder / "lab.pcap")
+        self.assertGreater(len(captured.sent), 10)
+        replay = [(port, packet.replace(captured.server, target.server)) for port, packet in captured.sent]
+        (self.robot.folder / "replay.py").write_text(REPLAY.format(packets=[(port, packet.hex()) for port, packet in replay]))
+        done = self.robot.run("python3 replay.py")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+        def acts() -> "list[dict]":
+            return json.loads(self.server.run("kinship --server 10.77.0.1 audit --json").stdout)["rows"]
+
+        end = time.monotonic() + 20
+        while not acts() and time.monotonic() < end:
+            pass
+        self.assertEqual(self.robot.run("kinship --server 10.77.0.1 paths list --json").stdout, paths)
+        self.assertEqual({(act["verb"], act["outcome"], act["is_local"]) for act in acts()}, {("reset_task", "refused", False)})
+        self.assertIn(", address 10.77.0.2", acts()[0]["client"])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
 #include "server/store/values/consistency_token.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "proto/types/sha256.hpp"
 
@@ -10,19 +9,6 @@ namespace {
 
 constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kSignatureBytes = 16;
 constexpr std::size_t kTokenBytes = kUuidBytes + kPositionBytes + kSignatureBytes;
-
-/// HMAC (RFC 2104) with SHA-256, whose block has 64 bytes.
-Digest hmac(const Digest& key, std::span<const std::uint8_t> message) {
-  std::array<std::uint8_t, 64> inner{}, outer{};
-  std::copy(key.bytes.begin(), key.bytes.end(), inner.begin());
-  outer = inner;
-  for (std::uint8_t& byte : inner)
-    byte ^= 0x36;
-  for (std::uint8_t& byte : outer)
-    byte ^= 0x5c;
-  const Digest within = Sha256().add(std::span<const std::uint8_t>(inner)).add(message).finish();
-  return Sha256().add(std::span<const std::uint8_t>(outer)).add(within).finish();
-}
 
 }  // namespace
 
@@ -41,7 +27,7 @@ ConsistencyToken sign(const Digest& key, const Uuid& epoch, const LogPosition& p
     token.push_back(static_cast<std::uint8_t>(point.position >> (8 * i)));
   std::vector<std::uint8_t> message(epoch.bytes.begin(), epoch.bytes.end());
   message.insert(message.end(), token.begin(), token.end());
-  const Digest whole = hmac(key, message);
+  const Digest whole = hmac_sha256(key, message);
   token.insert(token.end(), whole.bytes.begin(), whole.bytes.begin() + kSignatureBytes);
   return token;
 }

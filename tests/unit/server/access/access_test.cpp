@@ -90,6 +90,24 @@ TEST(Access, ARefusalSaysWhoWhatAndWhatItWouldTake) {
             "anna (role operator) may not register robots: needs role robot or admin");
 }
 
+TEST(Access, WhereATokenIsNeededOnlyTheTokenCounts) {
+  for (const bool is_local : {false, true}) {
+    Caller caller = without_security(is_local);
+    caller.token = TokenProof::Missing;
+    const std::string missing = words(refusal_of(caller, AdminVerb::ResetTask));
+    EXPECT_NE(missing.find("where that needs its token: kinship --token FILE"), std::string::npos)
+        << missing;
+    EXPECT_TRUE(refusal_of_job(caller, AdminVerb::CancelJob, "3f9a0c11"));
+    EXPECT_FALSE(refusal_of(caller, AdminVerb::ListPaths));
+    caller.token = TokenProof::Wrong;
+    const std::string wrong = words(refusal_of(caller, AdminVerb::Backup));
+    EXPECT_NE(wrong.find("the proof of the token is wrong"), std::string::npos) << wrong;
+    caller.token = TokenProof::Shown;
+    EXPECT_FALSE(refusal_of(caller, AdminVerb::ResetTask));
+    EXPECT_FALSE(refusal_of_job(caller, AdminVerb::CancelJob, "3f9a0c11"));
+  }
+}
+
 TEST(Access, WithoutSecurityAnotherHostMayReadAndReportButChangeNothing) {
   const Caller here = without_security(true), elsewhere = without_security(false);
   for (const VerbRule& rule : kVerbRules) {

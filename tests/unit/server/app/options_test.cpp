@@ -137,6 +137,12 @@ TEST_F(Options, OtherHostsAreServedWithSecurityOrIfInsecureIsSpeltOut) {
                                     "kinshipd secure init", "--security FOLDER"})
       EXPECT_NE(err_.str().find(words), std::string::npos) << err_.str();
   }
+  EXPECT_EQ(token_file_of(good({"--interface", "eth0", "--insecure", "--store", "a/f.db"})),
+            "a/f.db.token");
+  EXPECT_EQ(token_file_of(
+                good({"--interface", "eth0", "--insecure", "--token-file", "/run/kinship/token"})),
+            "/run/kinship/token");
+  EXPECT_EQ(token_file_of(good({"--token-file", "/run/kinship/token"})), "") << "loopback";
   EXPECT_NE(insecurity_of(good({"--interface", "eth0", "--insecure"})), "");
   EXPECT_EQ(insecurity_of(good({"--interface", "eth0", "--security", folder.c_str()})), "");
   EXPECT_EQ(insecurity_of(good({"--interface", "lo"})), "");

@@ -36,18 +36,19 @@ TEST_F(Access, WithoutSecurityAnotherHostChangesNothing) {
   elsewhere.client = "0110f31a";
   elsewhere.role = AccessRole::Admin;
   elsewhere.is_local = false;
+  elsewhere.address = "10.0.0.7";
   EXPECT_EQ(ask(elsewhere, AdminVerb::ListTasks).status, AdminStatus::Ok);
   const AdminPage reset = ask(elsewhere, AdminVerb::ResetTask, "shelf");
   EXPECT_EQ(reset.status, AdminStatus::Refused);
   EXPECT_NE(reset.message.find("--security"), std::string::npos) << reset.message;
   EXPECT_EQ(real_store_->find_task("shelf")->paths, 2U);
-  elsewhere.is_local = true;
+  elsewhere.token = TokenProof::Shown;
   EXPECT_EQ(ask(elsewhere, AdminVerb::ResetTask, "shelf").status, AdminStatus::Ok);
   const std::vector<AuditEntry> log = real_store_->list_audit("", "", 10).rows;
   ASSERT_EQ(log.size(), 3U);
-  EXPECT_EQ(log[2].client, "0110f31a");
+  EXPECT_EQ(log[2].client, "0110f31a, address 10.0.0.7") << "and how it is known";
   EXPECT_FALSE(log[2].is_local);
-  EXPECT_TRUE(log[0].is_local);
+  EXPECT_EQ(log[0].client, "0110f31a, address 10.0.0.7, token shown");
   EXPECT_EQ(log[0].name + log[0].role, "") << "nobody said who it was";
 }
 

@@ -1,0 +1,195 @@
+#include "proto/dds/datagram.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace kinship::dds {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::size_t kHeaderBytes = 20, kSubmessageHeaderBytes = 4, kPrefixAt = 8;
+constexpr int kMaxAnnouncements = 2;  // packed: it comes, and goes at once
+
+enum SubmessageId : std::uint8_t {
+  kPad = 0x01,
+  kInfoTime = 0x09,
+  kInfoSource = 0x0c,
+  kData = 0x15,
+  kDataFragment = 0x16
+};
+
+/// Numbers at places in bytes of one byte order; nothing beyond their end.
+class Reader {
+ public:
+  Reader(Bytes bytes, bool is_little) : bytes_(bytes), is_little_(is_little) {}
+
+  std::size_t size() const { return bytes_.size(); }
+  std::optional<Bytes> bytes(std::size_t at, std::size_t size) const {
+    if (at > bytes_.size() || size > bytes_.size() - at)
+      return std::nullopt;
+    return bytes_.subspan(at, size);
+  }
+  template <typename Number>
+  std::optional<Number> number(std::size_t at) const {
+    const std::optional<Bytes> found = bytes(at, sizeof(Number));
+    if (!found)
+      return std::nullopt;
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < sizeof(Number); ++i)
+      value = value << 8U | (*found)[is_little_ ? sizeof(Number) - 1 - i : i];
+    return static_cast<Number>(value);
+  }
+
+ private:
+  Bytes bytes_;
+  bool is_little_;
+};
+
+bool are(Bytes bytes, std::initializer_list<std::uint8_t> expected) {
+  return std::ranges::equal(bytes, expected);
+}
+
+/// Whether these are the writers by which participants announce themselves.
+bool is_announcer(Bytes writer) {
+  return are(writer, {0x00, 0x01, 0x00, 0xc2}) || are(writer, {0xff, 0x01, 0x01, 0xc2});
+}
+
+/// Calls `use(id, value)` for each parameter of a list. \return where the list ends, if it does.
+template <typename Use>
+std::optional<std::size_t> walk_parameters(const Reader& list, std::size_t at, const Use& use) {
+  constexpr std::uint16_t kSentinel = 1, kMustBeUnderstood = 0x4000;
+  while (true) {
+    const auto id = list.number<std::uint16_t>(at);
+    const auto length = list.number<std::uint16_t>(at + 2);
+    if (!id || !length)
+      return std::nullopt;
+    at += 4;
+    if (*id == kSentinel)
+      return at;
+    const auto value = list.bytes(at, *length);
+    if (!value || *length % 4 != 0 ||
+        !use(static_cast<std::uint16_t>(*id & ~kMustBeUnderstood), *value))
+      return std::nullopt;
+    at += *length;
+  }
+}
+
+/// What the parameters of an announcement say. \return whether they are well formed and about
+/// `sender` itself.
+bool read_payload(Bytes payload, const GuidPrefix& sender, ParticipantAnnouncement& found) {
+  constexpr std::size_t kEncapsulationBytes = 4, kGuidBytes = 16;
+  enum : std::uint16_t { kLease = 0x0002, kGuid = 0x0050, kIdentity = 0x1001 };
+  if (payload.size() < kEncapsulationBytes || payload[0] != 0 ||
+      (payload[1] != 2 && payload[1] != 3))
+    return false;
+  const bool is_little = payload[1] == 3;
+  found.lease = std::chrono::seconds(100);  // where none is said
+  int guids = 0;
+  const auto use = [&](std::uint16_t id, Bytes value) {
+    if (id == kGuid) {
+      ++guids;
+      return value.size() == kGuidBytes && std::ranges::equal(value.first(sender.size()), sender) &&
+             are(value.subspan(sender.size()), {0x00, 0x00, 0x01, 0xc1});
+    }
+    if (id == kIdentity)
+      found.has_identity = true;
+    if (id != kLease)
+      return true;
+    const Reader reader(value, is_little);
+    const auto seconds = reader.number<std::uint32_t>(0);
+    const auto fraction = reader.number<std::uint32_t>(4);
+    if (!seconds || !fraction)
+      return false;
+    constexpr std::uint32_t kDay_s = 86'400;
+    found.lease = std::chrono::seconds(std::min(*seconds, kDay_s) + (*fraction != 0 ? 1 : 0));
+    return true;
+  };
+  return walk_parameters(Reader(payload, is_little), kEncapsulationBytes, use) && guids == 1;
+}
+
+/// A DATA submessage. \return whether it may be heard.
+bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announcements) {
+  enum : std::uint8_t { kLittle = 1, kInlineQos = 2 };
+  constexpr std::size_t kOffsetAt = 2, kWriterAt = 8, kFixedBytes = 20;
+  constexpr std::uint16_t kStatus = 0x0071;
+  const Reader reader(body, (flags & kLittle) != 0);
+  const auto writer = reader.bytes(kWriterAt, 4);
+  if (!writer)
+    return false;
+  if (!is_announcer(*writer))
+    return true;
+  const auto offset = reader.number<std::uint16_t>(kOffsetAt);
+  std::size_t at = kOffsetAt + 2 + offset.value_or(0);
+  if (!offset || at < kFixedBytes || at > body.size() || ++announcements > kMaxAnnouncements)
+    return false;
+  ParticipantAnnouncement found;
+  if ((flags & kInlineQos) != 0) {
+    const auto use = [&](std::uint16_t id, Bytes value) {
+      if (id == kStatus && !value.empty())
+        found.is_departure = (value.back() & 3U) != 0;
+      return true;
+    };
+    const auto end = walk_parameters(reader, at, use);
+    if (!end)
+      return false;
+    at = *end;
+  }
+  if (!read_payload(body.subspan(at), datagram.sender, found))
+    return false;
+  datagram.announcement = found;
+  return true;
+}
+
+/// The submessage with this body. \return whether it may be heard.
+bool read_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, Datagram& datagram,
+                     int& announcements) {
+  constexpr std::size_t kWriterAt = 8;
+  switch (id) {
+    case kInfoSource: {
+      constexpr std::size_t kMaxOthers = 255;
+      const auto prefix = Reader(body, true).bytes(kPrefixAt, datagram.sender.size());
+      if (!prefix || datagram.others.size() >= kMaxOthers)
+        return false;
+      announcements = 0;
+      std::ranges::copy(*prefix, datagram.others.emplace_back().sender.begin());
+      return true;
+    }
+    case kData:
+      return read_data(body, flags, datagram.others.empty() ? datagram : datagram.others.back(),
+                       announcements);
+    case kDataFragment: {
+      const auto writer = Reader(body, true).bytes(kWriterAt, 4);
+      return writer && !is_announcer(*writer);
+    }
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+std::optional<Datagram> read_datagram(Bytes bytes) {
+  if (bytes.size() < kHeaderBytes || !are(bytes.first(4), {'R', 'T', 'P', 'S'}))
+    return std::nullopt;
+  Datagram datagram;
+  std::ranges::copy(bytes.subspan(kPrefixAt, datagram.sender.size()), datagram.sender.begin());
+  int announcements = 0;
+  std::size_t at = kHeaderBytes;
+  while (bytes.size() - at >= kSubmessageHeaderBytes) {
+    const std::uint8_t id = bytes[at], flags = bytes[at + 1];
+    const auto length = Reader(bytes, (flags & 1U) != 0).number<std::uint16_t>(at + 2);
+    at += kSubmessageHeaderBytes;
+    const bool is_rest = *length == 0 && id != kPad && id != kInfoTime;
+    const std::size_t size = is_rest ? bytes.size() - at : *length;
+    if (size > bytes.size() - at || (!is_rest && size % 4 != 0) ||
+        !read_submessage(id, flags, bytes.subspan(at, size), datagram, announcements))
+      return std::nullopt;
+    at += size;
+  }
+  if (at != bytes.size())
+    return std::nullopt;
+  return datagram;
+}
+
+}  // namespace kinship::dds
