@@ -73,8 +73,8 @@ class PeerTable {
   static constexpr std::size_t kMaxPeersOfAddress = 1024;
   /// On other machines: the rest is this machine's.
   static constexpr std::size_t kMaxPeersElsewhere = kMaxPeers - kMaxPeersOfAddress;
-  static constexpr TokenBucket::Rate kPortRate{16, 64}, kAddressRate{100, 300},
-      kOverallRate{200, 512}, kPeerRate{4, 8};
+  static constexpr TokenBucket::Rate kPortRate{16, 64}, kAddressRate{40, 128},
+      kOverallRate{100, 512}, kPeerRate{4, 8};
   /// A participant that announces a longer lease has this one.
   static constexpr std::chrono::seconds kMaxLease{15};
 
