@@ -329,7 +329,7 @@ TEST_F(AdministrationChanges, AnExplanationGivesTheAdviceOfNow) {
 TEST_F(AdministrationChanges, EventsTellWhatHappened) {
   report(fleet::solved(teacher_, "shelf", 6, 1));
   Attempt bad = fleet::solved(teacher_, "shelf", 9);
-  bad.record.share = 2;
+  bad.path = fleet::solved(pupil_, "shelf", 9).path;  // of another number of joints
   report({bad});
   fetched();
   ask(AdminVerb::ResetTask, "shelf");

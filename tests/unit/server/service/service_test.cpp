@@ -12,7 +12,7 @@ class ServiceTest : public ServiceFixture {};
 TEST_F(ServiceTest, StatusCountsWhatWasDoneSinceTheStart) {
   advance(std::chrono::seconds(90));
   Attempt bad = fleet::solved(teacher_, "shelf", 50);
-  bad.record.share = 7;
+  bad.path = fleet::solved(pupil_, "shelf", 50).path;  // of another number of joints
   std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 6, 1);
   attempts.push_back(bad);
   report(attempts);
