@@ -317,7 +317,7 @@ struct UpstreamStatus {
   std::int64_t oldest_waiting_ms = 0;  ///< when the first of them arrived here; 0: none waits
   std::uint64_t sent = 0;              ///< since start: reports new to the memory
   std::uint64_t received = 0;          ///< since start: reports new here
-  std::uint64_t refused = 0;           ///< refused reports: tried again, ever more rarely
+  std::uint64_t refused = 0;           ///< refused reports: retried with each connection
   std::string first_refused;           ///< one of them, with the reason
   std::uint64_t left_out = 0;          ///< since start: their paths are dropped or damaged
   std::uint64_t retired_above = 0;     ///< since start: paths, because they were retired here
