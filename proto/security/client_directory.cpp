@@ -32,11 +32,13 @@ Revocation merged(Revocation first, const Revocation& second) {
   if (!first.revoked)
     first.revoked = second.revoked;
   first.oldest_accepted = std::max(first.oldest_accepted, second.oldest_accepted);
+  first.generation = std::max(first.generation, second.generation);
   return first;
 }
 
 bool takes_more(const Revocation& first, const Revocation& second) {
-  return (first.revoked && !second.revoked) || first.oldest_accepted > second.oldest_accepted;
+  return (first.revoked && !second.revoked) || first.oldest_accepted > second.oldest_accepted ||
+         first.generation > second.generation;
 }
 
 }  // namespace
@@ -143,7 +145,8 @@ ClientDirectory::Differences ClientDirectory::compare_records() const {
     const Result<ClientRecord> record = find(file.path().stem().string(), {});
     if (!record)
       continue;
-    const Revocation told{record->name, record->revoked, record->oldest_accepted};
+    const Revocation told{record->name, record->revoked, record->oldest_accepted,
+                          record->generation};
     const Revocation known = remembered(record->name);
     if (takes_more(told, known))
       differences.unknown.push_back(told);

@@ -28,11 +28,12 @@ struct ClientRecord {
   std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
 };
 
-/// What was taken from a client for good.
+/// What stays so of a client, whatever becomes of its record.
 struct Revocation {
   std::string client;
   std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
   std::uint32_t oldest_accepted = 1;                     ///< generation of credentials
+  std::uint32_t generation = 1;                          ///< the newest that was issued
 };
 
 /// The fault of a client's name; nothing if it is 1 to 56 of [A-Za-z0-9_-] and not the server's

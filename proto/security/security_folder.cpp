@@ -276,8 +276,15 @@ void SecurityFolder::revoke_again(const Revocation& revocation) const {
   if (revocation.revoked)
     record.revoked = revocation.revoked;
   record.oldest_accepted = std::max(record.oldest_accepted, revocation.oldest_accepted);
-  record.generation = std::max(record.generation, record.oldest_accepted);
+  record.generation = std::max(record.generation, revocation.generation);
   replace_file(record_file(record.name), record_text(record), Readers::Everybody);
+}
+
+std::vector<std::string> SecurityFolder::authorities() const {
+  std::vector<std::string> fingerprints;
+  for (const Certificate& one : authority_.trusted())
+    fingerprints.push_back(fingerprint(*one));
+  return fingerprints;
 }
 
 CredentialList SecurityFolder::list(std::chrono::sys_seconds now) const {

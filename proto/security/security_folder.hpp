@@ -66,6 +66,9 @@ class SecurityFolder {
   /// \throws Failure(NotFound) if there is no such client.
   void revoke_again(const Revocation& revocation) const;
 
+  /// Fingerprints of the trusted authorities.
+  std::vector<std::string> authorities() const;
+
   /// The server and all clients, including clients with an unreadable record.
   CredentialList list(std::chrono::sys_seconds now) const;
 

@@ -15,7 +15,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr const char* kFakeTime = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
+/// libfaketime as Debian has it for this machine; empty if it is not there.
+std::string find_fake_time() {
+  for (const auto& folder : std::filesystem::directory_iterator("/usr/lib"))
+    if (const auto file = folder.path() / "faketime/libfaketimeMT.so.1";
+        std::filesystem::exists(file))
+      return file;
+  return {};
+}
 
 /// Variables of the environment, for what is started while it lives.
 class Environment {
@@ -43,7 +50,7 @@ milliseconds Dice::time(milliseconds from, milliseconds to) {
 }
 
 std::string JumpingClock::missing() {
-  return std::filesystem::exists(kFakeTime) ? "" : std::string(kFakeTime) + " is not there";
+  return find_fake_time().empty() ? "libfaketime is not there (package faketime)" : "";
 }
 
 JumpingClock::JumpingClock(std::filesystem::path file) : file_(std::move(file)) {
@@ -59,7 +66,7 @@ void JumpingClock::jump_to(std::chrono::seconds ahead) const {
 std::unique_ptr<Program> JumpingClock::start(const std::string& name,
                                              const std::vector<std::string>& arguments,
                                              const std::filesystem::path& log) const {
-  const Environment environment({{"LD_PRELOAD", kFakeTime},
+  const Environment environment({{"LD_PRELOAD", find_fake_time()},
                                  {"FAKETIME_TIMESTAMP_FILE", file_.string()},
                                  {"FAKETIME_CACHE_DURATION", "1"},
                                  {"FAKETIME_DONT_FAKE_MONOTONIC", "1"},
@@ -82,6 +89,10 @@ void Supervised::keep_up() {
   if (program_) {
     const int status = program_->wait();
     EXPECT_LT(status, 128) << name_ << " crashed; its log: " << log_;
+    const std::string log = read_text(log_);
+    const std::size_t end = log.find_last_not_of('\n'), begin = log.rfind('\n', end);
+    std::cout << "  " << name_ << " ended with " << status << ": "
+              << log.substr(begin == std::string::npos ? 0 : begin + 1, end - begin) << std::endl;
   }
   start();
 }

@@ -177,6 +177,7 @@ class ChaosOfOneFile : public Chaos {
   void fill_disk(Dice& dice) const {
     const fs::path filler = store_.parent_path() / "filler";
     const int file = open(filler.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    ASSERT_GE(file, 0);
     for (off_t end = 0, part = off_t{1} << 22; part >= 4096;)
       if (posix_fallocate(file, end, part) == 0)
         end += part;
@@ -210,6 +211,7 @@ class ChaosOfOneFile : public Chaos {
     for (const auto& file : fs::directory_iterator(store_.parent_path()))
       if (file.path().filename().string().find(".replaced-") != std::string::npos)
         fs::remove(file.path());
+    ++restores_;
     server_->start();
   }
 
@@ -218,7 +220,7 @@ class ChaosOfOneFile : public Chaos {
   const SmallFileSystem disk_{disk_folder_, std::to_string(64 + 2 * chaos_time().count()) + "m"};
   const fs::path store_ = disk_folder_ / "fleet.db";
   std::unique_ptr<Supervised> server_;
-  int backups_ = 0;
+  int backups_ = 0, restores_ = 0;
   fs::path backup_;
 };
 
@@ -230,6 +232,8 @@ TEST_F(ChaosOfOneFile, LosesNothing) {
   nuisances.push_back({"back up", [this](Dice&) { back_up(); }});
   nuisances.push_back({"restore", [this](Dice&) { restore(); }});
   run(nuisances, {server_.get()});
+  if (is_long_run())
+    EXPECT_GT(restores_, 0);
   EXPECT_EQ(server_->terminate(), 0);
   expect_sound(store_);
   expect_all_in(*store::open_sqlite_store(store_));

@@ -48,6 +48,10 @@ class FollowServer {
     const std::lock_guard lock(mutex_);
     return fetches_;
   }
+  FetchRequest first_request() const {
+    const std::lock_guard lock(mutex_);
+    return first_request_;
+  }
   FetchRequest last_request() const {
     const std::lock_guard lock(mutex_);
     return last_request_;
@@ -62,7 +66,8 @@ class FollowServer {
  private:
   FetchReply take(const FetchRequest& wanted) {
     const std::lock_guard lock(mutex_);
-    ++fetches_;
+    if (++fetches_ == 1)
+      first_request_ = wanted;
     last_request_ = wanted;
     fetched_.notify_all();
     return reply_;
@@ -71,7 +76,7 @@ class FollowServer {
   mutable std::mutex mutex_;  // guards what follows up to the participant
   std::condition_variable fetched_;
   FetchReply reply_;
-  FetchRequest last_request_;
+  FetchRequest first_request_, last_request_;
   int fetches_ = 0;
   dds::Participant participant_;
   dds::WaitLoop loop_;

@@ -102,7 +102,7 @@ TEST_F(FollowerTest, HoldsPathsToRecallAndAsksOnlyForOthers) {
   ASSERT_TRUE(held);
   EXPECT_EQ(held->revision, reply.recall->revision);
   EXPECT_EQ(held->paths.size(), reply.recall->paths.size());
-  EXPECT_EQ(server.last_request().known_recall, 0U);
+  EXPECT_EQ(server.first_request().known_recall, 0U);
 
   distribution_.revision = 8;
   server.set_reply(ready());  // without it, as nothing changed
