@@ -108,8 +108,8 @@ Result<Caller> ClientDirectory::caller(const std::string& common_name,
   const Result<ClientRecord> record = find(name);
   if (!record)
     return record.error();
-  const Revocation taken =
-      merged({name, record->revoked, record->oldest_accepted}, remembered(name));
+  const Revocation taken = merged(
+      {name, record->revoked, record->oldest_accepted, record->generation}, remembered(name));
   if (taken.revoked)
     return Error{ErrorCode::Unavailable,
                  "client '" + name + "': revoked at " + time_text(*taken.revoked)};
@@ -120,7 +120,7 @@ Result<Caller> ClientDirectory::caller(const std::string& common_name,
     return Error{ErrorCode::Unavailable,
                  "client '" + name + "': these credentials were replaced (" +
                      std::to_string(certificate->generation) + " of " +
-                     std::to_string(record->generation) + "), the newest ones are accepted only"};
+                     std::to_string(taken.generation) + "), the newest ones are accepted only"};
   return caller_of(*record);
 }
 

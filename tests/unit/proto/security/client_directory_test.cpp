@@ -115,7 +115,7 @@ TEST_F(ClientDirectoryTest, ARecordThatIsPutBackGivesNothingBack) {
   EXPECT_EQ(directory_.caller("leg", kNow).error().message,
             "client 'leg': revoked at 2026-11-25T00:00:00Z");
   EXPECT_EQ(directory_.caller("arm", kNow).error().message,
-            "client 'arm': these credentials were replaced (1 of 1), the newest ones are accepted "
+            "client 'arm': these credentials were replaced (1 of 2), the newest ones are accepted "
             "only");
   EXPECT_TRUE(directory_.caller("arm.2", kNow)) << "which were not replaced";
 }
