@@ -110,6 +110,10 @@ RevocationWatch::RevocationWatch(security::SecurityFolder folder,
         return entry.verb == kTrust && entry.target == text;
       }))
     unwritten_.push_back(entry_of(kTrust, text, "", ""));
+  try {
+    write_log();
+  } catch (const Failure&) {  // a full disk keeps no server from starting; it is tried again
+  }
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
