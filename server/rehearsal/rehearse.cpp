@@ -197,8 +197,10 @@ Rehearsal Rehearsing::result() const {
   }
   result.queries = static_cast<std::uint64_t>(std::ranges::count(is_usable_, true));
   result.left_out = is_usable_.size() - result.queries;
-  if (result.queries == 0)
+  if (result.queries == 0) {
+    result.guide = Guide::None;  // where others went leads nowhere
     result.message = "no recorded query can be planned by this robot where it stands";
+  }
   if (round_ > 0 && !result.costs.empty())
     result.guide = cheapest(result.costs);
   std::ranges::sort(result.costs, {}, &GuideCost::guide);
