@@ -162,13 +162,18 @@ void ReportSender::age_now_and_then(bool is_end) {
   tries_.save();
 }
 
-/// The pending reports, those that the server put off last time behind the others.
+/// The pending reports: those that the server put off behind the others, in the order of their last
+/// tries, so that each has its turn although a batch with one of them ends a round.
 std::vector<Uuid> ReportSender::in_turn() {
   std::vector<Uuid> pending = outbox_.pending();
   const std::set<Uuid> there(pending.begin(), pending.end());
-  std::erase_if(put_off_, [&](const Uuid& uuid) { return !there.contains(uuid); });
-  std::stable_partition(pending.begin(), pending.end(),
-                        [&](const Uuid& uuid) { return !put_off_.contains(uuid); });
+  std::erase_if(put_off_, [&](const auto& each) { return !there.contains(each.first); });
+  const auto last_try = [this](const Uuid& uuid) {
+    const auto found = put_off_.find(uuid);
+    return found == put_off_.end() ? 0 : found->second;
+  };
+  std::ranges::stable_sort(pending, {}, last_try);
+  ++round_;
   const std::lock_guard lock(mutex_);
   std::erase_if(passed_by_, [&](const auto& each) { return !there.contains(each.first); });
   return pending;
@@ -297,7 +302,7 @@ std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
         problem = receipt.message;
       continue;
     }
-    put_off_.insert(receipt.report_uuid);
+    put_off_[receipt.report_uuid] = round_;
     const std::string why = tries_.put_off(receipt.report_uuid, receipt.message);
     if (why.empty())
       problem = receipt.message;

@@ -126,5 +126,21 @@ TEST_F(SetAside, NothingWaitsBehindABatchOfPoison) {
   EXPECT_TRUE(fs::exists(file("sent", good)));
 }
 
+TEST_F(SetAside, NothingWaitsBehindABatchOfPoisonOnceAllWerePutOff) {
+  for (int i = 0; i < 300; ++i)
+    poison_.insert(add());
+  for (int i = 0; i < 300; ++i)
+    add();
+  takes_nothing_ = true;
+  const auto sender = start();
+  while (batches_ < 3)  // of 256: all
+    sender->retry();
+  takes_nothing_ = false;
+  const auto deadline = std::chrono::steady_clock::now() + 60s;
+  while (sender->counts().accepted < 300 && std::chrono::steady_clock::now() < deadline)
+    sender->retry();
+  EXPECT_EQ(sender->counts().accepted, 300U);
+}
+
 }  // namespace
 }  // namespace kinship::link::set_aside_test
