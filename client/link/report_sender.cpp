@@ -286,15 +286,16 @@ bool ReportSender::send_batch(ReportRequest& batch) {
   return open == 0;
 }
 
+/// A "try again" counts against a report only if others of its batch were taken and the server does
+/// not say when to come again: else the server is busy, stopping or out of a quota.
 /// \param problem  gets the reason of the last report that is not taken.
 /// \return the receipts after which a report is not sent again as it is: a "try again" only if the
 ///         report is to be set aside, with the reason.
 std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
                                                      std::string& problem) {
   std::map<Uuid, Receipt> receipts;
-  for (const Receipt& receipt : reply.receipts)
-    if (is_taken(receipt.status))
-      tries_.note_taken();
+  const bool are_others_taken =
+      reply.retry_after == 0ms && std::ranges::any_of(reply.receipts, is_taken, &Receipt::status);
   for (const Receipt& receipt : reply.receipts) {
     if (receipt.status != ReceiptStatus::TryAgain) {
       receipts.emplace(receipt.report_uuid, receipt);
@@ -303,7 +304,8 @@ std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
       continue;
     }
     put_off_[receipt.report_uuid] = round_;
-    const std::string why = tries_.put_off(receipt.report_uuid, receipt.message);
+    const std::string why =
+        are_others_taken ? tries_.put_off(receipt.report_uuid, receipt.message) : std::string();
     if (why.empty())
       problem = receipt.message;
     else
