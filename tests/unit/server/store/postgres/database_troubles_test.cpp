@@ -104,8 +104,8 @@ TEST_P(EachErrorClass, RefusesNothingIsNamedAndPasses) {
   EXPECT_EQ(receipts[1].status, ReceiptStatus::TryAgain);
   EXPECT_NE(receipts[1].message.find("the administrator objects"), std::string::npos)
       << receipts[1].message;
-  const bool is_alone =
-      GetParam().kind == ErrorKind::OneRow || GetParam().kind == ErrorKind::Conflict;
+  const bool is_alone = GetParam().kind == ErrorKind::OneRow;
+  EXPECT_EQ(told.find("put off") != std::string::npos, is_alone) << told;
   for (const std::size_t other : {0U, 2U})
     EXPECT_EQ(receipts[other].status, is_alone ? ReceiptStatus::Stored : ReceiptStatus::TryAgain);
   sql("DROP TRIGGER object ON attempt");
@@ -143,7 +143,7 @@ const std::vector<Doing> kDoings = {
      "CREATE FUNCTION hand() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
      " RETURN CASE WHEN NEW.report_uuid = POISON THEN NULL ELSE NEW END; END $$;"
      "CREATE TRIGGER hand BEFORE INSERT ON attempt FOR EACH ROW EXECUTE FUNCTION hand()",
-     "", "DROP TRIGGER hand ON attempt"},
+     "takes reports away", "DROP TRIGGER hand ON attempt"},
     {"Arithmetic",
      "CREATE FUNCTION hand() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
      " IF NEW.report_uuid = POISON THEN NEW.resent := 1 / NEW.resent; END IF; RETURN NEW; END $$;"
