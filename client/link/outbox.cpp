@@ -49,10 +49,15 @@ Result<std::string> read_limited(const fs::path& path) {
   }
 }
 
+bool is_missing(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() == fs::file_type::not_found;
+}
+
 }  // namespace
 
 Outbox::Outbox(fs::path folder) : folder_(std::move(folder)), sent_(folder_) {
-  for (const std::string_view part : {kPending, kRejected, kSetAside, kRobots})
+  for (const std::string_view part : {kPending, kRejected, kRobots})
     make_folder_durably(folder_ / part);
 }
 
@@ -119,6 +124,7 @@ void Outbox::mark_sent(const Uuid& report_uuid) {
 }
 
 void Outbox::put_away(std::string_view part, const Uuid& report_uuid, std::string_view reason) {
+  make_folder_durably(folder_ / part);
   write_durably(reason_file(part, report_uuid), std::string(reason) + "\n");
   move_file(file(kPending, report_uuid), file(part, report_uuid));
 }
@@ -133,6 +139,8 @@ void Outbox::set_aside(const Uuid& report_uuid, std::string_view reason) {
 
 std::vector<Uuid> Outbox::reports_in(std::string_view part) const {
   std::vector<Uuid> reports;
+  if (is_missing(folder_ / part))
+    return reports;
   for_each_entry(folder_ / part, [&](const fs::directory_entry& entry) {
     if (const auto uuid = report_uuid_of(entry.path()))
       reports.push_back(*uuid);
@@ -239,10 +247,11 @@ void Outbox::age(std::chrono::milliseconds sending) {
   sent_.age(sending);
   for (const fs::path& folder :
        {folder_ / kPending, folder_ / kRejected, folder_ / kSetAside, folder_ / kRobots, folder_})
-    for_each_entry(folder, [](const fs::directory_entry& entry) {
-      if (files::is_part(entry.path()))
-        remove_older_than(entry, kKeepTemporary);
-    });
+    if (!is_missing(folder))
+      for_each_entry(folder, [](const fs::directory_entry& entry) {
+        if (files::is_part(entry.path()))
+          remove_older_than(entry, kKeepTemporary);
+      });
 }
 
 fs::path default_outbox_folder(std::uint32_t domain, std::string_view server) {

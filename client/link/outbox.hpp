@@ -30,7 +30,7 @@ namespace kinship::link {
 /// Methods throw Failure(Storage) naming the file. May be shared between threads.
 class Outbox {
  public:
-  /// Makes the folders if they are missing, durably.
+  /// Makes the folders if they are missing, durably; `set_aside/` only once it is needed.
   explicit Outbox(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const noexcept { return folder_; }

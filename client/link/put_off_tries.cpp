@@ -1,5 +1,6 @@
 #include "client/link/put_off_tries.hpp"
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -25,7 +26,7 @@ void PutOffTries::load() {
   }
   std::string uuid;
   Tries tries;
-  while (lines >> uuid >> tries.count >> tries.first_ms)
+  while (lines >> uuid >> tries.count >> tries.age_ms >> tries.last_ms)
     if (const std::optional<Uuid> report = Uuid::parse(uuid))
       tries_[*report] = tries;
 }
@@ -35,8 +36,8 @@ void PutOffTries::save() {
     return;
   std::string text;
   for (const auto& [uuid, tries] : tries_)
-    text += uuid.text() + " " + std::to_string(tries.count) + " " + std::to_string(tries.first_ms) +
-            "\n";
+    text += uuid.text() + " " + std::to_string(tries.count) + " " + std::to_string(tries.age_ms) +
+            " " + std::to_string(tries.last_ms) + "\n";
   try {
     write_whole(file_, text);
   } catch (const Failure&) {
@@ -49,16 +50,15 @@ void PutOffTries::forget(const Uuid& report_uuid) {
 }
 
 std::string PutOffTries::put_off(const Uuid& report_uuid, const std::string& why) {
-  const auto found = tries_.find(report_uuid);
-  if (taken_ == (found == tries_.end() ? 0 : found->second.taken))
-    return "";
+  constexpr std::int64_t kLongestStep_ms =
+      std::chrono::milliseconds(SetAsideRule::kLongestStep).count();
   Tries& tries = tries_[report_uuid];
   const std::int64_t now_ms = rule_.unix_ms();
-  if (tries.count++ == 0)
-    tries.first_ms = now_ms;
-  tries.taken = taken_;
+  if (tries.count++ > 0)
+    tries.age_ms += std::clamp<std::int64_t>(now_ms - tries.last_ms, 0, kLongestStep_ms);
+  tries.last_ms = now_ms;
   has_changed_ = true;
-  const std::chrono::milliseconds age(now_ms - tries.first_ms);
+  const std::chrono::milliseconds age(tries.age_ms);
   if (tries.count < rule_.tries || age < rule_.age)
     return "";
   return "put off " + std::to_string(tries.count) + " times in " +

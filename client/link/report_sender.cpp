@@ -162,13 +162,18 @@ void ReportSender::age_now_and_then(bool is_end) {
   tries_.save();
 }
 
-/// The pending reports, those that the server put off last time behind the others.
+/// The pending reports: those that the server put off behind the others, in the order of their last
+/// tries, so that each has its turn although a batch with one of them ends a round.
 std::vector<Uuid> ReportSender::in_turn() {
   std::vector<Uuid> pending = outbox_.pending();
   const std::set<Uuid> there(pending.begin(), pending.end());
-  std::erase_if(put_off_, [&](const Uuid& uuid) { return !there.contains(uuid); });
-  std::stable_partition(pending.begin(), pending.end(),
-                        [&](const Uuid& uuid) { return !put_off_.contains(uuid); });
+  std::erase_if(put_off_, [&](const auto& each) { return !there.contains(each.first); });
+  const auto last_try = [this](const Uuid& uuid) {
+    const auto found = put_off_.find(uuid);
+    return found == put_off_.end() ? 0 : found->second;
+  };
+  std::ranges::stable_sort(pending, {}, last_try);
+  ++round_;
   const std::lock_guard lock(mutex_);
   std::erase_if(passed_by_, [&](const auto& each) { return !there.contains(each.first); });
   return pending;
@@ -281,15 +286,16 @@ bool ReportSender::send_batch(ReportRequest& batch) {
   return open == 0;
 }
 
+/// A "try again" counts against a report only if others of its batch were taken and the server does
+/// not say when to come again: else the server is busy, stopping or out of a quota.
 /// \param problem  gets the reason of the last report that is not taken.
 /// \return the receipts after which a report is not sent again as it is: a "try again" only if the
 ///         report is to be set aside, with the reason.
 std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
                                                      std::string& problem) {
   std::map<Uuid, Receipt> receipts;
-  for (const Receipt& receipt : reply.receipts)
-    if (is_taken(receipt.status))
-      tries_.note_taken();
+  const bool are_others_taken =
+      reply.retry_after == 0ms && std::ranges::any_of(reply.receipts, is_taken, &Receipt::status);
   for (const Receipt& receipt : reply.receipts) {
     if (receipt.status != ReceiptStatus::TryAgain) {
       receipts.emplace(receipt.report_uuid, receipt);
@@ -297,8 +303,9 @@ std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
         problem = receipt.message;
       continue;
     }
-    put_off_.insert(receipt.report_uuid);
-    const std::string why = tries_.put_off(receipt.report_uuid, receipt.message);
+    put_off_[receipt.report_uuid] = round_;
+    const std::string why =
+        are_others_taken ? tries_.put_off(receipt.report_uuid, receipt.message) : std::string();
     if (why.empty())
       problem = receipt.message;
     else

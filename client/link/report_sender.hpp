@@ -102,7 +102,10 @@ class ReportSender {
   RetryAfter retry_after_{0};  // requested by the server in this round
   std::set<Digest> unknown_;   // robots whose reports wait for the next round
   PutOffTries tries_;
-  std::set<Uuid> put_off_;  // by the server, when they were sent last: the others go first
+  std::uint64_t round_ = 0;
+  // Reports that the server put off when they were sent last, and the round of that: the others go
+  // first, then those that have waited longest.
+  std::map<Uuid, std::uint64_t> put_off_;
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

@@ -1,31 +1,36 @@
 #include "server/app/check_sites.hpp"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <ostream>
 
 #include "proto/types/exit_code.hpp"
 #include "proto/types/failure.hpp"
 #include "server/sites/compare.hpp"
-#include "server/store/open_store.hpp"
+#include "server/store/report_digests.hpp"
 
 namespace kinship::app {
 namespace {
 
 constexpr const char* kCheckSitesFooter =
-    R"(An SQLite store must not be served meanwhile: name a backup of it ('kinship backup'). A database may be.
-Exit codes: 0 no report differs, 1 some do, or failed, 2 wrong usage, 3 no such store.
+    R"(Neither store is changed, and servers may have them open. Both need the schema of this kinshipd.
+Exit codes: 0 no report differs, 1 some do or are damaged, or failed, 2 wrong usage, 3 no such store.
 
 Example:
   kinshipd sites check --site backup-of-ulm.db --memory 'postgresql://kinship@db1,db2/fleet')";
 
-/// \throws Failure(NotFound) rather than making a store.
-std::unique_ptr<store::Store> open_existing(const std::string& name) {
-  if (store::kind_of_store(name).value_or_throw() == store::StoreKind::SqliteFile &&
-      !std::filesystem::exists(name))
-    throw Failure(ErrorCode::NotFound, "store '" + name + "': there is none");
-  return store::open_store(name, {});
+const char* text_of(sites::Difference difference) {
+  switch (difference) {
+    case sites::Difference::NotInMemory:
+      return "not in the memory";
+    case sites::Difference::TwoContents:
+      return "one UUID, two contents";
+    case sites::Difference::DamagedInMemory:
+      return "damaged in the memory";
+    case sites::Difference::DamagedAtSite:
+      break;
+  }
+  return "damaged at the site";
 }
 
 }  // namespace
@@ -49,20 +54,19 @@ void add_check_sites(CLI::App& app, std::optional<CheckSitesOptions>& options) {
 
 int run_check_sites(const CheckSitesOptions& options, std::ostream& out, std::ostream& err) {
   try {
-    const std::unique_ptr<store::Store> site = open_existing(options.site);
-    const std::unique_ptr<store::Store> memory = open_existing(options.memory);
+    const auto site = store::open_report_digests(options.site);
+    const auto memory = store::open_report_digests(options.memory);
     const sites::Comparison found =
-        sites::compare(*site, *memory, [&out](const Uuid& report, bool is_differing) {
-          out << "report " << report.text()
-              << (is_differing ? ": one UUID, two contents\n" : ": not in the memory\n");
+        sites::compare(*site, *memory, [&out](const Uuid& report, sites::Difference difference) {
+          out << "report " << report.text() << ": " << text_of(difference) << '\n';
         });
     out << "the same: " << found.same << "; at the site alone: " << found.of_site_alone
         << "; in the memory alone: " << found.of_memory_alone << "; different: " << found.differing
-        << '\n';
-    return found.differing == 0 ? kDone : kFailed;
+        << "; damaged: " << found.damaged << '\n';
+    return found.differing + found.damaged == 0 ? kDone : kFailed;
   } catch (const Failure& failure) {
     err << "kinshipd: " << failure.what() << '\n';
-    // A server that has a store open is a failure here; code 4 speaks of servers that answer.
+    // Code 4 speaks of servers that answer.
     return failure.code() == ErrorCode::Unavailable ? kFailed : exit_code(failure.code());
   }
 }

@@ -18,8 +18,8 @@ struct CheckSitesOptions {
 /// Adds `sites check`, which fills `options` where it was called.
 void add_check_sites(CLI::App& app, std::optional<CheckSitesOptions>& options);
 
-/// Names the reports that a site and the memory above it do not have alike.
-/// \return kDone: no UUID has two contents; kFailed; kWrongUsage; kNotFound.
+/// Names the reports that a site and the memory above it do not have alike. Changes neither.
+/// \return kDone: no UUID has two contents, none is damaged; kFailed; kWrongUsage; kNotFound.
 int run_check_sites(const CheckSitesOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace kinship::app

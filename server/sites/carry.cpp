@@ -69,7 +69,7 @@ void count(const Way& way, const std::vector<Receipt>& receipts, CarriedReports&
     switch (receipt.status) {
       case ReceiptStatus::TryAgain:
         if (const std::optional<std::string> why = way.to.why_put_off(receipt.report_uuid)) {
-          carried.refused.push_back({receipt.report_uuid, *why});
+          carried.refused.push_back({receipt.report_uuid, *why, true});
           break;
         }
         [[fallthrough]];

@@ -49,6 +49,7 @@ struct Piece {
 struct RefusedReport {
   Uuid report_uuid;
   std::string why;
+  bool is_put_off = false;  ///< by its database, alone; else it breaks a rule there
 };
 
 /// Outcome of carried reports.

@@ -150,32 +150,37 @@ std::vector<Retirement> Exchange::retire_here(std::span<const Uuid> reports) {
   return retired;
 }
 
+/// Notes the refused reports. Beyond kMaxRefused those that break a rule are passed by, as nothing
+/// will make them good; those that are put off would be lost: the exchange waits.
 std::uint64_t Exchange::take(const CarriedReports& carried, bool is_up) {
-  counts_.left_out += carried.left_out;
+  std::uint64_t passed_by = 0;
   for (const RefusedReport& report : carried.refused) {
-    const auto before = positions_.refused().find(report.report_uuid);
-    const bool is_new = before == positions_.refused().end();
-    if (is_new && positions_.refused().size() >= Positions::kMaxRefused)
+    const auto before = positions_.refused(is_up).find(report.report_uuid);
+    const bool is_told =
+        before != positions_.refused(is_up).end() && before->second.why == report.why;
+    const bool is_kept = positions_.refuse(report, is_up);
+    if (!is_kept && report.is_put_off)
       throw Failure(
           ErrorCode::Unavailable,
           std::to_string(Positions::kMaxRefused) +
-              " reports are refused: no more are carried before some of them are taken; " +
+              " reports are put off: no more are carried before some of them are taken; " +
               text_of(report, is_up));
-    if (is_new || before->second.why != report.why)
-      options_.log(text_of(report, is_up));
-    positions_.refuse(report, is_up);
+    if (!is_told)
+      options_.log(text_of(report, is_up) + (is_kept ? "" : "; it is not tried again"));
+    passed_by += is_kept ? 0 : 1;
   }
+  counts_.left_out += carried.left_out;
+  counts_.passed_by += passed_by;
   return carried.new_there;
 }
 
 /// With each connection and, less and less often, while it lasts.
 void Exchange::try_refused_again(const std::stop_token& stop) {
-  bool is_any_taken = positions_.refused().empty();
+  bool is_any_taken = positions_.refused_count() == 0;
   for (const bool is_up : {true, false}) {
     std::vector<Uuid> reports;
-    for (const auto& [report, refused] : positions_.refused())
-      if (refused.is_up == is_up)
-        reports.push_back(report);
+    for (const auto& [report, refused] : positions_.refused(is_up))
+      reports.push_back(report);
     if (reports.empty())
       continue;
     const CarriedReports carried =
@@ -186,7 +191,7 @@ void Exchange::try_refused_again(const std::stop_token& stop) {
       again.insert(report.report_uuid);
     for (const Uuid& report : reports)
       if (!again.contains(report))
-        positions_.accept(report);
+        positions_.accept(report, is_up);
     is_any_taken = is_any_taken || again.size() < reports.size();
     (is_up ? counts_.sent : counts_.received) += take(carried, is_up);
   }
@@ -274,7 +279,7 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
   step.next = std::min(up_due_, tasks_due_);
   if (positions_.has_changed())
     step.next = std::min(step.next, save_due_);
-  if (!positions_.refused().empty())
+  if (positions_.refused_count() > 0)
     step.next = std::min(step.next, refused_due_);
   for (const auto& [task, due] : down_due_)
     step.next = std::min(step.next, due);

@@ -65,6 +65,7 @@ struct ExchangeCounts {
   std::uint64_t retired_above = 0;  ///< retirements sent
   std::uint64_t retired_here = 0;   ///< paths
   std::uint64_t left_out = 0;       ///< reports that their store could not read whole
+  std::uint64_t passed_by = 0;      ///< refused reports beyond Positions::kMaxRefused: never again
 };
 
 /// Exchanges reports between a site and the memory above it while they are connected: in pieces,

@@ -197,14 +197,14 @@ void Forwarder::publish(const Positions& positions) {
   status_.retired_above = counts_.retired_above;
   status_.retired_here = counts_.retired_here;
   status_.left_out = counts_.left_out;
-  status_.refused = positions.refused().size();
+  status_.refused = positions.refused_count() + counts_.passed_by;
   status_.tasks = positions.tasks.size();
-  if (!positions.refused().empty()) {
-    const auto& [report, refused] = *positions.refused().begin();
-    status_.first_refused = report.text() + ": " + refused.why;
-  } else {
-    status_.first_refused.clear();
-  }
+  status_.first_refused.clear();
+  for (const bool is_up : {false, true})
+    if (!positions.refused(is_up).empty()) {
+      const auto& [report, refused] = *positions.refused(is_up).begin();
+      status_.first_refused = report.text() + ": " + refused.why;
+    }
 }
 
 /// When the first report came that waits to be sent.

@@ -10,6 +10,7 @@ namespace {
 constexpr std::string_view kPrefix = "sites.";
 constexpr std::string_view kTask = "sites.down.task.";
 constexpr std::string_view kRefused = "sites.refused.";
+constexpr std::string_view kRefusedWays[] = {"sites.refused.down.", "sites.refused.up."};
 
 std::string hex(const ConsistencyToken& token) {
   constexpr std::string_view kDigits = "0123456789abcdef";
@@ -58,11 +59,14 @@ Positions::Positions(store::ReplicationStore& site) : site_(&site), saved_(site.
       const auto [used_ms, cursor] = numbered<std::int64_t>(text);
       tasks[name.substr(kTask.size())] = {cursor, used_ms};
     } else if (name.starts_with(kRefused)) {
-      const auto [direction, why] = numbered<int>(text);
-      if (const std::optional<Uuid> report = Uuid::parse(name.substr(kRefused.size())))
-        refused_[*report] = {direction == 0, why};
+      const auto [is_put_off, why] = numbered<int>(text);
+      for (const bool is_up : {false, true})
+        if (name.starts_with(kRefusedWays[is_up]))
+          if (const auto report = Uuid::parse(name.substr(kRefusedWays[is_up].size())))
+            refuse({*report, why, is_put_off != 0}, is_up);
     }
   }
+  refusals_.clear();  // they are saved
   std::erase_if(saved_, [](const auto& note) { return note.first.starts_with(kRefused); });
 }
 
@@ -76,8 +80,9 @@ bool Positions::begin(const Uuid& site_epoch, const Uuid& memory_epoch) {
   down_retired.clear();
   passed = 0;
   token.clear();
-  while (!refused_.empty())
-    accept(Uuid(refused_.begin()->first));
+  for (const bool is_up : {false, true})
+    while (!refused_[is_up].empty())
+      accept(Uuid(refused_[is_up].begin()->first), is_up);
   for (auto& [name, task] : tasks)
     task.cursor.clear();
   save();
@@ -93,18 +98,30 @@ void Positions::want(const std::set<std::string>& names, std::int64_t now_ms) {
   }
 }
 
-void Positions::refuse(const RefusedReport& report, bool is_up) {
-  const auto [refused, is_new] = refused_.try_emplace(report.report_uuid);
-  if (!is_new && refused->second.is_up == is_up && refused->second.why == report.why)
-    return;
-  refused->second = {is_up, report.why};
-  refusals_[std::string(kRefused) + report.report_uuid.text()] =
-      std::string(is_up ? "0 " : "1 ") + report.why;
+bool Positions::refuse(const RefusedReport& report, bool is_up) {
+  std::map<Uuid, Refused>& of_way = refused_[is_up];
+  const auto before = of_way.find(report.report_uuid);
+  if (before == of_way.end() && kept_[report.is_put_off] >= kMaxRefused)
+    return false;
+  if (before != of_way.end()) {
+    if (before->second.is_put_off == report.is_put_off && before->second.why == report.why)
+      return true;
+    --kept_[before->second.is_put_off];
+  }
+  ++kept_[report.is_put_off];
+  of_way[report.report_uuid] = {report.why, report.is_put_off};
+  refusals_[std::string(kRefusedWays[is_up]) + report.report_uuid.text()] =
+      std::string(report.is_put_off ? "1 " : "0 ") + report.why;
+  return true;
 }
 
-void Positions::accept(const Uuid& report) {
-  if (refused_.erase(report) > 0)
-    refusals_[std::string(kRefused) + report.text()] = std::nullopt;
+void Positions::accept(const Uuid& report, bool is_up) {
+  const auto found = refused_[is_up].find(report);
+  if (found == refused_[is_up].end())
+    return;
+  --kept_[found->second.is_put_off];
+  refused_[is_up].erase(found);
+  refusals_[std::string(kRefusedWays[is_up]) + report.text()] = std::nullopt;
 }
 
 std::map<std::string, std::string> Positions::texts() const {

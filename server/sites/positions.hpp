@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -24,8 +26,8 @@ class Positions {
     std::int64_t used_ms = 0;  ///< time of its last use here
   };
   struct Refused {
-    bool is_up = true;  ///< refused by the memory; else by the site
     std::string why;
+    bool is_put_off = false;
   };
 
   /// \throws Failure(Storage)
@@ -43,10 +45,12 @@ class Positions {
   /// Records tasks as used here now; precise to the hour, so that not every call is a write.
   void want(const std::set<std::string>& names, std::int64_t now_ms);
 
-  /// Refused reports, by UUID; nobody adds more than kMaxRefused.
-  const std::map<Uuid, Refused>& refused() const noexcept { return refused_; }
-  void refuse(const RefusedReport& report, bool is_up);
-  void accept(const Uuid& report);
+  /// Reports that are refused, by UUID. \param is_up  by the memory; else by the site.
+  const std::map<Uuid, Refused>& refused(bool is_up) const noexcept { return refused_[is_up]; }
+  std::size_t refused_count() const noexcept { return refused_[0].size() + refused_[1].size(); }
+  /// \return false, and nothing is kept, if kMaxRefused others of its kind (put off or not) are.
+  bool refuse(const RefusedReport& report, bool is_up);
+  void accept(const Uuid& report, bool is_up);
 
   /// Writes the changes in one transaction, durable on return.
   void save();
@@ -60,7 +64,8 @@ class Positions {
 
   store::ReplicationStore* site_;
   std::string epochs_;
-  std::map<Uuid, Refused> refused_;
+  std::array<std::map<Uuid, Refused>, 2> refused_;              // by is_up
+  std::array<std::size_t, 2> kept_ = {};                        // of both, by is_put_off
   std::map<std::string, std::optional<std::string>> refusals_;  // not saved yet
   std::map<std::string, std::string> saved_;                    // without refusals
 };

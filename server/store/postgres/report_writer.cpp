@@ -171,7 +171,7 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
     } catch (const PostgresError& error) {
       if (error.kind() == ErrorKind::Conflict && tries < kTries)
         continue;
-      if (error.kind() == ErrorKind::OneRow || error.kind() == ErrorKind::Conflict) {
+      if (error.kind() == ErrorKind::OneRow) {
         if (pending.size() > 1)
           return false;
         put_off_.note(pending.front().prepared->attempt.report_uuid, error.what());

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/rows/arrivals.hpp"
 #include "server/store/values/codes.hpp"
 #include "server/store/values/path_content.hpp"
 #include "server/store/values/record_columns.hpp"
@@ -335,8 +336,14 @@ void write_changes(Connection& connection, const BatchChanges& changes, std::int
     columns.add(attempt);
   requests.push_back({write_attempts, columns.parameters(now_ms)});
   const std::vector<Rows> rows = connection.query_all(requests);
-  if (rows.back().changed() != std::ssize(changes.attempts))
-    throw PostgresError("40001", "another server wrote one of these reports meanwhile");
+  if (rows.back().changed() == std::ssize(changes.attempts))
+    return;
+  std::vector<Uuid> reports;
+  for (const NewAttempt& attempt : changes.attempts)
+    reports.push_back(attempt.from->attempt.report_uuid);
+  if (select_known(connection, reports).size() < reports.size())
+    throw PostgresError("27000", "a trigger or a rule of the database takes reports away");
+  throw PostgresError("40001", "another server wrote one of these reports meanwhile");
 }
 
 }  // namespace kinship::store::postgres

@@ -15,12 +15,27 @@ int open_flags(Access access) {
   switch (access) {
     case Access::ReadOnly:
       return SQLITE_OPEN_READONLY;
+    case Access::AtRest:
+      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
     case Access::ReadWrite:
       return SQLITE_OPEN_READWRITE;
     case Access::Create:
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   }
   return SQLITE_OPEN_READONLY;
+}
+
+/// As SQLite takes the name of a file.
+std::string name_of(const std::filesystem::path& file, Access access) {
+  if (access != Access::AtRest)
+    return file.string();
+  std::string uri = "file:";
+  for (const char each : std::filesystem::absolute(file).string())
+    if (each == '%' || each == '?' || each == '#')
+      uri += each == '%' ? "%25" : each == '?' ? "%3f" : "%23";
+    else
+      uri += each;
+  return uri + "?immutable=1";
 }
 
 /// Of an index.
@@ -43,8 +58,8 @@ void Database::Close::operator()(sqlite3* connection) const noexcept { sqlite3_c
 
 Database::Database(const std::filesystem::path& file, Access access) {
   sqlite3* connection = nullptr;
-  const int code =
-      sqlite3_open_v2(file.c_str(), &connection, open_flags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int code = sqlite3_open_v2(name_of(file, access).c_str(), &connection,
+                                   open_flags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   connection_.reset(connection);  // SQLite may hand out a connection although it failed
   if (code != SQLITE_OK)
     throw SqliteError(

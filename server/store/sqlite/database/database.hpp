@@ -17,7 +17,12 @@ namespace kinship::store {
 /// SQL that says whether a row of a table is quarantined (rows/quarantine_rows).
 std::string in_quarantine(std::string_view table);
 
-enum class Access { ReadOnly, ReadWrite, Create };
+enum class Access {
+  ReadOnly,
+  AtRest,  ///< ReadOnly of a file that no process writes: no lock, no file beside it
+  ReadWrite,
+  Create
+};
 
 class OnlineBackup;
 

@@ -1,5 +1,7 @@
 #include "server/store/sqlite/opening/connection.hpp"
 
+#include <sqlite3.h>
+
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -62,12 +64,22 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
   return database;
 }
 
-std::unique_ptr<Database> open_reader(const std::filesystem::path& file) {
-  auto database = std::make_unique<Database>(file, Access::ReadOnly);
+std::unique_ptr<Database> open_reader(const std::filesystem::path& file, Access access) {
+  auto database = std::make_unique<Database>(file, access);
   // Readers wait only for a recovery of the WAL.
   database->execute(
       "PRAGMA query_only = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA mmap_size = 0;"
       "PRAGMA busy_timeout = 5000; PRAGMA cell_size_check = ON");
+  return database;
+}
+
+std::unique_ptr<Database> open_unchanged(const std::filesystem::path& file) {
+  const auto has = [&file](const char* sidecar) {
+    return std::filesystem::exists(file.string() + sidecar);
+  };
+  const bool is_at_rest = !has("-wal") && !has("-journal");
+  auto database = open_reader(file, is_at_rest ? Access::AtRest : Access::ReadOnly);
+  sqlite3_db_config(&database->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
   return database;
 }
 

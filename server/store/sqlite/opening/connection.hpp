@@ -22,6 +22,11 @@ std::unique_ptr<Database> open_writer(const std::filesystem::path& file);
 std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file);
 
 /// A connection that only reads and never checkpoints.
-std::unique_ptr<Database> open_reader(const std::filesystem::path& file);
+std::unique_ptr<Database> open_reader(const std::filesystem::path& file,
+                                      Access access = Access::ReadOnly);
+
+/// The same for a store that shall stay as it is: without a WAL nothing is made beside it, a WAL is
+/// left alone at the end, as it may be a server's.
+std::unique_ptr<Database> open_unchanged(const std::filesystem::path& file);
 
 }  // namespace kinship::store

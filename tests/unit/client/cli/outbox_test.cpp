@@ -72,6 +72,8 @@ TEST_F(OutboxCommands, ALookMakesNoOutbox) {
   const char* const argv[] = {"kinship", "outbox", "list", "--outbox", text.c_str()};
   EXPECT_EQ(run(5, argv, out, err), kNotFound);
   EXPECT_FALSE(std::filesystem::exists(none));
+  EXPECT_EQ(run_outbox({"list"}), kDone) << err_.str();
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "set_aside")) << "nothing was set aside";
 }
 
 }  // namespace

@@ -32,6 +32,8 @@ class SetAside : public testing::Test {
                                 is_poison ? ReceiptStatus::TryAgain : ReceiptStatus::Stored,
                                 is_poison ? "violates check [23514]" : ""});
     }
+    if (is_busy_)
+      reply.retry_after = 1ms;
     ++batches_;
     return reply;
   }
@@ -57,7 +59,7 @@ class SetAside : public testing::Test {
   test::RandomValues values_{38};
   Outbox outbox_{folder_.path()};
   std::set<Uuid> poison_;
-  std::atomic<bool> takes_nothing_ = false;
+  std::atomic<bool> takes_nothing_ = false, is_busy_ = false;
   std::atomic<int> batches_ = 0;
   std::atomic<std::int64_t> unix_ms_ = 1;
 };
@@ -116,6 +118,32 @@ TEST_F(SetAside, AServerThatTakesNothingForAYearIsNoReason) {
     sender->retry();
 }
 
+TEST_F(SetAside, AReportThatABusyServerPutsOffIsNoPoison) {
+  const Uuid report = *poison_.insert(add()).first;
+  is_busy_ = true;
+  const auto sender = start();
+  for (int tries = 0; tries < 6; ++tries)
+    take_one(*sender);
+  EXPECT_EQ(sender->counts().set_aside, 0U);
+  EXPECT_TRUE(fs::exists(file("pending", report)));
+}
+
+TEST_F(SetAside, AClockThatJumpsMakesNoReportOld) {
+  constexpr std::int64_t kYears_ms = 100 * 24 * 365 * kHour_ms;
+  const Uuid poison = *poison_.insert(add()).first;
+  const auto sender = start();
+  take_one(*sender);
+  for (const std::int64_t jump : {kYears_ms, -kYears_ms, -kYears_ms}) {
+    unix_ms_ += jump - kHour_ms;  // take_one() adds the hour
+    take_one(*sender);
+  }
+  EXPECT_EQ(sender->counts().set_aside, 0U) << "four tries, one hour";
+  take_one(*sender);
+  while (sender->counts().set_aside == 0)
+    std::this_thread::yield();
+  EXPECT_TRUE(fs::exists(file("set_aside", poison)));
+}
+
 TEST_F(SetAside, NothingWaitsBehindABatchOfPoison) {
   for (int i = 0; i < 300; ++i)
     poison_.insert(add());
@@ -124,6 +152,22 @@ TEST_F(SetAside, NothingWaitsBehindABatchOfPoison) {
   while (sender->counts().accepted == 0)
     sender->retry();
   EXPECT_TRUE(fs::exists(file("sent", good)));
+}
+
+TEST_F(SetAside, NothingWaitsBehindABatchOfPoisonOnceAllWerePutOff) {
+  for (int i = 0; i < 300; ++i)
+    poison_.insert(add());
+  for (int i = 0; i < 300; ++i)
+    add();
+  takes_nothing_ = true;
+  const auto sender = start();
+  while (batches_ < 3)  // of 256: all
+    sender->retry();
+  takes_nothing_ = false;
+  const auto deadline = std::chrono::steady_clock::now() + 60s;
+  while (sender->counts().accepted < 300 && std::chrono::steady_clock::now() < deadline)
+    sender->retry();
+  EXPECT_EQ(sender->counts().accepted, 300U);
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "proto/types/exit_code.hpp"
 #include "server/app/options.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -25,6 +28,10 @@ class CheckSites : public testing::Test {
     attempt.report_uuid = uuid_;
     test::report(*store, {attempt});
     return file.string();
+  }
+  static std::string content_of(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
   }
   int check(const std::string& site, const std::string& memory) {
     out_.str("");
@@ -45,12 +52,39 @@ TEST_F(CheckSites, NamesOneUuidWithTwoContents) {
   const std::string site = store_with("site.db", 1), same = store_with("same.db", 1),
                     other = store_with("other.db", 2);
   EXPECT_EQ(check(site, same), kDone) << err_.str();
-  EXPECT_EQ(out_.str(),
-            "the same: 1; at the site alone: 0; in the memory alone: 0; different: 0\n");
+  EXPECT_EQ(
+      out_.str(),
+      "the same: 1; at the site alone: 0; in the memory alone: 0; different: 0; damaged: 0\n");
   EXPECT_EQ(check(site, other), kFailed);
   EXPECT_NE(out_.str().find("report " + uuid_.text() + ": one UUID, two contents\n"),
             std::string::npos)
       << out_.str();
+}
+
+TEST_F(CheckSites, LeavesAFileAndWhatLiesBesideItAsTheyAre) {
+  const std::string site = store_with("site.db", 1), served = (folder_ / "served.db").string();
+  const std::filesystem::path backups = folder_ / "what is 100%? #1";
+  std::filesystem::create_directory(backups);
+  const std::string backup = (backups / "copy.db").string();
+  std::filesystem::copy_file(site, backup);  // its header asks for a WAL
+  const std::string before = content_of(backup);
+  const auto server = store::open_sqlite_store(served);
+  EXPECT_EQ(check(backup, served), kDone) << err_.str();
+  EXPECT_NE(out_.str().find("at the site alone: 1"), std::string::npos) << out_.str();
+  EXPECT_EQ(content_of(backup), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(backups), {}), 1)
+      << "no lock, no WAL, no mark";
+}
+
+TEST_F(CheckSites, RefusesAnotherSchema) {
+  const std::string site = store_with("site.db", 1), older = (folder_ / "older.db").string();
+  std::ofstream(older).close();
+  const auto known = store::embedded_migrations();
+  static_cast<void>(store::open_migrated(older, known.first(known.size() - 1)));
+  const std::string before = content_of(older);
+  EXPECT_EQ(check(site, older), kFailed);
+  EXPECT_NE(err_.str().find("has schema"), std::string::npos) << err_.str();
+  EXPECT_EQ(content_of(older), before);
 }
 
 TEST_F(CheckSites, MakesNoStore) {

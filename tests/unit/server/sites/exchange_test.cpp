@@ -165,16 +165,16 @@ TEST_F(ExchangeTest, WhatIsRefusedIsSetAsideAndTriedWithTheNextConnection) {
   test::report(*memory_, {solved(11), solved(12)});
   exchange();
   EXPECT_EQ(reports_of(*site_), std::vector<Uuid>{solved(12).report_uuid});
-  ASSERT_EQ(positions_->refused().size(), 1U);
-  EXPECT_EQ(positions_->refused().begin()->second.why, "no path of this robot");
+  ASSERT_EQ(positions_->refused_count(), 1U);
+  EXPECT_EQ(positions_->refused(false).begin()->second.why, "no path of this robot");
   EXPECT_NE(lines_.back().find(solved(11).report_uuid.text()), std::string::npos);
   connect();
   exchange();
-  EXPECT_EQ(positions_->refused().size(), 1U) << "refused again";
+  EXPECT_EQ(positions_->refused_count(), 1U) << "refused again";
   is_refusing = false;
   connect();
   exchange();
-  EXPECT_TRUE(positions_->refused().empty());
+  EXPECT_EQ(positions_->refused_count(), 0U);
   EXPECT_EQ(site_->status().attempts, 2U);
 }
 
@@ -210,12 +210,29 @@ TEST_F(ExchangeTest, WhatIsRefusedIsTriedAgainLessAndLessOftenWhileTheLineHolds)
                 [](const std::string& line) { return line.find("not here") != std::string::npos; }),
             1)
       << "told once";
-  ASSERT_EQ(positions_->refused().size(), 1U);
+  ASSERT_EQ(positions_->refused_count(), 1U);
   is_refusing = false;
   step_for(options_.longest_refused_retry / std::chrono::seconds(1) * std::chrono::seconds(1));
-  EXPECT_TRUE(positions_->refused().empty());
+  EXPECT_EQ(positions_->refused_count(), 0U);
   EXPECT_EQ(reports_of(*memory_), reports_of(*site_));
   exchange_.reset();
+}
+
+TEST_F(ExchangeTest, NothingWaitsBehindMoreRefusalsThanAreKept) {
+  hooks_.check = [&](const Attempt& attempt) -> std::optional<Error> {
+    if (attempt.report_uuid == solved(11).report_uuid)
+      return Error{ErrorCode::InvalidInput, "no path of this robot"};
+    return std::nullopt;
+  };
+  in_use_ = {"shelf"};
+  exchange();  // connected: refused reports are due again in some seconds
+  for (std::uint64_t number = 0; number < Positions::kMaxRefused; ++number)
+    positions_->refuse({test::id_from<Uuid>(1'000'000 + number), "refused before"}, false);
+  test::report(*memory_, {solved(11), solved(12)});
+  exchange();
+  EXPECT_EQ(reports_of(*site_), std::vector<Uuid>{solved(12).report_uuid});
+  EXPECT_EQ(counts_.passed_by, 1U);
+  EXPECT_NE(lines_.back().find("it is not tried again"), std::string::npos) << lines_.back();
 }
 
 TEST_F(ExchangeTest, OneUuidWithTwoContentsIsNamedWhereItMeetsTheOther) {
@@ -225,10 +242,11 @@ TEST_F(ExchangeTest, OneUuidWithTwoContentsIsNamedWhereItMeetsTheOther) {
   test::report(*site_, {solved(1), solved(2)});
   in_use_ = {"shelf"};
   exchange();
-  ASSERT_EQ(positions_->refused().size(), 1U);
-  EXPECT_EQ(positions_->refused().begin()->first, other.report_uuid);
-  EXPECT_NE(positions_->refused().begin()->second.why.find("was used for another report"),
-            std::string::npos);
+  ASSERT_EQ(positions_->refused_count(), 2U) << "by each";
+  for (const bool is_up : {false, true})
+    EXPECT_NE(
+        positions_->refused(is_up).at(other.report_uuid).why.find("was used for another report"),
+        std::string::npos);
   EXPECT_EQ(site_->find_attempt(other.report_uuid)->path->waypoints(), solved(1).path->waypoints())
       << "each keeps its own";
   EXPECT_EQ(memory_->find_attempt(other.report_uuid)->path->waypoints(), other.path->waypoints());

@@ -34,9 +34,9 @@ TEST_F(PositionsTest, AreThereAgainAfterARestart) {
   ASSERT_EQ(positions.tasks.size(), 1U);
   EXPECT_EQ(positions.tasks["shelf 2"].cursor, "opaque cursor");
   EXPECT_EQ(positions.tasks["shelf 2"].used_ms, 1'700'000'000'000);
-  ASSERT_EQ(positions.refused().size(), 1U);
-  EXPECT_EQ(positions.refused().begin()->second.why, "it has no joints");
-  EXPECT_FALSE(positions.refused().begin()->second.is_up);
+  ASSERT_EQ(positions.refused_count(), 1U);
+  EXPECT_EQ(positions.refused(false).begin()->second.why, "it has no joints");
+  EXPECT_FALSE(positions.refused(false).begin()->second.is_put_off);
   EXPECT_FALSE(positions.begin(site_->epoch(), memory_->epoch())) << "the epochs are the same";
 }
 
@@ -59,7 +59,7 @@ TEST_F(PositionsTest, BeginAgainWithAnotherEpochOfEitherSide) {
     EXPECT_EQ(positions.passed, 0U);
     EXPECT_TRUE(positions.token.empty());
     EXPECT_EQ(positions.tasks["shelf"].used_ms, 5) << "it is wanted as before";
-    EXPECT_TRUE(Positions(*site_).refused().empty());
+    EXPECT_EQ(Positions(*site_).refused_count(), 0U);
   }
 }
 
@@ -67,9 +67,38 @@ TEST_F(PositionsTest, WhatIsTakenIsNotRefusedAnyMore) {
   Positions positions(*site_);
   positions.refuse({test::id_from<Uuid>(3), "why"}, true);
   positions.save();
-  positions.accept(test::id_from<Uuid>(3));
+  positions.accept(test::id_from<Uuid>(3), true);
   positions.save();
-  EXPECT_TRUE(Positions(*site_).refused().empty());
+  EXPECT_EQ(Positions(*site_).refused_count(), 0U);
+}
+
+TEST_F(PositionsTest, ARefusalUpwardsAndOneDownwardsAreTwo) {
+  const Uuid report = test::id_from<Uuid>(3);
+  Positions positions(*site_);
+  positions.refuse({report, "put off", true}, true);
+  positions.refuse({report, "two contents"}, false);
+  positions.save();
+  Positions again(*site_);
+  ASSERT_EQ(again.refused_count(), 2U);
+  EXPECT_EQ(again.refused(true).at(report).why, "put off");
+  EXPECT_TRUE(again.refused(true).at(report).is_put_off);
+  EXPECT_EQ(again.refused(false).at(report).why, "two contents");
+  EXPECT_FALSE(again.has_changed());
+  again.accept(report, false);
+  again.save();
+  EXPECT_EQ(Positions(*site_).refused(true).count(report), 1U);
+}
+
+TEST_F(PositionsTest, RefusalsForGoodLeaveRoomForThoseThatArePutOff) {
+  Positions positions(*site_);
+  for (std::uint64_t number = 0; number < Positions::kMaxRefused; ++number)
+    ASSERT_TRUE(positions.refuse({test::id_from<Uuid>(number), "why"}, number % 2 == 0));
+  const Uuid more = test::id_from<Uuid>(1'000'000);
+  EXPECT_FALSE(positions.refuse({more, "why"}, true));
+  EXPECT_TRUE(positions.refuse({more, "why", true}, true));
+  EXPECT_TRUE(positions.refuse({test::id_from<Uuid>(0), "another reason"}, true)) << "it is known";
+  positions.accept(test::id_from<Uuid>(2), true);
+  EXPECT_TRUE(positions.refuse({test::id_from<Uuid>(2'000'000), "why"}, true));
 }
 
 TEST(WantedTasks, AStarIsAnythingAQuestionMarkOne) {
