@@ -157,14 +157,15 @@ function(kinship_discover_suites name timeout label)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include})
 endfunction()
 
-# kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60])
+# kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60] [SERIAL *Suite*])
 #
 # One GoogleTest program. Each suite of it is a test of CTest; where a TEST takes seconds (labels property, integration,
 # untrusted, faults, story) each TEST is, so that they go side by side. LABEL: unit, threads (unit tests that
 # ThreadSanitizer runs too), property, integration, untrusted (integration tests of what strangers send, which
 # AddressSanitizer runs too), story, faults, golden, architecture. The target tests_LABEL builds all programs of a label. TIMEOUT in seconds is meant for an idle machine: sanitizers get five times that.
+# SERIAL: which TESTs run alone, where each is a test.
 function(kinship_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL;TIMEOUT" "SOURCES;DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL;TIMEOUT;SERIAL" "SOURCES;DEPENDS")
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 180)
   endif()
@@ -189,7 +190,12 @@ function(kinship_test name)
   add_dependencies(tests_${arg_LABEL} ${name})
   if(arg_LABEL MATCHES "^(property|integration|untrusted|faults|story)$")
     include(GoogleTest)
-    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
+    if(arg_SERIAL)
+      set(others TEST_FILTER "-${arg_SERIAL}")
+      gtest_discover_tests(${name} TEST_FILTER ${arg_SERIAL} TEST_LIST ${name}_serial DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
+        PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL} RUN_SERIAL TRUE)
+    endif()
+    gtest_discover_tests(${name} ${others} DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
       PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL})
   else()
     kinship_discover_suites(${name} ${arg_TIMEOUT} ${arg_LABEL})

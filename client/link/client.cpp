@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -25,7 +26,9 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kReceiptTime = 5s;       // for a batch to be stored, and a robot
+constexpr milliseconds kReceiptTime = 5s;  // for a batch to be stored, and a robot
+constexpr std::string_view kWrongProof =
+    "the proof of the token is wrong";          // of a server's refusal
 constexpr milliseconds kShortestPause = 100ms;  // between two requests of one fetch
 
 /// The server's share of the time that is left, so that its "pending" still arrives in time.
@@ -105,6 +108,9 @@ struct Client::Line {
   dds::Requester<codec::FetchConversation> fetching;
   dds::Requester<codec::AdminConversation> administering;
   InterruptibleSleep sleep;
+  std::mutex challenge_mutex;  // guards the next two
+  std::string challenge;       // the server's last one
+  Clock::time_point challenged;
   std::optional<ReportSender> sender;  // last: uses the outbox and requesters
 };
 
@@ -240,18 +246,45 @@ Result<AdminReply> Client::admin(const AdminRequest& request) {
                                      [&] { return line_->administering.call(request, deadline); });
 }
 
-/// With a proof of its own each time that it is sent anew.
+/// The server's; empty: it asks for no proof. Kept for a minute, unless it is to be asked for.
+Result<std::string> Client::challenge(bool is_kept) {
+  constexpr auto kKept = 1min;
+  {
+    const std::lock_guard lock(line_->challenge_mutex);
+    if (is_kept && !line_->challenge.empty() && Clock::now() - line_->challenged < kKept)
+      return line_->challenge;
+  }
+  const Clock::time_point asked = Clock::now();
+  const Result<ServerStatus> status = row_of<ServerStatus>(*this, AdminRequest());
+  if (!status)
+    return status.error();
+  const std::lock_guard lock(line_->challenge_mutex);
+  line_->challenge = status->challenge;
+  line_->challenged = asked;
+  return status->challenge;
+}
+
+/// With a proof of its own each time that it is sent anew. A refusal may be that of a server that
+/// was started since it gave its challenge: then there is another one, for which it is sent again.
 Result<AdminReply> Client::change(const AdminRequest& request) {
   const Digest token = security::read_admin_token(line_->token);
   const Clock::time_point deadline = Clock::now() + line_->timeout + request.deadline;
-  return ask_until_final<AdminReply>(deadline, line_->sleep, [&]() -> Result<AdminReply> {
-    const Result<ServerStatus> status = row_of<ServerStatus>(*this, AdminRequest());
-    if (!status)
-      return status.error();
+  const auto send = [&](const std::string& challenge) {
     AdminRequest shown = request;
-    if (!status->challenge.empty())
-      shown.proof = security::prove_admin_token(token, status->challenge, request);
+    if (!challenge.empty())
+      shown.proof = security::prove_admin_token(token, challenge, line_->client_id, request);
     return line_->administering.call(shown, deadline);
+  };
+  return ask_until_final<AdminReply>(deadline, line_->sleep, [&]() -> Result<AdminReply> {
+    const Result<std::string> first = challenge(true);
+    if (!first)
+      return first.error();
+    Result<AdminReply> reply = send(*first);
+    if (!reply || reply->status != AdminStatus::Refused ||
+        reply->message.find(kWrongProof) == std::string::npos)
+      return reply;
+    const Result<std::string> second = challenge(false);
+    return second ? send(*second) : reply;
   });
 }
 

@@ -121,6 +121,7 @@ class Client {
  private:
   struct Line;
   Result<AdminReply> change(const AdminRequest& request);
+  Result<std::string> challenge(bool is_kept);
   std::unique_ptr<Line> line_;
 };
 

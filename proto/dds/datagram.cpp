@@ -55,6 +55,14 @@ bool is_announcer(Bytes writer) {
   return are(writer, {0x00, 0x01, 0x00, 0xc2}) || are(writer, {0xff, 0x01, 0x01, 0xc2});
 }
 
+/// Whether this writer announces endpoints and their ends.
+bool is_endpoint_announcer(Bytes writer) {
+  return are(writer, {0x00, 0x00, 0x03, 0xc2}) || are(writer, {0x00, 0x00, 0x04, 0xc2});
+}
+
+/// Whether this writer tells of participants' liveliness and ends.
+bool is_liveliness_writer(Bytes writer) { return are(writer, {0x00, 0x02, 0x00, 0xc2}); }
+
 /// Calls `use(id, value)` for each parameter of a list. \return where the list ends, if it does.
 template <typename Use>
 std::optional<std::size_t> walk_parameters(const Reader& list, std::size_t at, const Use& use) {
@@ -75,13 +83,22 @@ std::optional<std::size_t> walk_parameters(const Reader& list, std::size_t at, c
   }
 }
 
+constexpr std::size_t kEncapsulationBytes = 4, kGuidBytes = 16;
+
+bool is_parameter_list(Bytes payload) {
+  return payload.size() >= kEncapsulationBytes && payload[0] == 0 &&
+         (payload[1] == 2 || payload[1] == 3);
+}
+
+bool is_of(const GuidPrefix& sender, Bytes guid) {
+  return guid.size() == kGuidBytes && std::ranges::equal(guid.first(sender.size()), sender);
+}
+
 /// What the parameters of an announcement say. \return whether they are well formed and about
 /// `sender` itself.
 bool read_payload(Bytes payload, const GuidPrefix& sender, ParticipantAnnouncement& found) {
-  constexpr std::size_t kEncapsulationBytes = 4, kGuidBytes = 16;
-  enum : std::uint16_t { kLease = 0x0002, kGuid = 0x0050, kIdentity = 0x1001 };
-  if (payload.size() < kEncapsulationBytes || payload[0] != 0 ||
-      (payload[1] != 2 && payload[1] != 3))
+  enum : std::uint16_t { kLease = 0x0002, kGuid = 0x0050, kIdentity = 0x1001, kVersion = 0x8007 };
+  if (!is_parameter_list(payload))
     return false;
   const bool is_little = payload[1] == 3;
   found.lease = std::chrono::seconds(100);  // where none is said
@@ -89,8 +106,12 @@ bool read_payload(Bytes payload, const GuidPrefix& sender, ParticipantAnnounceme
   const auto use = [&](std::uint16_t id, Bytes value) {
     if (id == kGuid) {
       ++guids;
-      return value.size() == kGuidBytes && std::ranges::equal(value.first(sender.size()), sender) &&
-             are(value.subspan(sender.size()), {0x00, 0x00, 0x01, 0xc1});
+      return is_of(sender, value) && are(value.subspan(sender.size()), {0x00, 0x00, 0x01, 0xc1});
+    }
+    if (id == kVersion) {
+      constexpr std::uint32_t kIsDdsi2 = 1U << 4U;
+      const auto version_flags = Reader(value, is_little).number<std::uint32_t>(4);
+      return version_flags && (*version_flags & kIsDdsi2) == 0;
     }
     if (id == kIdentity)
       found.has_identity = true;
@@ -108,34 +129,89 @@ bool read_payload(Bytes payload, const GuidPrefix& sender, ParticipantAnnounceme
   return walk_parameters(Reader(payload, is_little), kEncapsulationBytes, use) && guids == 1;
 }
 
+/// Whether the payload is about one endpoint, of the sender.
+bool is_own_endpoint(Bytes payload, const GuidPrefix& sender) {
+  enum : std::uint16_t { kParticipantGuid = 0x0050, kEndpointGuid = 0x005a };
+  if (!is_parameter_list(payload))
+    return false;
+  bool is_found = false;
+  const auto use = [&](std::uint16_t id, Bytes value) {
+    is_found = is_found || id == kEndpointGuid;
+    return (id != kParticipantGuid && id != kEndpointGuid) || is_of(sender, value);
+  };
+  return walk_parameters(Reader(payload, payload[1] == 3), kEncapsulationBytes, use) && is_found;
+}
+
+/// Whether the payload is about the sender: a prefix and what it says.
+bool is_own_liveliness(Bytes payload, const GuidPrefix& sender) {
+  return payload.size() >= kEncapsulationBytes + sender.size() &&
+         std::ranges::equal(payload.subspan(kEncapsulationBytes, sender.size()), sender);
+}
+
+struct InlineQos {
+  std::size_t end = 0;  ///< where it ends
+  bool is_end = false;  ///< of what the payload or the key names
+  bool has_own_key = false;
+};
+
+/// \return nothing if it is broken or has the key of another participant than the sender.
+std::optional<InlineQos> read_inline_qos(const Reader& reader, std::size_t at,
+                                         const GuidPrefix& sender) {
+  enum : std::uint16_t { kKeyHash = 0x0070, kStatus = 0x0071 };
+  InlineQos found;
+  const auto use = [&](std::uint16_t id, Bytes value) {
+    if (id == kKeyHash)
+      return found.has_own_key = is_of(sender, value);
+    if (id != kStatus)
+      return true;
+    found.is_end = !value.empty() && (value.back() & 3U) != 0;
+    return value.size() == 4;
+  };
+  const auto end = walk_parameters(reader, at, use);
+  if (!end)
+    return std::nullopt;
+  found.end = *end;
+  return found;
+}
+
+/// A DATA_FRAG submessage. \return whether it may be heard: an end is never cut in pieces.
+bool read_fragment(Bytes body, std::uint8_t flags) {
+  constexpr std::size_t kWriterAt = 8;
+  enum : std::uint8_t { kInlineQos = 2, kKey = 4 };
+  const auto writer = Reader(body, true).bytes(kWriterAt, 4);
+  if (!writer || is_announcer(*writer) || is_liveliness_writer(*writer))
+    return false;
+  return !is_endpoint_announcer(*writer) || (flags & (kInlineQos | kKey)) == 0;
+}
+
 /// A DATA submessage. \return whether it may be heard.
 bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announcements) {
-  enum : std::uint8_t { kLittle = 1, kInlineQos = 2 };
+  enum : std::uint8_t { kLittle = 1, kInlineQos = 2, kHasData = 4, kHasKey = 8 };
   constexpr std::size_t kOffsetAt = 2, kWriterAt = 8, kFixedBytes = 20;
-  constexpr std::uint16_t kStatus = 0x0071;
   const Reader reader(body, (flags & kLittle) != 0);
   const auto writer = reader.bytes(kWriterAt, 4);
   if (!writer)
     return false;
-  if (!is_announcer(*writer))
+  const bool is_announcement = is_announcer(*writer);
+  if (!is_announcement && !is_endpoint_announcer(*writer) && !is_liveliness_writer(*writer))
     return true;
   const auto offset = reader.number<std::uint16_t>(kOffsetAt);
   std::size_t at = kOffsetAt + 2 + offset.value_or(0);
-  if (!offset || at < kFixedBytes || at > body.size() || ++announcements > kMaxAnnouncements)
+  if (!offset || at < kFixedBytes || at > body.size())
     return false;
-  ParticipantAnnouncement found;
-  if ((flags & kInlineQos) != 0) {
-    const auto use = [&](std::uint16_t id, Bytes value) {
-      if (id == kStatus && !value.empty())
-        found.is_departure = (value.back() & 3U) != 0;
-      return true;
-    };
-    const auto end = walk_parameters(reader, at, use);
-    if (!end)
-      return false;
-    at = *end;
+  const auto qos = (flags & kInlineQos) != 0 ? read_inline_qos(reader, at, datagram.sender)
+                                             : std::optional(InlineQos{.end = at});
+  if (!qos)
+    return false;
+  const Bytes payload = body.subspan(qos->end);
+  if (!is_announcement) {
+    if ((flags & (kHasData | kHasKey)) == 0)
+      return qos->has_own_key;
+    return is_liveliness_writer(*writer) ? is_own_liveliness(payload, datagram.sender)
+                                         : is_own_endpoint(payload, datagram.sender);
   }
-  if (!read_payload(body.subspan(at), datagram.sender, found))
+  ParticipantAnnouncement found{.is_departure = qos->is_end};
+  if (++announcements > kMaxAnnouncements || !read_payload(payload, datagram.sender, found))
     return false;
   datagram.announcement = found;
   return true;
@@ -144,7 +220,6 @@ bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announce
 /// The submessage with this body. \return whether it may be heard.
 bool read_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, Datagram& datagram,
                      int& announcements) {
-  constexpr std::size_t kWriterAt = 8;
   switch (id) {
     case kInfoSource: {
       constexpr std::size_t kMaxOthers = 255;
@@ -158,10 +233,8 @@ bool read_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, Datagram& 
     case kData:
       return read_data(body, flags, datagram.others.empty() ? datagram : datagram.others.back(),
                        announcements);
-    case kDataFragment: {
-      const auto writer = Reader(body, true).bytes(kWriterAt, 4);
-      return writer && !is_announcer(*writer);
-    }
+    case kDataFragment:
+      return read_fragment(body, flags);
     default:
       return true;
   }
@@ -176,9 +249,16 @@ std::optional<Datagram> read_datagram(Bytes bytes) {
   std::ranges::copy(bytes.subspan(kPrefixAt, datagram.sender.size()), datagram.sender.begin());
   int announcements = 0;
   std::size_t at = kHeaderBytes;
+  const auto sender_now = [&]() -> Datagram& {
+    return datagram.others.empty() ? datagram : datagram.others.back();
+  };
+  datagram.begin = at;
   while (bytes.size() - at >= kSubmessageHeaderBytes) {
     const std::uint8_t id = bytes[at], flags = bytes[at + 1];
     const auto length = Reader(bytes, (flags & 1U) != 0).number<std::uint16_t>(at + 2);
+    if (id == kInfoSource)
+      sender_now().end = at;
+    const std::size_t begin = at;
     at += kSubmessageHeaderBytes;
     const bool is_rest = *length == 0 && id != kPad && id != kInfoTime;
     const std::size_t size = is_rest ? bytes.size() - at : *length;
@@ -186,7 +266,10 @@ std::optional<Datagram> read_datagram(Bytes bytes) {
         !read_submessage(id, flags, bytes.subspan(at, size), datagram, announcements))
       return std::nullopt;
     at += size;
+    if (id == kInfoSource)
+      sender_now().begin = begin;
   }
+  sender_now().end = at;
   if (at != bytes.size())
     return std::nullopt;
   return datagram;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -26,13 +27,16 @@ struct Datagram {
   std::optional<ParticipantAnnouncement> announcement;
   /// Further senders, after INFO_SRC: Cyclone DDS packs what the participants of a process send.
   std::vector<Datagram> others = {};
+  std::size_t begin = 0, end = 0;  ///< its part of the bytes, without the header
 };
 
 /// Reads hostile bytes: every length is checked. Understands the framing of RTPS 2.1 and later as
 /// Cyclone DDS 0.10.2 does.
 /// \return nothing for a datagram that no participant of ours sends and that is not to be heard:
 ///         broken, of too many senders, with an announcement that is broken, cut in pieces
-///         (DATA_FRAG), in more than two copies, or about another participant than its sender.
+///         (DATA_FRAG), in more than two copies, or about another participant than its sender; with
+///         an announcement or the end of an endpoint, or a sign of life, of another participant
+///         than its sender, or of a DDSI2 service, on whose lease Cyclone DDS makes others depend.
 std::optional<Datagram> read_datagram(std::span<const std::uint8_t> bytes);
 
 }  // namespace kinship::dds

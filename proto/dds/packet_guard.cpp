@@ -16,8 +16,9 @@
 #include "proto/dds/network_interface.hpp"
 #include "proto/types/failure.hpp"
 
-// Of dds/ddsi/ddsi_proxy_participant.h, which is no C++.
+// Of dds/ddsi/ddsi_proxy_participant.h and q_addrset.h, which are no C++.
 struct addrset;
+extern "C" void unref_addrset(addrset* addresses);
 
 namespace kinship::dds {
 namespace {
@@ -60,16 +61,26 @@ class OwnAddresses {
 /// The table and what was dropped. May be shared between threads.
 class GuardedPeers {
  public:
-  bool admits(std::span<const std::uint8_t> bytes, const PacketSource& source,
-              bool needs_identity) {
+  /// Takes out of the bytes of a datagram what is not to be heard: the parts of some senders, or
+  /// all. \return the size of the rest, B; 0 if nothing is to be heard.
+  std::size_t filter(std::span<std::uint8_t> bytes, const PacketSource& source,
+                     bool needs_identity) {
     const std::optional<Datagram> datagram = read_datagram(bytes);
     const auto now = Clock::now();
     const std::lock_guard lock(mutex_);
-    if (!take(datagram, source, needs_identity, now))
-      return false;
-    return std::ranges::all_of(datagram->others, [&](const Datagram& other) {
-      return take(other, source, needs_identity, now);
-    });
+    bool is_any_heard = take(datagram, source, needs_identity, now);
+    if (!datagram)
+      return 0;
+    std::size_t size = is_any_heard ? datagram->end : datagram->begin;
+    for (const Datagram& other : datagram->others) {
+      if (!take(other, source, needs_identity, now))
+        continue;
+      is_any_heard = true;
+      const auto part = bytes.subspan(other.begin, other.end - other.begin);
+      std::memmove(bytes.data() + size, part.data(), part.size());
+      size += part.size();
+    }
+    return is_any_heard ? size : 0;
   }
 
   std::optional<PeerTable::Peer> find(const GuidPrefix& prefix) {
@@ -172,14 +183,30 @@ PacketSource source_of(const msghdr& message) {
   return source;
 }
 
-/// Whether Cyclone DDS may see a datagram.
-bool is_admitted(const msghdr& message, ssize_t size) {
+/// What Cyclone DDS may see of a datagram of this size, B. Its caller is C: nothing is thrown, and
+/// without memory the datagram is lost, as datagrams may be.
+ssize_t admitted_size(const msghdr& message, ssize_t size) noexcept try {
   if (packet_guards == 0 || size <= 0 || message.msg_iovlen != 1)
-    return true;
+    return size;
   const iovec& buffer = message.msg_iov[0];
   const std::size_t read = std::min<std::size_t>(static_cast<std::size_t>(size), buffer.iov_len);
-  return peers().admits({static_cast<const std::uint8_t*>(buffer.iov_base), read},
-                        source_of(message), packet_guards_secured > 0);
+  const std::size_t rest = peers().filter({static_cast<std::uint8_t*>(buffer.iov_base), read},
+                                          source_of(message), packet_guards_secured > 0);
+  return rest == read ? size : static_cast<ssize_t>(rest);
+} catch (...) {
+  return 0;
+}
+
+/// Whether packets of this participant have been heard; Cyclone DDS also makes participants of
+/// what others say about them.
+bool has_announced_itself(const ddsi_guid& guid) {
+  GuidPrefix prefix{};
+  static_assert(sizeof guid.prefix == sizeof prefix);
+  for (std::size_t i = 0; i < std::size(guid.prefix.u); ++i) {
+    const std::uint32_t word = htonl(guid.prefix.u[i]);
+    std::memcpy(prefix.data() + i * sizeof word, &word, sizeof word);
+  }
+  return peers().find(prefix).has_value();
 }
 
 }  // namespace
@@ -198,14 +225,15 @@ extern "C" __attribute__((visibility("default"))) dds_return_t ddsrt_recvmsg(
   static const auto kBehind = reinterpret_cast<decltype(&ddsrt_recvmsg)>(
       dlsym(RTLD_NEXT, "ddsrt_recvmsg"));  // NOLINT: what dlsym is for
   const dds_return_t result = kBehind(socket, message, flags, received);
-  if (result != DDS_RETCODE_OK || kinship::dds::is_admitted(*message, *received))
+  if (result != DDS_RETCODE_OK || *received <= 0)
     return result;
-  *received = 0;
-  return DDS_RETCODE_NO_CONNECTION;
+  *received = kinship::dds::admitted_size(*message, *received);
+  return *received > 0 ? result : DDS_RETCODE_NO_CONNECTION;
 }
 
 /// In front of the function of this name in Cyclone DDS, which is called for each remote
-/// participant that it begins to hear.
+/// participant that it begins to hear, and also for what its packets say of others. Each has its
+/// own lease, and depends on no other participant (`privileged`).
 // NOLINTNEXTLINE(readability-function-size): its parameters are Cyclone DDS's
 extern "C" __attribute__((visibility("default"))) bool ddsi_new_proxy_participant(
     ddsi_domaingv* domain, const ddsi_guid* guid, std::uint32_t endpoints,
@@ -216,8 +244,15 @@ extern "C" __attribute__((visibility("default"))) bool ddsi_new_proxy_participan
       dlsym(RTLD_NEXT, "ddsi_new_proxy_participant"));  // NOLINT: what dlsym is for
   constexpr dds_duration_t kMaxLease =
       std::chrono::nanoseconds(kinship::dds::PeerTable::kMaxLease).count();
-  if (kinship::dds::packet_guards > 0)
+  if (kinship::dds::packet_guards > 0) {
+    if (!kinship::dds::has_announced_itself(*guid)) {
+      unref_addrset(data_addresses);
+      unref_addrset(discovery_addresses);
+      return false;
+    }
     lease = std::min(lease, kMaxLease);
+    privileged = nullptr;
+  }
   return kBehind(domain, guid, endpoints, privileged, data_addresses, discovery_addresses,
                  announced, lease, vendor, flags, time, sequence_number);
 }

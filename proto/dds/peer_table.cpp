@@ -86,29 +86,26 @@ PacketVerdict PeerTable::take_known(Entry& entry, const Datagram& datagram,
 
 PacketVerdict PeerTable::take_newcomer(const Datagram& datagram, const PacketSource& source,
                                        bool is_local, TimePoint now) {
-  if (peers_.size() >= (is_local ? kMaxPeers : kMaxPeersElsewhere))
-    return PacketVerdict::Full;
-  if (!overall_)
+  if (!overall_) {
     overall_.emplace(kOverallRate, now);
-  const auto address = by_address_.find(source.address);
-  if (address != by_address_.end()) {
-    if (address->second.peers >= kMaxPeersOfAddress)
-      return PacketVerdict::AddressFull;
-    const auto port = by_port_.find({source.address, source.port});
-    if (port != by_port_.end() && !port->second.has_token(now))
-      return PacketVerdict::PortRate;
-    if (!address->second.newcomers.has_token(now))
-      return PacketVerdict::AddressRate;
+    firsts_.emplace(kFirstRate, now);
   }
-  if (!is_local && !overall_->has_token(now))
-    return PacketVerdict::OverallRate;
+  const bool is_first = is_local && asks_first(source.port, now);
+  const PacketVerdict verdict = judge_newcomer(source, is_local, now);
+  if (verdict != PacketVerdict::Heard && (!is_first || verdict == PacketVerdict::PortRate ||
+                                          peers_here_ >= kMaxPeersHere || !firsts_->has_token(now)))
+    return verdict;
   // Only who is admitted gets buckets: their number grows no faster than these refill.
+  const Bounds& bounds = is_local ? kBoundsHere : kBoundsElsewhere;
+  const Address address = address_of({source, is_local});
   OfAddress& of_address =
-      by_address_.try_emplace(source.address, OfAddress{{kAddressRate, now}}).first->second;
-  by_port_.try_emplace({source.address, source.port}, kPortRate, now).first->second.take(now);
-  of_address.newcomers.take(now);
+      by_address_.try_emplace(address, OfAddress{{bounds.address, now}}).first->second;
+  by_port_.try_emplace({source.address, source.port}, bounds.port, now).first->second.take(now);
+  (verdict == PacketVerdict::Heard ? of_address.newcomers : *firsts_).take(now);
   ++of_address.peers;
-  if (!is_local)
+  if (is_local)
+    ++peers_here_;
+  else
     overall_->take(now);
   const std::chrono::seconds lease = std::min(datagram.announcement->lease, kMaxLease);
   Entry entry{{source, is_local}, lease, now + lease + kAfterLease, {kPeerRate, now}};
@@ -117,12 +114,46 @@ PacketVerdict PeerTable::take_newcomer(const Datagram& datagram, const PacketSou
   return PacketVerdict::Heard;
 }
 
+PacketVerdict PeerTable::judge_newcomer(const PacketSource& source, bool is_local,
+                                        TimePoint now) const {
+  if (!is_local && peers_.size() - peers_here_ >= kMaxPeersElsewhere)
+    return PacketVerdict::Full;
+  const auto address = by_address_.find(address_of({source, is_local}));
+  if (address != by_address_.end()) {
+    if (address->second.peers >= (is_local ? kBoundsHere : kBoundsElsewhere).peers)
+      return PacketVerdict::AddressFull;
+    const auto port = by_port_.find({source.address, source.port});
+    if (port != by_port_.end() && !port->second.has_token(now))
+      return PacketVerdict::PortRate;
+    if (!address->second.newcomers.has_token(now))
+      return PacketVerdict::AddressRate;
+  }
+  return is_local || overall_->has_token(now) ? PacketVerdict::Heard : PacketVerdict::OverallRate;
+}
+
+/// Whether no newcomer has asked from this port of this machine for half a minute.
+bool PeerTable::asks_first(std::uint16_t port, TimePoint now) {
+  if (now - cleared_ >= std::chrono::seconds(30)) {
+    cleared_ = now;
+    asked_.reset();
+  }
+  const bool is_first = !asked_[port];
+  asked_[port] = true;
+  return is_first;
+}
+
+/// The address that a participant counts for.
+PeerTable::Address PeerTable::address_of(const Peer& peer) {
+  return peer.is_local ? Address{} : peer.source.address;
+}
+
 void PeerTable::sweep(TimePoint now) {
   swept_ = now;
   std::erase_if(peers_, [&](const auto& each) {
     if (each.second.expires >= now)
       return false;
-    --by_address_.at(each.second.peer.source.address).peers;
+    --by_address_.at(address_of(each.second.peer)).peers;
+    peers_here_ -= each.second.peer.is_local ? 1 : 0;
     return true;
   });
   std::erase_if(by_port_, [&](const auto& each) { return each.second.is_full(now); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -56,7 +57,7 @@ enum class PacketVerdict {
   AddressRate,      ///< ... of its address
   OverallRate,      ///< ... of all addresses of other machines
   PeerRate,         ///< an announcement of a known participant beyond its rate
-  AddressFull,      ///< a newcomer beyond the participants of one address
+  AddressFull,      ///< a newcomer beyond the participants of one address, or of this machine
   Full              ///< a newcomer beyond the participants in all
 };
 inline constexpr std::size_t kPacketVerdicts = 11;
@@ -64,17 +65,26 @@ inline constexpr std::size_t kPacketVerdicts = 11;
 /// The remote participants that a server hears, by GUID prefix: each at the address of its first
 /// announcement. Decides about every datagram, in bounded memory. Newcomers are admitted at rates
 /// by address and port, by address and, from other machines, overall: a flood from one source
-/// leaves those of others their share. Not to be shared between threads; time is passed in.
+/// leaves those of others their share. This machine's addresses count as one. Not to be shared
+/// between threads; time is passed in.
 class PeerTable {
  public:
   using TimePoint = TokenBucket::TimePoint;
 
-  static constexpr std::size_t kMaxPeers = 4096;
-  static constexpr std::size_t kMaxPeersOfAddress = 1024;
-  /// On other machines: the rest is this machine's.
-  static constexpr std::size_t kMaxPeersElsewhere = kMaxPeers - kMaxPeersOfAddress;
-  static constexpr TokenBucket::Rate kPortRate{16, 64}, kAddressRate{40, 128},
-      kOverallRate{100, 512}, kPeerRate{4, 8};
+  /// Newcomers of one port, of one address, and how many of an address may be known.
+  struct Bounds {
+    TokenBucket::Rate port, address;
+    std::size_t peers;
+  };
+  static constexpr Bounds kBoundsElsewhere{{16, 64}, {40, 128}, 1024};
+  /// Of all addresses of this machine together: the clients of a server that has started anew come
+  /// back at once, and its kernel bounds a flood. Who asks for the first time from its port has
+  /// further places and a rate of their own, so that others cannot keep it out.
+  static constexpr Bounds kBoundsHere{{16, 256}, {40, 1152}, 1536};
+  static constexpr std::size_t kMaxPeersHere = 2048;
+  static constexpr std::size_t kMaxPeersElsewhere = 3072;  ///< on other machines
+  static constexpr std::size_t kMaxPeers = kMaxPeersHere + kMaxPeersElsewhere;
+  static constexpr TokenBucket::Rate kOverallRate{100, 512}, kFirstRate{40, 256}, kPeerRate{4, 8};
   /// A participant that announces a longer lease has this one.
   static constexpr std::chrono::seconds kMaxLease{15};
 
@@ -115,13 +125,19 @@ class PeerTable {
                            bool is_local, TimePoint now);
   PacketVerdict take_newcomer(const Datagram& datagram, const PacketSource& source, bool is_local,
                               TimePoint now);
+  PacketVerdict judge_newcomer(const PacketSource& source, bool is_local, TimePoint now) const;
+  static Address address_of(const Peer& peer);
+  bool asks_first(std::uint16_t port, TimePoint now);
   void sweep(TimePoint now);
 
   std::unordered_map<GuidPrefix, Entry, PrefixHash> peers_;
   std::map<Address, OfAddress> by_address_;
   std::map<std::pair<Address, std::uint16_t>, TokenBucket> by_port_;
   std::optional<TokenBucket> overall_;
-  TimePoint swept_{};
+  std::size_t peers_here_ = 0;
+  std::bitset<65'536> asked_;  // ports of this machine, since cleared_
+  std::optional<TokenBucket> firsts_;
+  TimePoint swept_{}, cleared_{};
 };
 
 }  // namespace kinship::dds

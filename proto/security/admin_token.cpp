@@ -1,13 +1,17 @@
 #include "proto/security/admin_token.hpp"
 
+#include <fcntl.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <span>
 #include <utility>
 
+#include "proto/files/file.hpp"
 #include "proto/security/private_files.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/hex.hpp"
@@ -31,11 +35,12 @@ std::string random_text() { return to_hex(random_bytes<kRandomBytes>()); }
 
 /// \param random  text of the random bytes.
 std::string proof_with(const Digest& token, std::string_view challenge, const std::string& random,
-                       const AdminRequest& request) {
+                       const Uuid& client_id, const AdminRequest& request) {
   const Digest body = Sha256()
                           .add(std::string_view("kinship admin proof 1"))
                           .add(challenge)
                           .add(std::string_view(random))
+                          .add(std::string_view(client_id.text()))
                           .add(static_cast<std::uint64_t>(request.verb))
                           .add(std::string_view(request.argument))
                           .add(std::string_view(request.robot))
@@ -51,15 +56,34 @@ bool are_equal(const std::string& one, const std::string& other) {
   return one.size() == other.size() && CRYPTO_memcmp(one.data(), other.data(), one.size()) == 0;
 }
 
+/// The beginning of a file, if nobody else can have read or written it.
+std::string read_own_file(const std::filesystem::path& file) {
+  const auto refuse = [&file](const std::string& why) {
+    throw Failure(ErrorCode::InvalidInput, file.string() + ": " + why);
+  };
+  try {
+    const files::File open(file, O_RDONLY | O_NONBLOCK);  // a FIFO is not waited for
+    struct stat status {};
+    if (fstat(open.descriptor(), &status) != 0 || !S_ISREG(status.st_mode))
+      refuse("is no file with a token");
+    if (status.st_uid != geteuid() && status.st_uid != 0)
+      refuse("belongs to user " + std::to_string(status.st_uid) +
+             ", who knows this token: a token belongs to the user that reads it, or to root");
+    if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+      refuse("others than its owner may read this token: chmod 600, or remove it for a new one");
+    std::string text(256, '\0');
+    text.resize(open.read(text.data(), text.size(), 0));
+    return text;
+  } catch (const files::FileError& error) {
+    throw Failure(error.reason() == ENOENT ? ErrorCode::NotFound : ErrorCode::Storage,
+                  file.string() + ": cannot be read: " + error.reason_text());
+  }
+}
+
 }  // namespace
 
 Digest read_admin_token(const std::filesystem::path& file) {
-  std::string text = read_file(file);
-  struct stat status {};
-  if (stat(file.c_str(), &status) == 0 && (status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    throw Failure(ErrorCode::InvalidInput, file.string() +
-                                               ": others than its owner may read this token: "
-                                               "chmod 600, or remove it for a new one");
+  std::string text = read_own_file(file);
   while (!text.empty() && text.back() == '\n')
     text.pop_back();
   const std::optional<Digest> token = Digest::from_hex(text);
@@ -78,13 +102,19 @@ Digest make_admin_token(const std::filesystem::path& file) {
   if (std::error_code ignored; file.has_parent_path())
     std::filesystem::create_directories(file.parent_path(), ignored);  // the next step says why
   const Digest token{.bytes = random_bytes<32>()};
-  write_new_file(file, token.hex() + '\n', Readers::Owner);
+  try {
+    write_new_file(file, token.hex() + '\n', Readers::Owner);
+  } catch (const Failure& failure) {
+    if (failure.code() != ErrorCode::Conflict)
+      throw;
+    return read_admin_token(file);  // of a server that starts at the same time
+  }
   return token;
 }
 
 std::string prove_admin_token(const Digest& token, std::string_view challenge,
-                              const AdminRequest& request) {
-  return proof_with(token, challenge, random_text(), request);
+                              const Uuid& client_id, const AdminRequest& request) {
+  return proof_with(token, challenge, random_text(), client_id, request);
 }
 
 AdminTokenCheck::AdminTokenCheck(const Digest& token, TimePoint now)
@@ -96,8 +126,8 @@ std::string AdminTokenCheck::challenge(TimePoint now) {
   return current_.challenge;
 }
 
-TokenProof AdminTokenCheck::check(const AdminRequest& request, const std::string& request_key,
-                                  TimePoint now) {
+TokenProof AdminTokenCheck::check(const AdminRequest& request, const Uuid& client_id,
+                                  const std::string& request_key, TimePoint now) {
   constexpr std::size_t kRandomDigits = 2 * kRandomBytes;
   constexpr std::chrono::minutes kSentAgain{1};
   if (request.proof.empty())
@@ -108,7 +138,8 @@ TokenProof AdminTokenCheck::check(const AdminRequest& request, const std::string
   const std::lock_guard lock(mutex_);
   renew(now);
   for (Period* const period : {&current_, &last_}) {
-    if (!are_equal(proof_with(token_, period->challenge, random, request), request.proof))
+    if (!are_equal(proof_with(token_, period->challenge, random, client_id, request),
+                   request.proof))
       continue;
     const auto [use, is_new] = period->uses.try_emplace(random, Use{request_key, now});
     return is_new ||

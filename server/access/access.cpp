@@ -50,9 +50,10 @@ std::optional<Error> refusal_by_place(const Caller& caller, std::string_view act
                      "kinship --token FILE, a copy of the file that kinshipd names at its start; "
                      "kinshipd --security has certificates tell who may do it");
     case TokenProof::Wrong:
-      return refused(caller, act,
-                     "the proof of the token is wrong: another token, or a request that was sent "
-                     "before");
+      return refused(
+          caller, act,
+          "the proof of the token is wrong: another token, a request that was sent before, "
+          "or the server was started anew");
     case TokenProof::NotNeeded:
       break;
   }

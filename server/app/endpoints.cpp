@@ -72,7 +72,7 @@ void administer(service::AdminService& service, security::AdminTokenCheck* token
   const RowCursor begin = read_row_cursor(request.cursor).value_or_throw();
   Caller caller = answer.caller();
   if (token != nullptr && rule_of(request.verb).is(VerbRule::Changes))
-    caller.token = token->check(request, request_key_of(answer),
+    caller.token = token->check(request, answer.head().client_id, request_key_of(answer),
                                 security::AdminTokenCheck::TimePoint::clock::now());
   administer(service, for_rest(request, begin), begin, caller, answer);
 }

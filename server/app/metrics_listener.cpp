@@ -129,7 +129,6 @@ class MetricsListener::Implementation {
         page_(std::move(page)),
         port_(std::move(port)),
         retry_(port_.state_->context) {
-    accept();
     thread_ = std::thread([this] { run(); });
   }
 
@@ -141,28 +140,33 @@ class MetricsListener::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
  private:
+  static constexpr std::chrono::milliseconds kPause{200};
+
   void run() {
-    for (bool is_done = false; !is_done;)
+    while (!port_.state_->context.stopped())
       try {
+        accept();
         port_.state_->context.run();
-        is_done = true;
       } catch (const std::bad_alloc&) {  // of one connection, which ends; the others go on
-        accept_later();
+        std::this_thread::sleep_for(kPause);
       }
   }
 
   void accept() {
+    if (is_accepting_)
+      return;
     port_.state_->acceptor.async_accept([this](const beast::error_code& error, Tcp::socket socket) {
+      is_accepting_ = false;
       if (error)
         return accept_later();
       add(std::make_shared<Connection>(std::move(socket), limits_, answer_));
       accept();
     });
+    is_accepting_ = true;
   }
 
   /// After an error, such as no descriptor left, which the next one would find again at once.
   void accept_later() {
-    constexpr std::chrono::milliseconds kPause{200};
     retry_.expires_after(kPause);
     retry_.async_wait([this](const beast::error_code&) { accept(); });
   }
@@ -223,6 +227,7 @@ class MetricsListener::Implementation {
   std::deque<std::weak_ptr<Connection>> connections_;  // the oldest one first
   MetricsPort port_;                                   // the members above outlive its callbacks
   asio::steady_timer retry_;
+  bool is_accepting_ = false;
   std::thread thread_;  // last: uses all of the above
 };
 

@@ -399,8 +399,15 @@ std::string serving_fault(const ServerOptions& options) {
   if (std::string fault = store_option_fault(options); !fault.empty())
     return fault;
   const std::string insecurity = insecurity_of(options);
-  if (insecurity.empty() || options.insecure)
+  if (insecurity.empty())
     return {};
+  const bool has_place = !options.token_file.empty() || !is_database_url(options.store.string()) ||
+                         !default_store().empty();
+  if (options.insecure)
+    return has_place
+               ? ""
+               : "the server's token has no place, as neither XDG_STATE_HOME nor HOME is set: "
+                 "name a file for it with --token-file FILE";
   return insecurity +
          ". Make certificates ('kinshipd secure init FOLDER') and say --security FOLDER; or say "
          "--insecure if that is what you want";

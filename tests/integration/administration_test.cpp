@@ -2,13 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <optional>
+
 #include "client/link/admin_rows.hpp"
+#include "proto/dds/participant.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/types/limits.hpp"
 #include "tests/support/cell.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::administration_test {
@@ -74,6 +80,35 @@ TEST_F(Administrators, WhatWasRetiredIsNeverServedAgainAlsoIfTheServerDiesAtOnce
   EXPECT_EQ(exported.size(), 6U);  // the robot, and five attempts
   for (const std::string& line : exported)
     EXPECT_EQ(line.find(gone), std::string::npos);
+}
+
+TEST(AdministratorsWithAToken, AreHeardByAServerThatWasStartedAnew) {
+  const test::TemporaryDirectory directory;
+  const test::ReservedDomain domain;
+  const std::filesystem::path token = directory / "token";
+  const std::string configuration =
+      dds::cyclone_configuration({.domain = domain.number(), .role = dds::Role::Server});
+  std::optional<test::ServerProcess> server;
+  const auto start = [&] {
+    // As the configuration that is built in, but a server that is given one asks for its token.
+    setenv("CYCLONEDDS_URI", configuration.c_str(), 1);
+    server.emplace(
+        test::ServerProcess::Options{.store = directory / "fleet.db",
+                                     .domain = domain.number(),
+                                     .arguments = {"--insecure", "--token-file", token.string()}});
+    unsetenv("CYCLONEDDS_URI");
+  };
+  const AdminRequest change{.verb = AdminVerb::RenameRobot, .argument = "other", .robot = "none"};
+  start();
+  link::Client stranger({.domain = domain.number(), .token = {}, .has_outbox = false});
+  EXPECT_EQ(stranger.admin(change).value_or_throw().status, AdminStatus::Refused);
+  link::Client client({.domain = domain.number(), .token = token, .has_outbox = false});
+  const AdminReply before = client.admin(change).value_or_throw();
+  EXPECT_EQ(before.status, AdminStatus::NotFound) << before.message;
+  server->kill();
+  start();
+  const AdminReply after = client.admin(change).value_or_throw();
+  EXPECT_EQ(after.status, AdminStatus::NotFound) << after.message;
 }
 
 }  // namespace

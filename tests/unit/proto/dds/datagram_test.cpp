@@ -51,16 +51,19 @@ TEST(Datagram, WithoutAnAnnouncementTellsItsSender) {
 
 TEST(Datagram, TellsEachOfItsSenders) {
   Bytes bytes = test::announcement();
-  Bytes source(8);
-  source.insert(source.end(), 12, 7);
-  test::append(bytes, test::submessage(0x0c, 1, source));  // INFO_SRC
+  const std::size_t first_end = bytes.size();
   const GuidPrefix second{7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
+  test::append(bytes, test::source_submessage(second));
   test::append(bytes, test::announcement_submessage({.sender = second, .lease_s = 9}));
   const auto datagram = read_exactly(bytes);
   ASSERT_TRUE(datagram && datagram->announcement && datagram->others.size() == 1);
   EXPECT_EQ(datagram->others[0].sender, second);
   ASSERT_TRUE(datagram->others[0].announcement);
   EXPECT_EQ(datagram->others[0].announcement->lease, std::chrono::seconds(9));
+  EXPECT_EQ(datagram->begin, 20U);
+  EXPECT_EQ(datagram->end, first_end);
+  EXPECT_EQ(datagram->others[0].begin, first_end);
+  EXPECT_EQ(datagram->others[0].end, bytes.size());
   test::append(bytes, test::announcement_submessage({}));
   EXPECT_FALSE(read_exactly(bytes)) << "the first one's, by the second one";
 }
@@ -78,6 +81,42 @@ TEST(Datagram, IsNotHeardIfItMightBeAnothersAnnouncement) {
   two_guids.insert(two_guids.end() - 4, guid.begin(), guid.end());
   two_guids.back() = 0;
   EXPECT_FALSE(read_exactly(two_guids));
+}
+
+TEST(Datagram, IsNotHeardIfOthersWouldDependOnItsSender) {
+  EXPECT_TRUE(read_exactly(test::announcement({.version_flags = 0x2c}))) << "as Cyclone DDS says";
+  EXPECT_FALSE(read_exactly(test::announcement({.version_flags = 0x3c}))) << "as a DDSI2 service";
+}
+
+TEST(Datagram, IsNotHeardIfItsStatusIsReadInTwoWays) {
+  Bytes bytes = test::announcement({.is_departure = true});
+  const Bytes status = {0x71, 0, 4, 0}, longer = {0x71, 0, 8, 0};
+  const auto at = std::search(bytes.begin(), bytes.end(), status.begin(), status.end());
+  ASSERT_NE(at, bytes.end());
+  std::ranges::copy(longer, at);
+  bytes.insert(at + 8, {0, 0, 0, 0});
+  bytes[20 + 12 + 2] += 4;  // the length of the announcement
+  EXPECT_FALSE(read_exactly(bytes));
+}
+
+TEST(Datagram, TellsOfItsSendersEndpointsAndLifeAlone) {
+  const GuidPrefix sender{9}, other{8};
+  const auto is_heard = [&](const GuidPrefix& about, std::uint8_t writer, std::uint8_t flags,
+                            std::uint8_t id = 0x15) {
+    Bytes bytes = test::rtps_header(sender);
+    test::append(bytes, test::told_of(about, writer, flags, id));
+    return read_exactly(bytes).has_value();
+  };
+  for (const std::uint8_t writer : Bytes{3, 4, 0})
+    for (const std::uint8_t flags : Bytes{1 | 4, 1 | 2 | 4, 1 | 2 | 8, 1 | 2}) {
+      EXPECT_TRUE(is_heard(sender, writer, flags)) << int(writer) << ' ' << int(flags);
+      EXPECT_FALSE(is_heard(other, writer, flags)) << int(writer) << ' ' << int(flags);
+    }
+  EXPECT_FALSE(is_heard(sender, 3, 1)) << "about nothing";
+  EXPECT_TRUE(is_heard(sender, 3, 1, 0x16)) << "a large announcement in fragments";
+  EXPECT_FALSE(is_heard(sender, 3, 1 | 2, 0x16)) << "an end is not large";
+  EXPECT_FALSE(is_heard(sender, 4, 1 | 4, 0x16)) << "nor a key";
+  EXPECT_FALSE(is_heard(sender, 0, 1, 0x16));
 }
 
 TEST(Datagram, IsNotHeardIfItIsCutAnywhere) {

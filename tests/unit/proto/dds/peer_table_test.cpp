@@ -94,7 +94,7 @@ TEST_F(PeerTableTest, AFloodOfManyPortsLeavesOtherAddressesTheirShare) {
   for (int ms = 0; ms < 20'000; ms += 2, now_ += milliseconds(2)) {
     const auto port = static_cast<std::uint16_t>(1024 + ms % 60'000);
     heard += announce(++who, PacketSource::ipv4({10, 0, 0, 9}, port)) == Heard ? 1 : 0;
-    ASSERT_LE(table_.size(), PeerTable::kMaxPeersOfAddress);
+    ASSERT_LE(table_.size(), PeerTable::kBoundsElsewhere.peers);
     ASSERT_LE(table_.buckets(), 1000U) << "they grow no faster than they refill";
   }
   EXPECT_GE(heard, 128 + 40 * 15);
@@ -148,11 +148,45 @@ TEST_F(PeerTableTest, HoldsNoMoreThanItsBounds) {
     }
   };
   EXPECT_EQ(fill(kElsewhere), AddressFull);
-  EXPECT_EQ(table_.size(), PeerTable::kMaxPeersOfAddress);
+  EXPECT_EQ(table_.size(), PeerTable::kBoundsElsewhere.peers);
   EXPECT_EQ(fill(PacketSource::ipv4({10, 0, 0, 10}, 1)), AddressFull);
   EXPECT_EQ(fill(PacketSource::ipv4({10, 0, 0, 11}, 1)), Full) << "elsewhere";
   EXPECT_EQ(table_.size(), PeerTable::kMaxPeersElsewhere);
   EXPECT_EQ(announce(++who, kHere), Heard);
+}
+
+TEST_F(PeerTableTest, TakesTheClientsOfThisMachineBackAtOnce) {
+  std::uint64_t who = 0;
+  for (std::uint16_t process = 0; process < 10; ++process)
+    for (int i = 0; i < 110; ++i)
+      ASSERT_EQ(announce(++who, PacketSource::ipv4({127, 0, 0, 1},
+                                                   static_cast<std::uint16_t>(50'000 + process))),
+                Heard)
+          << who;
+}
+
+TEST_F(PeerTableTest, CountsTheAddressesOfThisMachineAsOne) {
+  std::uint64_t who = 0;
+  for (int ms = 0; ms < 60'000; ++ms, now_ += milliseconds(1)) {
+    const auto port = static_cast<std::uint16_t>(1024 + ms);
+    const auto host = static_cast<std::uint8_t>(1 + ms % 200);
+    announce(++who, PacketSource::ipv4({127, 0, 0, host}, port), {.lease = seconds(15)});
+    ASSERT_LE(table_.size(), PeerTable::kMaxPeersHere);
+  }
+  for (int i = 0; i < 64; ++i)
+    EXPECT_EQ(announce(++who, kElsewhere), Heard);
+}
+
+TEST_F(PeerTableTest, AFloodOfManyPortsOfThisMachineLeavesFirstAskersTheirShare) {
+  std::uint64_t who = 0;
+  for (int ms = 0; ms < 60'000; ms += 2, now_ += milliseconds(2)) {
+    const auto port = static_cast<std::uint16_t>(40'000 + ms / 2 % 256);
+    announce(++who, PacketSource::ipv4({127, 0, 0, 1}, port), {.lease = seconds(15)});
+    if (ms % 200 == 0) {
+      const auto fresh = static_cast<std::uint16_t>(50'000 + ms / 200);
+      ASSERT_EQ(announce(++who, PacketSource::ipv4({127, 0, 0, 1}, fresh)), Heard) << ms;
+    }
+  }
 }
 
 TEST_F(PeerTableTest, TakesShortLivedClientsOfOneHost) {

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <thread>
+#include <vector>
 
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -15,16 +18,17 @@ using std::chrono::minutes;
 using std::chrono::seconds;
 
 const Digest kToken{.bytes = {1, 2, 3}};
+const Uuid kClient{.bytes = {7}};
 
 class AdminTokenTest : public testing::Test {
  protected:
   std::string proof(const Digest& token = kToken) {
-    return prove_admin_token(token, check_.challenge(now_), request_);
+    return prove_admin_token(token, check_.challenge(now_), kClient, request_);
   }
   TokenProof check(const std::string& proof, const std::string& key = "client 1") {
     AdminRequest shown = request_;
     shown.proof = proof;
-    return check_.check(shown, key, now_);
+    return check_.check(shown, kClient, key, now_);
   }
 
   AdminTokenCheck::TimePoint now_{std::chrono::hours(1)};
@@ -48,7 +52,7 @@ TEST_F(AdminTokenTest, IsShownForNoOtherRequest) {
     AdminRequest request = request_;
     change(request);
     request.proof = shown;
-    return check_.check(request, "client 1", now_);
+    return check_.check(request, kClient, "client 1", now_);
   };
   EXPECT_EQ(other([](auto& request) { request.verb = AdminVerb::RemoveRobot; }), TokenProof::Wrong);
   EXPECT_EQ(other([](auto& request) { request.argument = "other"; }), TokenProof::Wrong);
@@ -57,6 +61,10 @@ TEST_F(AdminTokenTest, IsShownForNoOtherRequest) {
   EXPECT_EQ(other([](auto& request) { request.cursor = "1"; }), TokenProof::Wrong);
   EXPECT_EQ(other([](auto& request) { request.limit = 7; }), TokenProof::Wrong);
   EXPECT_EQ(other([](auto& request) { request.deadline = seconds(1); }), TokenProof::Wrong);
+  AdminRequest request = request_;
+  request.proof = shown;
+  EXPECT_EQ(check_.check(request, {.bytes = {8}}, "client 1", now_), TokenProof::Wrong)
+      << "another sender";
   EXPECT_EQ(check(shown), TokenProof::Shown);
 }
 
@@ -69,7 +77,8 @@ TEST_F(AdminTokenTest, ProofsOfCapturedRequestsAreWorthNothing) {
   EXPECT_EQ(check(captured), TokenProof::Wrong);
   AdminRequest shown = request_;
   shown.proof = captured;
-  EXPECT_EQ(AdminTokenCheck(kToken, now_).check(shown, "client 1", now_), TokenProof::Wrong)
+  EXPECT_EQ(AdminTokenCheck(kToken, now_).check(shown, kClient, "client 1", now_),
+            TokenProof::Wrong)
       << "after a restart";
 }
 
@@ -99,6 +108,43 @@ TEST(AdminTokenFile, IsForItsOwnerAlone) {
   std::filesystem::permissions(file, std::filesystem::perms(0600));
   std::ofstream(file) << "none";
   EXPECT_THROW(read_admin_token(file), Failure);
+}
+
+TEST(AdminTokenFile, IsAFileOfItsReader) {
+  const test::TemporaryDirectory directory;
+  const std::filesystem::path file = directory / "token", pipe = directory / "pipe";
+  make_admin_token(file);
+  const auto fault_of = [](const std::filesystem::path& read) {
+    try {
+      read_admin_token(read);
+      return std::string();
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ErrorCode::InvalidInput);
+      return std::string(failure.what());
+    }
+  };
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_NE(fault_of(pipe).find("is no file with a token"), std::string::npos);
+  EXPECT_NE(fault_of(directory.path()).find("is no file with a token"), std::string::npos);
+  EXPECT_EQ(fault_of(file), "");
+  if (geteuid() != 0)
+    GTEST_SKIP() << "only root can give a file away";
+  ASSERT_EQ(chown(file.c_str(), 12'345, 12'345), 0);
+  EXPECT_NE(fault_of(file).find("belongs to user 12345"), std::string::npos);
+}
+
+TEST(AdminTokenFile, IsOneForServersThatStartAtTheSameTime) {
+  for (int round = 0; round < 20; ++round) {
+    const test::TemporaryDirectory directory;
+    std::vector<Digest> tokens(8);
+    {
+      std::vector<std::jthread> servers;
+      for (Digest& token : tokens)
+        servers.emplace_back([&] { token = make_admin_token(directory / "token"); });
+    }
+    for (const Digest& token : tokens)
+      ASSERT_EQ(token, tokens.front());
+  }
 }
 
 }  // namespace

@@ -167,6 +167,18 @@ TEST_F(Options, WhatCycloneDdsIsToldToOpenHasToBeSpeltOutToo) {
   EXPECT_EQ(insecurity_of(good({})), "");
 }
 
+TEST_F(Options, TheTokenOfAServerOverADatabaseHasAPlace) {
+  const std::vector<const char*> arguments = {"--interface", "eth0", "--insecure", "--store",
+                                              "postgresql://kinship@localhost/kinship"};
+  EXPECT_EQ(token_file_of(good(arguments)), "/state/kinship/experience.db.token");
+  const std::string home = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "/";
+  unsetenv("XDG_STATE_HOME");
+  unsetenv("HOME");
+  EXPECT_EQ(code(arguments), kWrongUsage);
+  EXPECT_NE(err_.str().find("--token-file FILE"), std::string::npos) << err_.str();
+  setenv("HOME", home.c_str(), 1);
+}
+
 TEST_F(Options, ArgumentsAreTaken) {
   const ServerOptions options = good({"--store", "fleet.db", "--domain", "7", "--workers", "4",
                                       "--interface", "eth0", "--insecure", "--log-level", "error"});
