@@ -1,21 +1,36 @@
 #include "proto/files/lock_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <utility>
 
 namespace kinship::files {
+namespace {
+
+bool has_name(const File& file, const std::filesystem::path& name) {
+  struct stat open {
+  }, named{};
+  return fstat(file.descriptor(), &open) == 0 && stat(name.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+}  // namespace
 
 LockFile::LockFile(const std::filesystem::path& file, mode_t mode)
     : file_(file, O_RDWR | O_CREAT | O_NOFOLLOW, mode) {}
 
 std::optional<LockFile> LockFile::try_acquire(const std::filesystem::path& file, mode_t mode) {
-  LockFile lock(file, mode);
-  if (!lock.file_.try_lock())
-    return std::nullopt;
-  lock.note_holder();
-  return lock;
+  while (true) {
+    LockFile lock(file, mode);
+    if (!lock.file_.try_lock())
+      return std::nullopt;
+    if (!has_name(lock.file_, file))
+      continue;  // its last holder removed it meanwhile
+    lock.note_holder();
+    return lock;
+  }
 }
 
 LockFile LockFile::acquire(const std::filesystem::path& file, mode_t mode) {

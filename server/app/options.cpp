@@ -186,8 +186,9 @@ void add_place_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
   app.add_flag(
          "--new-store", options.new_store,
-         "Begin a new SQLite file though the WAL, the high-water mark or the lock of one that "
-         "is gone are there, which are set aside; refused if there is a file")
+         "Begin a new SQLite file though files of one that is gone are there: its -wal, -shm and "
+         "-journal are set aside as FILE.replaced-<time>.*, its high-water mark is removed; "
+         "refused if there is a file")
       ->configurable(false);
   app.add_flag(
       "--require-synchronous", options.require_synchronous,

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <filesystem>
@@ -88,13 +89,31 @@ TEST_F(LostStoreFile, RemovedIsSavedBesideIt) {
   expect_all_in_the_end();
 }
 
-TEST_F(LostStoreFile, MovedIsSavedAndGoesOnWhenItIsBack) {
+TEST_F(LostStoreFile, RemovedIsSavedOnceThatCanBe) {
+  const pid_t server = store_.cell().server().pid();
+  rlimit before{};
+  ASSERT_EQ(prlimit(server, RLIMIT_NOFILE, nullptr, &before), 0);
+  const rlimit none{1, before.rlim_max};
+  ASSERT_EQ(prlimit(server, RLIMIT_NOFILE, &none, nullptr), 0);
+  lose([&] { fs::remove(store_.file()); }, "it was removed; nothing could be saved yet: ");
+  const std::string open_file = "/proc/" + std::to_string(server) + "/fd/";
+  EXPECT_NE(store_.cell().status().storage_message.find(open_file), std::string::npos);
+  ASSERT_EQ(prlimit(server, RLIMIT_NOFILE, &before, nullptr), 0);
+  EXPECT_TRUE(store_.status_becomes([](const ServerStatus& status) {
+    return status.storage_message.find("all of it is in '") != std::string::npos;
+  }));
+  restore_rescued();
+  expect_all_in_the_end();
+}
+
+TEST_F(LostStoreFile, MovedIsWholeThereAndGoesOnWhenItIsBack) {
   const fs::path elsewhere = store_.folder() / "old.db";
-  lose([&] { fs::rename(store_.file(), elsewhere); }, "it was moved, it is '" + elsewhere.string());
-  EXPECT_EQ(store_.named("fleet.db.rescued-").size(), 1U);
+  lose([&] { fs::rename(store_.file(), elsewhere); },
+       "it was moved, it is '" + elsewhere.string() + "' now; all of it is there");
+  EXPECT_EQ(store_.named("fleet.db.rescued-").size(), 0U);
   fs::rename(elsewhere, store_.file());
   expect_all_when_it_goes_on();
-  expect_says(store_.cell().log(), "' is the file again: reports are taken");
+  expect_says(store_.cell().log(), "' is the file again");
 }
 
 TEST_F(LostStoreFile, ReplacedIsSavedAndTheOtherFileIsLeftAlone) {

@@ -188,15 +188,18 @@ class SqliteSide : public Side {
   std::string served_by() override {
     if (lock_)
       return {};
+    const bool was_open = database_ != nullptr;
+    database_.reset();  // a lock in vain closes the file, which would drop SQLite's locks on it
     try {
       lock_.emplace(file_);
     } catch (const Failure& failure) {
       if (failure.code() != ErrorCode::Unavailable)
         throw;
+      if (was_open)
+        open_beside();
       return failure.what();
     }
     // A WAL that a server left is read once it is on the disk.
-    database_.reset();
     make_wal_durable(file_);
     open_beside();
     return {};
@@ -280,6 +283,7 @@ class SqliteSide : public Side {
     unlink((name_ + ".high-water-mark").c_str());
     if (unlink(name_.c_str()) != 0)
       refuse_store(file_, "cannot be removed");
+    unlink((name_ + ".lock").c_str());  // without the file it would say that the store is gone
     files::sync_folder_of(file_);
   }
 

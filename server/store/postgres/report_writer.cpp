@@ -12,6 +12,7 @@
 namespace kinship::store::postgres {
 namespace {
 
+constexpr std::chrono::milliseconds kPauseWithoutMemory{50};
 constexpr int kTries = 5;  // of a transaction that is in conflict with another server's
 
 std::string in_doubt(const std::string& why) {
@@ -82,6 +83,7 @@ void ReportWriter::run() {
     try {
       goes_on = run_once();
     } catch (const std::bad_alloc&) {  // who waits for the items has no answer, and asks again
+      std::this_thread::sleep_for(kPauseWithoutMemory);
     }
   const std::lock_guard lock(mutex_);
   has_ended_ = true;

@@ -39,14 +39,19 @@ namespace {
 
 /// The lock of a store that exists from now on.
 StoreLock lock_for_serving(const std::filesystem::path& file, bool is_new) {
-  if (is_new)
-    set_leftovers_aside(file);
-  else
-    require_no_leftovers(file);
-  if (!std::filesystem::exists(file)) {
+  const auto make = [&] {
+    if (std::filesystem::exists(file))
+      return;
     make_for_owner(file);
     files::sync_folder_of(file);  // a lock that outlives the file says that the file is gone
-  }
+  };
+  if (is_new)
+    return StoreLock(file, [&] {
+      set_leftovers_aside(file);
+      make();
+    });
+  require_no_leftovers(file);
+  make();  // before the lock: without a file that would be no new store after a crash
   return StoreLock(file);
 }
 
@@ -69,10 +74,12 @@ class SqliteStore : public SqlStore {
         options.log(line);
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
-        WriterOptions{.retry_after = options.retry_after,
-                      .checkpoint_bytes = options.checkpoint_bytes,
-                      .max_wal_bytes = options.max_wal_bytes,
-                      .look = [this](Database& writing) { watch_.require_named(writing); }});
+        WriterOptions{
+            .retry_after = options.retry_after,
+            .checkpoint_bytes = options.checkpoint_bytes,
+            .max_wal_bytes = options.max_wal_bytes,
+            .look = [this](Database& /*writing*/) { watch_.require_named(); },
+            .lost = [this](std::unique_ptr<Database> lost) { watch_.keep(std::move(lost)); }});
     scrub_ = std::make_unique<Scrub>(readers_, *writer_,
                                      ScrubOptions{options.scrub_bytes_per_s, options.log});
   }
@@ -87,10 +94,7 @@ class SqliteStore : public SqlStore {
   bool has_lost(const ConsistencyToken& token) const override { return history_.has_lost(token); }
 
   bool begin_epoch_if_lost(const ConsistencyToken& token) override {
-    auto item = std::make_unique<History::Renewal>(history_, token);
-    auto result = item->result();
-    writer_->submit(std::move(item));
-    return result.get();
+    return answer_to(*writer_, std::make_unique<History::Renewal>(history_, token));
   }
 
   StoreStatus status() const override {
@@ -264,25 +268,26 @@ class SqliteStore : public SqlStore {
   /// Through the writer's queue; returns when it is durable.
   template <typename Function>
   std::invoke_result_t<Function, Batch&> write(Function function) const {
-    auto item = std::make_unique<CallItem<Function>>(std::move(function));
-    auto result = item->result();
-    writer_->submit(std::move(item));
-    return result.get();
+    return answer_to(*writer_, std::make_unique<CallItem<Function>>(std::move(function)));
   }
 
   /// The rows; while the file is not the one that is named, as counted before.
   StoreStatus counted() const {
     const std::lock_guard lock(counted_mutex_);
     try {
-      const ReaderPool::Lease reader = readers_.lease();
-      counted_ = {};
-      count_rows(*reader, counted_);
-    } catch (const NotTheFile&) {  // or not any more: then it is back meanwhile
+      count();
     } catch (const Failure&) {
       if (!is_file_gone())
-        throw;
+        count();  // it may have been, and the store is open again
     }
     return counted_;
+  }
+  void count() const try {
+    const ReaderPool::Lease reader = readers_.lease();
+    StoreStatus now;  // an exception leaves no half of a count
+    count_rows(*reader, now);
+    counted_ = std::move(now);
+  } catch (const NotTheFile&) {  // or not any more: then it is back meanwhile
   }
   /// As of now: the writer looks before it answers.
   bool is_file_gone() const {

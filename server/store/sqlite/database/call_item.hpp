@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <future>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -9,6 +10,20 @@
 #include "server/store/sqlite/database/writer.hpp"
 
 namespace kinship::store {
+
+/// Waits for what an item of the writer's queue comes to.
+/// \throws Failure(Unavailable) if there was no memory for an answer, and what the item failed
+/// with.
+template <typename Item>
+auto answer_to(Writer& writer, std::unique_ptr<Item> item) {
+  auto result = item->result();
+  writer.submit(std::move(item));
+  try {
+    return result.get();
+  } catch (const std::future_error&) {  // the item ended without one
+    throw Failure(ErrorCode::Unavailable, "no memory");
+  }
+}
 
 /// A function on the write batch whose result a caller waits for.
 template <typename Function>

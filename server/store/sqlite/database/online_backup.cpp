@@ -27,7 +27,8 @@ OnlineBackup::~OnlineBackup() = default;
 bool OnlineBackup::step(int pages) {
   const int code = sqlite3_backup_step(backup_.get(), pages);
   // Busy or locked: nothing was copied; the next step tries again.
-  if (code == SQLITE_OK || code == SQLITE_BUSY || code == SQLITE_LOCKED)
+  is_held_up_ = code == SQLITE_BUSY || code == SQLITE_LOCKED;
+  if (code == SQLITE_OK || is_held_up_)
     return false;
   if (code != SQLITE_DONE)
     throw SqliteError(code, std::string("backup: ") + sqlite3_errstr(code));
@@ -45,11 +46,18 @@ void make_plain(const std::filesystem::path& copy) {
 
 void copy_database(Database& source, const std::filesystem::path& target,
                    const std::function<void(double)>& progress) {
-  constexpr int kPagesOfAStep = 1024;
+  constexpr int kPagesOfAStep = 1024, kTriesWhenHeldUp = 500, kPauseWhenHeldUp_ms = 10;
   {
     OnlineBackup backup(source, target);
-    while (!backup.step(kPagesOfAStep))
+    int held_up = 0;  // in succession
+    while (!backup.step(kPagesOfAStep)) {
+      held_up = backup.is_held_up() ? held_up + 1 : 0;
+      if (held_up > kTriesWhenHeldUp)
+        throw SqliteError(SQLITE_BUSY, "backup: another program holds a lock");
+      if (held_up > 0)
+        sqlite3_sleep(kPauseWhenHeldUp_ms);
       progress(backup.progress());
+    }
   }
   make_plain(target);
   progress(1);

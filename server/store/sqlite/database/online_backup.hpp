@@ -25,7 +25,8 @@ class OnlineBackup {
   /// Copies the next pages. Not to be called within a write transaction of the source.
   /// \return whether the copy is complete.
   bool step(int pages);
-  double progress() const;  ///< 0 to 1
+  bool is_held_up() const noexcept { return is_held_up_; }  ///< the last step met a lock
+  double progress() const;                                  ///< 0 to 1
 
  private:
   struct Finish {
@@ -33,12 +34,14 @@ class OnlineBackup {
   };
   Database target_;
   std::unique_ptr<sqlite3_backup, Finish> backup_;  // ends before its target closes
+  bool is_held_up_ = false;
 };
 
 /// Makes a finished copy one plain file, without a WAL beside it.
 void make_plain(const std::filesystem::path& copy);
 
 /// Copies a whole database, not written meanwhile, into an empty file and makes it plain.
+/// \throws SqliteError, also once another program has held a lock for five seconds.
 void copy_database(Database& source, const std::filesystem::path& target,
                    const std::function<void(double)>& progress);
 

@@ -5,8 +5,10 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "proto/files/file.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
@@ -16,10 +18,29 @@ namespace {
 
 constexpr std::size_t kBytesOfAStep = std::size_t{1} << 20U;
 
+/// A connection that has SQLite's lock, so that no other program writes to the WAL or begins it
+/// anew; empty if the file is damaged, so that nobody can.
+std::unique_ptr<Database> keep_writers_out(const std::filesystem::path& file) try {
+  constexpr int kPatience_ms = 5000;
+  auto held = std::make_unique<Database>(file, Access::ReadWrite);
+  sqlite3_db_config(&held->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  sqlite3_busy_timeout(&held->connection(), kPatience_ms);
+  held->execute("BEGIN IMMEDIATE");
+  return held;
+} catch (const SqliteError& error) {
+  if (!error.is_damage())
+    throw;
+  return nullptr;
+}
+
 }  // namespace
 
 void make_wal_durable(const std::filesystem::path& file) {
   const std::string name = file.string() + "-wal";
+  std::error_code none;
+  if (const auto size = std::filesystem::file_size(name, none); none || size == 0)
+    return;
+  const std::unique_ptr<Database> held = keep_writers_out(file);
   try {
     const files::File wal(name, O_RDWR | O_NOFOLLOW);  // SQLite's locks are on other files
     std::string bytes(kBytesOfAStep, '\0');

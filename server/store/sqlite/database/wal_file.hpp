@@ -10,8 +10,8 @@ namespace kinship::store {
 /// reads from memory data that is on no disk: without this the next connection would take such
 /// frames for durable and write behind them, and after a power cut the WAL would end before all
 /// later frames. To be called while no connection has the store open and before one opens it for
-/// writing.
-/// \throws Failure(Storage); the WAL reads as before then.
+/// writing. Other programs do not write meanwhile: it holds SQLite's lock.
+/// \throws Failure(Storage), SqliteError; the WAL reads as before then.
 void make_wal_durable(const std::filesystem::path& file);
 
 enum class CheckpointKind {

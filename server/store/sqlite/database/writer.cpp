@@ -6,6 +6,7 @@
 #include <exception>
 #include <optional>
 
+#include "proto/files/file.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
@@ -46,6 +47,15 @@ bool is_of_batch(const Failure& failure) {
 bool is_busy(const Failure& failure) {
   const auto* const error = dynamic_cast<const SqliteError*>(&failure);
   return error != nullptr && error->is_busy();
+}
+
+/// Whether the disk, or the file system, is what failed.
+bool is_of_disk(const Failure& failure) {
+  if (const auto* const error = dynamic_cast<const SqliteError*>(&failure)) {
+    const int code = error->sqlite_code() & 0xff;
+    return code == SQLITE_IOERR || code == SQLITE_FULL || code == SQLITE_CANTOPEN;
+  }
+  return dynamic_cast<const files::FileError*>(&failure) != nullptr;
 }
 
 constexpr std::chrono::milliseconds kPauseWithoutMemory{50};
@@ -303,11 +313,13 @@ void Writer::note_busy(const std::string& trouble) {
 void Writer::fail(const Failure& failure) {
   if (database_)  // nothing more is written by this connection, a checkpoint at its end neither
     sqlite3_db_config(&database_->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  if (database_ && options_.lost && dynamic_cast<const NotTheFile*>(&failure) != nullptr)
+    options_.lost(std::move(database_));
   database_.reset();
   const std::lock_guard lock(mutex_);
   trouble_ = failure.what();
-  if (dynamic_cast<const NotTheFile*>(&failure) != nullptr)
-    return;  // the disk did not fail
+  if (!is_of_disk(failure))
+    return;
   failures_.count += 1;
   failures_.last = trouble_;
 }

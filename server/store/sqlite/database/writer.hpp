@@ -76,9 +76,12 @@ struct WriterOptions {
   /// each commit, before its items are finished, and so often meanwhile; may be empty.
   std::function<void(Database&)> look = {};
   std::chrono::milliseconds look_every{250};
+  /// Takes the connection, when the look threw NotTheFile, to save what it has once the items are
+  /// finished; it is closed otherwise.
+  std::function<void(std::unique_ptr<Database>)> lost = {};
 };
 
-/// Failures of the disk so far.
+/// I/O errors, full disks, and files that could not be opened, so far.
 struct WriterFailures {
   std::uint64_t count = 0;
   std::string last;  ///< message of the last one

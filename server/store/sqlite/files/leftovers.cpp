@@ -45,7 +45,7 @@ void require_no_leftovers(const fs::path& located) {
                             ", but " + listed(found) +
                             (found.size() == 1 ? " is there" : " are there") +
                             ": put the store back (mount its disk, or 'kinshipd restore'), or "
-                            "begin a new one with --new-store, which sets these files aside");
+                            "begin a new one with --new-store");
 }
 
 void set_leftovers_aside(const fs::path& located) {

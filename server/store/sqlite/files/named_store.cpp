@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <utility>
 
 namespace kinship::store {
@@ -25,6 +26,26 @@ struct stat status_of(const files::File& file) {
   return status;
 }
 
+struct Id {
+  dev_t device = 0;
+  ino_t inode = 0;
+  bool operator==(const Id&) const = default;
+};
+
+/// Empty if the name leads to nothing.
+std::optional<Id> id_of(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0)
+    return Id{status.st_dev, status.st_ino};
+  if (errno != ENOENT && errno != ENOTDIR)
+    throw files::FileError(path, files::Step::Open, errno);
+  return std::nullopt;
+}
+
+std::string descriptor_of(const files::File& file) {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file.descriptor());
+}
+
 }  // namespace
 
 NamedStore::NamedStore(fs::path file, const files::File& open)
@@ -34,19 +55,14 @@ NamedStore::NamedStore(fs::path file, const files::File& open)
       folder_(file_.parent_path(), O_PATH | O_DIRECTORY),
       size_(open.size()) {}
 
-std::optional<NamedStore::Id> NamedStore::id_of(const fs::path& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0)
-    return std::nullopt;
-  return Id{status.st_dev, status.st_ino};
-}
-
 void NamedStore::note_opened() {
   size_ = open_->size();
   try {
     log_.emplace(wal_, O_RDONLY);  // SQLite's locks are on other files
-  } catch (const files::FileError&) {
+  } catch (const files::FileError& error) {
     log_.reset();  // the next look says that it is missing
+    if (error.reason() != ENOENT)
+      throw;
   }
 }
 
@@ -89,6 +105,13 @@ fs::path NamedStore::folder_now() const {
   const struct stat wanted = status_of(folder_);
   const fs::path place = place_of(folder_);
   return id_of(place) == Id{wanted.st_dev, wanted.st_ino} ? place : fs::path();
+}
+
+bool NamedStore::has_name() const { return status_of(*open_).st_nlink > 0; }
+
+std::string NamedStore::open_files() const {
+  return descriptor_of(*open_) + " (the file)" +
+         (log_ ? " and " + descriptor_of(*log_) + " (its WAL)" : "");
 }
 
 NamedStore::Finding NamedStore::look_at_file() {

@@ -31,6 +31,7 @@ enum class StoreChange {
 /// Whether the names of an open store (FILE, FILE-wal) still lead to the files that are open: to be
 /// asked again and again, each time a few calls of the system. A name may be taken from a file at
 /// any time, and then everything is written where nobody finds it. Used by one thread at a time.
+/// Methods throw FileError if the system does not say what a name leads to.
 class NamedStore {
  public:
   struct Finding {
@@ -50,16 +51,15 @@ class NamedStore {
   /// Before it is opened again: a WAL that is missing or empty is none, then.
   Finding look_closed();
 
+  /// Whether any name leads to the file: it was moved, not removed.
+  bool has_name() const;
+  /// "/proc/7/fd/3 (the file) and /proc/7/fd/9 (its WAL)": while this process lives.
+  std::string open_files() const;
+
   /// Where the folder of the store is now; empty if nowhere, or below a mount.
   std::filesystem::path folder_now() const;
 
  private:
-  struct Id {
-    dev_t device = 0;
-    ino_t inode = 0;
-    bool operator==(const Id&) const = default;
-  };
-  static std::optional<Id> id_of(const std::filesystem::path& path);
   Finding look_at_file();
   bool is_truncated();
   bool is_whole_in_folder() const;

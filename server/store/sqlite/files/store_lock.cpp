@@ -46,8 +46,10 @@ std::string holder_of(const files::File& file) {
   return "unknown";
 }
 
+fs::path lock_file_of(const fs::path& located) { return located.string() + ".lock"; }
+
 files::LockFile lock_name(const fs::path& located) try {
-  const std::string name = located.string() + ".lock";
+  const fs::path name = lock_file_of(located);
   if (auto lock = files::LockFile::try_acquire(name))
     return *std::move(lock);
   fail_held(located, files::LockFile::holder(name));
@@ -69,7 +71,19 @@ std::optional<files::File> lock_file(const fs::path& located) try {
 }  // namespace
 
 // The name first: a process that has the store open itself never gets as far as the file.
-StoreLock::StoreLock(const fs::path& located)
-    : name_(lock_name(located)), file_(lock_file(located)) {}
+StoreLock::StoreLock(const fs::path& located, const std::function<void()>& prepare)
+    : name_(located), file_((prepare(), lock_file(located))) {
+  if (file_)
+    name_.keep();
+}
+
+StoreLock::Name::Name(const fs::path& located)
+    : located_(located), is_new_(!fs::exists(lock_file_of(located))), lock_(lock_name(located)) {}
+
+StoreLock::Name::~Name() {
+  std::error_code error;
+  if (is_new_ && !fs::exists(located_, error) && !error)
+    fs::remove(lock_file_of(located_), error);  // while it is held
+}
 
 }  // namespace kinship::store

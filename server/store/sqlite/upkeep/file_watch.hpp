@@ -1,10 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/files/named_store.hpp"
@@ -14,8 +17,9 @@
 namespace kinship::store {
 
 /// Watches that what is written is the file that is named. Once it is not, nothing more is read or
-/// written until the file is back, and what the open connection still reads is saved as
-/// FILE.rescued-<time> beside the store. May be shared between threads, except methods of the
+/// written until the file is back, and what the lost connection still reads is saved: in the file
+/// itself if that has a name, else as FILE.rescued-<time> beside the store, tried again every few
+/// seconds until there is room. May be shared between threads, except methods of the
 /// writer's thread.
 class FileWatch {
  public:
@@ -23,14 +27,18 @@ class FileWatch {
   /// \param log  takes a line when the file is gone, saved, and back; may be empty.
   FileWatch(std::filesystem::path file, const StoreLock& lock, ReaderPool& readers,
             std::function<void(std::string_view)> log);
+  FileWatch(const FileWatch&) = delete;
+  FileWatch& operator=(const FileWatch&) = delete;
+  ~FileWatch();  ///< a last try to save
 
   /// On the writer's thread: the store is open for writing, as new or again.
   void note_opened();
-  /// On the writer's thread, outside of any transaction.
-  /// \param writer  the connection that writes; to be closed without a checkpoint on a throw.
-  /// \throws NotTheFile once a name leads elsewhere, after saving.
-  void require_named(Database& writer);
-  /// The same before the store is opened again.
+  /// On the writer's thread.
+  /// \throws NotTheFile once a name leads elsewhere; then the connection is for keep().
+  void require_named();
+  /// Takes a connection that shall write no more, and makes no checkpoint when it closes.
+  void keep(std::unique_ptr<Database> lost);
+  /// The same before the store is opened again; saves first what the connection has.
   void require_named_closed();
 
   /// Empty while all is well; else the sentence that status and log say.
@@ -38,15 +46,19 @@ class FileWatch {
 
  private:
   void tell(const NamedStore::Finding& found, const std::string& saved);
-  std::string save(Database& writer, const NamedStore::Finding& found);
-  std::string copy(Database& writer, StoreChange change);
+  void save_lost(const NamedStore::Finding& found);
+  std::string save(const NamedStore::Finding& found);
+  std::string copy(StoreChange change);
+  std::string copy_into(const std::vector<std::filesystem::path>& folders, StoreChange change);
   void log(const std::string& line) const;
 
   const std::filesystem::path file_;
   ReaderPool& readers_;
   const std::function<void(std::string_view)> log_;
-  NamedStore named_;   // of the writer's thread, as is saved_
-  std::string saved_;  // what was saved, and what to do
+  NamedStore named_;                                  // of the writer's thread, as is saved_
+  std::string saved_;                                 // what was saved, and what to do
+  std::unique_ptr<Database> lost_;                    // until what it has is saved
+  std::chrono::steady_clock::time_point next_try_{};  // to save it
   mutable std::mutex mutex_;
   std::string trouble_;  // guarded by mutex_
 };

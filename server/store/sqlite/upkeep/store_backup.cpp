@@ -24,10 +24,7 @@ constexpr int kPagesOfASync = 8192;  // so that no step meets more dirty pages t
 
 template <typename Function>
 std::invoke_result_t<Function, Database&> between_batches(Writer& writer, Function function) {
-  auto item = std::make_unique<AfterCommitItem<Function>>(std::move(function));
-  auto result = item->result();
-  writer.submit(std::move(item));
-  return result.get();
+  return answer_to(writer, std::make_unique<AfterCommitItem<Function>>(std::move(function)));
 }
 
 /// The steps of one backup. The connection owns their state, so that it can close at any time; then

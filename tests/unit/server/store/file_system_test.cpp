@@ -1,5 +1,6 @@
 #include "server/store/sqlite/files/file_system.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/magic.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <cerrno>
 
 #include "proto/types/failure.hpp"
+#include "server/store/sqlite/files/named_store.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/files/store_lock.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -71,6 +73,35 @@ TEST(FileSystem, OneProcessHasAStoreAtATime) {
                                                       std::to_string(getpid()));
   EXPECT_NE(refusal_of("/proc/kinship/s.db", lock).find("file '/proc/kinship/s.db.lock': "),
             std::string::npos);
+}
+
+TEST(FileSystem, ALockInVainLeavesNoSignOfAStore) {
+  const test::TemporaryDirectory directory;
+  const std::filesystem::path file = directory / "s.db", lock_file = directory / "s.db.lock";
+  const auto fail = [](const std::filesystem::path& path) {
+    return StoreLock(path, [] { throw Failure(ErrorCode::Storage, "no room"); });
+  };
+  EXPECT_EQ(refusal_of(file, fail), "no room");
+  EXPECT_FALSE(std::filesystem::exists(lock_file));
+  {
+    const StoreLock made(file, [&] { make_for_owner(file); });
+  }
+  EXPECT_TRUE(std::filesystem::exists(lock_file));
+  std::filesystem::remove(file);
+  { const StoreLock again(file); }
+  EXPECT_TRUE(std::filesystem::exists(lock_file)) << "that of a store that is gone";
+}
+
+TEST(FileSystem, WhatANameLeadsToIsUnknownUnlessTheSystemSays) {
+  const test::TemporaryDirectory directory;
+  const std::filesystem::path file = directory / "s.db";
+  make_for_owner(file);
+  const files::File open(file, O_RDONLY);
+  NamedStore named(file, open);
+  std::filesystem::remove(file);
+  EXPECT_EQ(named.look().change, StoreChange::FileGone);
+  std::filesystem::create_symlink(file, file);
+  EXPECT_THROW(static_cast<void>(named.look()), files::FileError);
 }
 
 }  // namespace

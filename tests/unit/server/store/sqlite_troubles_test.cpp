@@ -120,6 +120,7 @@ TEST_F(SqliteTroubles, ANewerSchemaEndsEveryWrite) {
   const StoreStatus status = store_->status();
   EXPECT_FALSE(status.writable);
   EXPECT_NE(status.message.find("this binary knows up to"), std::string::npos) << status.message;
+  EXPECT_EQ(status.message.find("failures of the disk"), std::string::npos) << status.message;
   EXPECT_EQ(status.attempts, 1U);
   EXPECT_EQ(status.robots, 1U);
 }

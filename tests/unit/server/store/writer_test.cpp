@@ -7,6 +7,7 @@
 #include <future>
 #include <optional>
 
+#include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -161,6 +162,23 @@ TEST_F(WriterTest, GoesOnWithoutMemoryForOneItem) {
   }
   EXPECT_EQ(rows(), 2);
   EXPECT_EQ(w->trouble(), "");
+}
+
+TEST_F(WriterTest, WhoWaitsForAnAnswerWithoutMemoryIsToldSo) {
+  const auto make = [](Batch&) { return 1; };
+  class Unanswered : public CallItem<decltype(make)> {
+   public:
+    using CallItem::CallItem;
+    void finish(const Error*) override { throw std::bad_alloc(); }
+  };
+  const auto w = writer(connect());
+  try {
+    static_cast<void>(answer_to(*w, std::make_unique<Unanswered>(make)));
+    FAIL() << "there was an answer";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Unavailable);
+    EXPECT_STREQ(failure.what(), "no memory");
+  }
 }
 
 TEST_F(WriterTest, CommitsTogetherWhatWaitedTogetherUpToTheCap) {
