@@ -133,7 +133,8 @@ TEST_P(DiscoveryFlood, KeepsNoNewcomerWaiting) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, DiscoveryFlood,
-    testing::Values(Flood{"OneSocket", 500}, Flood{"OneSocketAtASecuredServer", 200, true},
+    testing::Values(Flood{"OneSocket", 500},
+                    Flood{"OneSocketAtASecuredServer", 200, true, "127.0.0.1", 1, 16},
                     Flood{"ManyPortsOfAnotherAddress", 500, false, "127.0.0.2", 256, 24},
                     Flood{"ManyPortsOfTheNewcomersAddress", 500, false, "127.0.0.1", 256, 24}),
     [](const auto& flood) { return std::string(flood.param.name); });
