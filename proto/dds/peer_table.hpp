@@ -80,7 +80,7 @@ class PeerTable {
   /// Of all addresses of this machine together: the clients of a server that has started anew come
   /// back at once, and its kernel bounds a flood. Who asks for the first time from its port has
   /// further places and a rate of their own, so that others cannot keep it out.
-  static constexpr Bounds kBoundsHere{{16, 256}, {40, 1152}, 1536};
+  static constexpr Bounds kBoundsHere{{16, 256}, {40, 512}, 1536};
   static constexpr std::size_t kMaxPeersHere = 2048;
   static constexpr std::size_t kMaxPeersElsewhere = 3072;  ///< on other machines
   static constexpr std::size_t kMaxPeers = kMaxPeersHere + kMaxPeersElsewhere;
