@@ -14,8 +14,8 @@ constexpr std::size_t kMaxTriesBytes = 16'000'000;
 
 }  // namespace
 
-PutOffTries::PutOffTries(std::filesystem::path outbox, SetAsideRule rule)
-    : file_(std::move(outbox) / "put_off"), rule_(std::move(rule)) {}
+PutOffTries::PutOffTries(const std::filesystem::path& outbox, SetAsideRule rule)
+    : file_(outbox / "put_off"), rule_(std::move(rule)) {}
 
 void PutOffTries::load() {
   std::istringstream lines;

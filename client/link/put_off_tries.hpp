@@ -34,7 +34,7 @@ struct SetAsideRule {
 /// the holder of the sender lock; never throws: with a full disk a report is tried more often.
 class PutOffTries {
  public:
-  PutOffTries(std::filesystem::path outbox, SetAsideRule rule);
+  PutOffTries(const std::filesystem::path& outbox, SetAsideRule rule);
 
   void load();  ///< once the lock is held
   void save();  ///< if something has changed

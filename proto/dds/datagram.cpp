@@ -12,11 +12,11 @@ constexpr std::size_t kHeaderBytes = 20, kSubmessageHeaderBytes = 4, kPrefixAt =
 constexpr int kMaxAnnouncements = 2;  // packed: it comes, and goes at once
 
 enum SubmessageId : std::uint8_t {
-  kPad = 0x01,
-  kInfoTime = 0x09,
-  kInfoSource = 0x0c,
-  kData = 0x15,
-  kDataFragment = 0x16
+  Pad = 0x01,
+  InfoTime = 0x09,
+  InfoSource = 0x0c,
+  Data = 0x15,
+  DataFragment = 0x16
 };
 
 /// Numbers at places in bytes of one byte order; nothing beyond their end.
@@ -97,25 +97,25 @@ bool is_of(const GuidPrefix& sender, Bytes guid) {
 /// What the parameters of an announcement say. \return whether they are well formed and about
 /// `sender` itself.
 bool read_payload(Bytes payload, const GuidPrefix& sender, ParticipantAnnouncement& found) {
-  enum : std::uint16_t { kLease = 0x0002, kGuid = 0x0050, kIdentity = 0x1001, kVersion = 0x8007 };
+  enum : std::uint16_t { Lease = 0x0002, Guid = 0x0050, Identity = 0x1001, Version = 0x8007 };
   if (!is_parameter_list(payload))
     return false;
   const bool is_little = payload[1] == 3;
   found.lease = std::chrono::seconds(100);  // where none is said
   int guids = 0;
   const auto use = [&](std::uint16_t id, Bytes value) {
-    if (id == kGuid) {
+    if (id == Guid) {
       ++guids;
       return is_of(sender, value) && are(value.subspan(sender.size()), {0x00, 0x00, 0x01, 0xc1});
     }
-    if (id == kVersion) {
+    if (id == Version) {
       constexpr std::uint32_t kIsDdsi2 = 1U << 4U;
       const auto version_flags = Reader(value, is_little).number<std::uint32_t>(4);
       return version_flags && (*version_flags & kIsDdsi2) == 0;
     }
-    if (id == kIdentity)
+    if (id == Identity)
       found.has_identity = true;
-    if (id != kLease)
+    if (id != Lease)
       return true;
     const Reader reader(value, is_little);
     const auto seconds = reader.number<std::uint32_t>(0);
@@ -131,13 +131,13 @@ bool read_payload(Bytes payload, const GuidPrefix& sender, ParticipantAnnounceme
 
 /// Whether the payload is about one endpoint, of the sender.
 bool is_own_endpoint(Bytes payload, const GuidPrefix& sender) {
-  enum : std::uint16_t { kParticipantGuid = 0x0050, kEndpointGuid = 0x005a };
+  enum : std::uint16_t { ParticipantGuid = 0x0050, EndpointGuid = 0x005a };
   if (!is_parameter_list(payload))
     return false;
   bool is_found = false;
   const auto use = [&](std::uint16_t id, Bytes value) {
-    is_found = is_found || id == kEndpointGuid;
-    return (id != kParticipantGuid && id != kEndpointGuid) || is_of(sender, value);
+    is_found = is_found || id == EndpointGuid;
+    return (id != ParticipantGuid && id != EndpointGuid) || is_of(sender, value);
   };
   return walk_parameters(Reader(payload, payload[1] == 3), kEncapsulationBytes, use) && is_found;
 }
@@ -157,12 +157,12 @@ struct InlineQos {
 /// \return nothing if it is broken or has the key of another participant than the sender.
 std::optional<InlineQos> read_inline_qos(const Reader& reader, std::size_t at,
                                          const GuidPrefix& sender) {
-  enum : std::uint16_t { kKeyHash = 0x0070, kStatus = 0x0071 };
+  enum : std::uint16_t { KeyHash = 0x0070, Status = 0x0071 };
   InlineQos found;
   const auto use = [&](std::uint16_t id, Bytes value) {
-    if (id == kKeyHash)
+    if (id == KeyHash)
       return found.has_own_key = is_of(sender, value);
-    if (id != kStatus)
+    if (id != Status)
       return true;
     found.is_end = !value.empty() && (value.back() & 3U) != 0;
     return value.size() == 4;
@@ -177,18 +177,18 @@ std::optional<InlineQos> read_inline_qos(const Reader& reader, std::size_t at,
 /// A DATA_FRAG submessage. \return whether it may be heard: an end is never cut in pieces.
 bool read_fragment(Bytes body, std::uint8_t flags) {
   constexpr std::size_t kWriterAt = 8;
-  enum : std::uint8_t { kInlineQos = 2, kKey = 4 };
+  enum : std::uint8_t { InlineQos = 2, Key = 4 };
   const auto writer = Reader(body, true).bytes(kWriterAt, 4);
   if (!writer || is_announcer(*writer) || is_liveliness_writer(*writer))
     return false;
-  return !is_endpoint_announcer(*writer) || (flags & (kInlineQos | kKey)) == 0;
+  return !is_endpoint_announcer(*writer) || (flags & (InlineQos | Key)) == 0;
 }
 
 /// A DATA submessage. \return whether it may be heard.
 bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announcements) {
-  enum : std::uint8_t { kLittle = 1, kInlineQos = 2, kHasData = 4, kHasKey = 8 };
+  enum : std::uint8_t { Little = 1, InlineQos = 2, HasData = 4, HasKey = 8 };
   constexpr std::size_t kOffsetAt = 2, kWriterAt = 8, kFixedBytes = 20;
-  const Reader reader(body, (flags & kLittle) != 0);
+  const Reader reader(body, (flags & Little) != 0);
   const auto writer = reader.bytes(kWriterAt, 4);
   if (!writer)
     return false;
@@ -199,13 +199,13 @@ bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announce
   std::size_t at = kOffsetAt + 2 + offset.value_or(0);
   if (!offset || at < kFixedBytes || at > body.size())
     return false;
-  const auto qos = (flags & kInlineQos) != 0 ? read_inline_qos(reader, at, datagram.sender)
-                                             : std::optional(InlineQos{.end = at});
+  const auto qos = (flags & InlineQos) != 0 ? read_inline_qos(reader, at, datagram.sender)
+                                            : std::optional(InlineQos{.end = at});
   if (!qos)
     return false;
   const Bytes payload = body.subspan(qos->end);
   if (!is_announcement) {
-    if ((flags & (kHasData | kHasKey)) == 0)
+    if ((flags & (HasData | HasKey)) == 0)
       return qos->has_own_key;
     return is_liveliness_writer(*writer) ? is_own_liveliness(payload, datagram.sender)
                                          : is_own_endpoint(payload, datagram.sender);
@@ -221,7 +221,7 @@ bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announce
 bool read_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, Datagram& datagram,
                      int& announcements) {
   switch (id) {
-    case kInfoSource: {
+    case InfoSource: {
       constexpr std::size_t kMaxOthers = 255;
       const auto prefix = Reader(body, true).bytes(kPrefixAt, datagram.sender.size());
       if (!prefix || datagram.others.size() >= kMaxOthers)
@@ -230,10 +230,10 @@ bool read_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, Datagram& 
       std::ranges::copy(*prefix, datagram.others.emplace_back().sender.begin());
       return true;
     }
-    case kData:
+    case Data:
       return read_data(body, flags, datagram.others.empty() ? datagram : datagram.others.back(),
                        announcements);
-    case kDataFragment:
+    case DataFragment:
       return read_fragment(body, flags);
     default:
       return true;
@@ -256,17 +256,17 @@ std::optional<Datagram> read_datagram(Bytes bytes) {
   while (bytes.size() - at >= kSubmessageHeaderBytes) {
     const std::uint8_t id = bytes[at], flags = bytes[at + 1];
     const auto length = Reader(bytes, (flags & 1U) != 0).number<std::uint16_t>(at + 2);
-    if (id == kInfoSource)
+    if (id == InfoSource)
       sender_now().end = at;
     const std::size_t begin = at;
     at += kSubmessageHeaderBytes;
-    const bool is_rest = *length == 0 && id != kPad && id != kInfoTime;
+    const bool is_rest = *length == 0 && id != Pad && id != InfoTime;
     const std::size_t size = is_rest ? bytes.size() - at : *length;
     if (size > bytes.size() - at || (!is_rest && size % 4 != 0) ||
         !read_submessage(id, flags, bytes.subspan(at, size), datagram, announcements))
       return std::nullopt;
     at += size;
-    if (id == kInfoSource)
+    if (id == InfoSource)
       sender_now().begin = begin;
   }
   sender_now().end = at;
