@@ -186,7 +186,7 @@ bool read_fragment(Bytes body, std::uint8_t flags) {
 
 /// A DATA submessage. \return whether it may be heard.
 bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announcements) {
-  enum : std::uint8_t { Little = 1, InlineQos = 2, HasData = 4, HasKey = 8 };
+  enum : std::uint8_t { Little = 1, HasQos = 2, HasData = 4, HasKey = 8 };
   constexpr std::size_t kOffsetAt = 2, kWriterAt = 8, kFixedBytes = 20;
   const Reader reader(body, (flags & Little) != 0);
   const auto writer = reader.bytes(kWriterAt, 4);
@@ -199,7 +199,7 @@ bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announce
   std::size_t at = kOffsetAt + 2 + offset.value_or(0);
   if (!offset || at < kFixedBytes || at > body.size())
     return false;
-  const auto qos = (flags & InlineQos) != 0 ? read_inline_qos(reader, at, datagram.sender)
+  const auto qos = (flags & HasQos) != 0 ? read_inline_qos(reader, at, datagram.sender)
                                             : std::optional(InlineQos{.end = at});
   if (!qos)
     return false;
