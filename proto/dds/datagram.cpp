@@ -200,7 +200,7 @@ bool read_data(Bytes body, std::uint8_t flags, Datagram& datagram, int& announce
   if (!offset || at < kFixedBytes || at > body.size())
     return false;
   const auto qos = (flags & HasQos) != 0 ? read_inline_qos(reader, at, datagram.sender)
-                                            : std::optional(InlineQos{.end = at});
+                                         : std::optional(InlineQos{.end = at});
   if (!qos)
     return false;
   const Bytes payload = body.subspan(qos->end);
