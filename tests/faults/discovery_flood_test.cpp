@@ -38,6 +38,11 @@ struct Flood {
 };
 
 class DiscoveryFlood : public testing::TestWithParam<Flood> {
+ public:
+  DiscoveryFlood(const DiscoveryFlood&) = delete;
+  DiscoveryFlood& operator=(const DiscoveryFlood&) = delete;
+  ~DiscoveryFlood() override { unsetenv("KINSHIP_SECURITY"); }  // NOLINT(concurrency-mt-unsafe)
+
  protected:
   DiscoveryFlood() {
     if (GetParam().is_secured) {
@@ -52,8 +57,6 @@ class DiscoveryFlood : public testing::TestWithParam<Flood> {
     server_.emplace(ServerProcess::Options{
         .store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = arguments});
   }
-  ~DiscoveryFlood() override { unsetenv("KINSHIP_SECURITY"); }  // NOLINT(concurrency-mt-unsafe)
-
   static void secure(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "secure");
     const Answer done = run_to_end("kinshipd", arguments);
