@@ -29,6 +29,11 @@ using test::Bytes;
 
 /// What Cyclone DDS reads of datagrams that a socket of this machine sends.
 class PacketGuardTest : public testing::Test {
+ public:
+  PacketGuardTest(const PacketGuardTest&) = delete;
+  PacketGuardTest& operator=(const PacketGuardTest&) = delete;
+  ~PacketGuardTest() override { close(socket_); }
+
  protected:
   PacketGuardTest() {
     sockaddr_in address{};
@@ -40,8 +45,6 @@ class PacketGuardTest : public testing::Test {
     EXPECT_EQ(getsockname(socket_, generic, &size), 0);
     EXPECT_EQ(connect(socket_, generic, size), 0) << "to itself";
   }
-  ~PacketGuardTest() override { close(socket_); }
-
   std::optional<Bytes> heard_of(const Bytes& datagram) const {
     EXPECT_EQ(send(socket_, datagram.data(), datagram.size(), 0),
               static_cast<ssize_t>(datagram.size()));
