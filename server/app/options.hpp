@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "proto/types/exit_code.hpp"
-#include "server/app/check_sites.hpp"
+#include "server/app/check_sites_options.hpp"
 #include "server/app/migrate_store_options.hpp"
 #include "server/app/secure_options.hpp"
 
