@@ -56,6 +56,11 @@ std::optional<std::chrono::sys_seconds> read_time(const std::string& text) {
   return std::chrono::sys_seconds(std::chrono::seconds(timegm(&fields)));
 }
 
+std::chrono::sys_seconds written_at(const AuditEntry& entry) {
+  return std::chrono::sys_seconds(
+      std::chrono::floor<std::chrono::seconds>(std::chrono::milliseconds(entry.time_ms)));
+}
+
 std::optional<std::uint32_t> read_number(const std::string& text) {
   std::uint32_t number = 0;
   const char* const end = text.data() + text.size();
@@ -68,8 +73,8 @@ std::optional<std::uint32_t> read_number(const std::string& text) {
 /// \return nothing if the entry is about something else.
 std::optional<Revocation> revocation_of(const AuditEntry& entry) {
   Revocation revocation{.client = entry.target};
-  if (entry.verb == kRevoke)
-    revocation.revoked = read_time(entry.after);
+  if (entry.verb == kRevoke)  // also if its time cannot be read
+    revocation.revoked = read_time(entry.after).value_or(written_at(entry));
   else if (entry.verb == kReplace)
     revocation.oldest_accepted = read_number(entry.after).value_or(1);
   else if (entry.verb == kIssue)
@@ -158,10 +163,6 @@ void RevocationWatch::compare_records() {
   compared_at_ = now;
 }
 
-bool RevocationWatch::is_of_this_folder(const std::string& authority) const {
-  return authorities_.contains(authority);
-}
-
 /// Authorities that were ever trusted together are one folder's, one after the other.
 std::vector<AuditEntry> RevocationWatch::read_log() {
   constexpr std::size_t kPage = 1000;
@@ -177,14 +178,15 @@ std::vector<AuditEntry> RevocationWatch::read_log() {
     for (const AuditEntry& entry : entries) {
       const std::vector<std::string> together = words_of(entry.target);
       if (entry.verb == kTrust && std::ranges::any_of(together, [this](const std::string& one) {
-            return is_of_this_folder(one);
+            return authorities_.contains(one);
           }))
         for (const std::string& one : together)
           has_grown |= authorities_.insert(one).second;
     }
   }
   for (const AuditEntry& entry : entries)
-    if (const auto revocation = revocation_of(entry); revocation && is_of_this_folder(entry.before))
+    if (const auto revocation = revocation_of(entry);
+        revocation && authorities_.contains(entry.before))
       clients_.remember(*revocation);
   return entries;
 }

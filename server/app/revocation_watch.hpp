@@ -46,7 +46,6 @@ class RevocationWatch {
   void compare_records();
   std::vector<AuditEntry> read_log();  ///< \return all of the server
   void write_log();
-  bool is_of_this_folder(const std::string& authority) const;
   void revoke_again(const std::vector<security::Revocation>& put_back);
 
   const security::SecurityFolder folder_;
