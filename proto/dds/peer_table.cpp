@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
+#include <string_view>
 
 namespace kinship::dds {
 namespace {
@@ -12,6 +14,10 @@ constexpr std::array<std::uint8_t, 12> kIpv4Prefix = {0, 0, 0, 0, 0, 0, 0, 0, 0,
 
 /// Longer than Cyclone DDS keeps a participant that is silent, or that has said that it goes.
 constexpr std::chrono::seconds kAfterLease{5}, kAfterDeparture{5};
+
+/// So many that the ports of one flood are next to never taken for another client's.
+constexpr std::size_t kHashes = std::size_t{1} << 20U;
+constexpr std::size_t kPortStride = 13;  // ports of one address stay apart: 65 536 * 13 < kHashes
 
 }  // namespace
 
@@ -90,7 +96,7 @@ PacketVerdict PeerTable::take_newcomer(const Datagram& datagram, const PacketSou
     overall_.emplace(kOverallRate, now);
     firsts_.emplace(kFirstRate, now);
   }
-  const bool is_first = is_local && asks_first(source.port, now);
+  const bool is_first = is_local && asks_first(source, now);
   const PacketVerdict verdict = judge_newcomer(source, is_local, now);
   if (verdict != PacketVerdict::Heard && (!is_first || verdict == PacketVerdict::PortRate ||
                                           peers_here_ >= kMaxPeersHere || !firsts_->has_token(now)))
@@ -131,14 +137,19 @@ PacketVerdict PeerTable::judge_newcomer(const PacketSource& source, bool is_loca
   return is_local || overall_->has_token(now) ? PacketVerdict::Heard : PacketVerdict::OverallRate;
 }
 
-/// Whether no newcomer has asked from this port of this machine for half a minute.
-bool PeerTable::asks_first(std::uint16_t port, TimePoint now) {
-  if (now - cleared_ >= std::chrono::seconds(30)) {
+/// Whether no newcomer has asked from this address and port of this machine for half a minute.
+/// Another one of the same hash is taken for it.
+bool PeerTable::asks_first(const PacketSource& source, TimePoint now) {
+  if (asked_.empty() || now - cleared_ >= std::chrono::seconds(30)) {
     cleared_ = now;
-    asked_.reset();
+    asked_.assign(kHashes, false);
   }
-  const bool is_first = !asked_[port];
-  asked_[port] = true;
+  const std::string_view address(reinterpret_cast<const char*>(source.address.data()),
+                                 source.address.size());
+  const std::size_t hash =
+      (std::hash<std::string_view>()(address) + source.port * kPortStride) % kHashes;
+  const bool is_first = !asked_[hash];
+  asked_[hash] = true;
   return is_first;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "proto/dds/datagram.hpp"
 
@@ -127,7 +127,7 @@ class PeerTable {
                               TimePoint now);
   PacketVerdict judge_newcomer(const PacketSource& source, bool is_local, TimePoint now) const;
   static Address address_of(const Peer& peer);
-  bool asks_first(std::uint16_t port, TimePoint now);
+  bool asks_first(const PacketSource& source, TimePoint now);
   void sweep(TimePoint now);
 
   std::unordered_map<GuidPrefix, Entry, PrefixHash> peers_;
@@ -135,7 +135,7 @@ class PeerTable {
   std::map<std::pair<Address, std::uint16_t>, TokenBucket> by_port_;
   std::optional<TokenBucket> overall_;
   std::size_t peers_here_ = 0;
-  std::bitset<65'536> asked_;  // ports of this machine, since cleared_
+  std::vector<bool> asked_;  // by hash of an address of this machine and a port, since cleared_
   std::optional<TokenBucket> firsts_;
   TimePoint swept_{}, cleared_{};
 };

@@ -36,7 +36,7 @@ void keep_memory_reserve() {
 }
 
 void renew_memory_reserve() {
-  if (reserve != nullptr || refusals == 0)
+  if (reserve != nullptr || std::get_new_handler() != refuse)
     return;
   void* const room = take_room(2 * kReserve);
   if (room == nullptr)
@@ -47,6 +47,6 @@ void renew_memory_reserve() {
     munmap(room, kReserve);
 }
 
-std::uint64_t memory_refusals() { return refusals; }
+std::uint64_t take_memory_refusals() { return refusals.exchange(0); }
 
 }  // namespace kinship::runtime

@@ -12,6 +12,6 @@ void keep_memory_reserve();
 /// Takes the reserve again if there is more than enough room for it. To be called now and then.
 void renew_memory_reserve();
 
-std::uint64_t memory_refusals();  ///< so far
+std::uint64_t take_memory_refusals();  ///< since the last call
 
 }  // namespace kinship::runtime

@@ -73,12 +73,10 @@ void Service::expire(TimePoint now) {
 
 /// What was refused since the last look, whoever asked for it.
 void Service::note_memory() {
-  const std::uint64_t refusals = runtime::memory_refusals();
-  if (refusals != memory_refusals_)
+  if (const std::uint64_t refusals = runtime::take_memory_refusals(); refusals > 0)
     troubles_.add(runtime::Trouble::NoMemory,
                   "the system has no more memory for kinshipd; what asked for it was put off",
-                  refusals - memory_refusals_);
-  memory_refusals_ = refusals;
+                  refusals);
   runtime::renew_memory_reserve();
 }
 

@@ -77,7 +77,6 @@ class Service {
   const std::unique_ptr<store::Store> store_;
   mutable StoreStatusReader store_status_;
   runtime::ErrorCounters troubles_;
-  std::uint64_t memory_refusals_ = 0;  // as of the last look; of the thread that calls expire()
   Measures measures_;
   EventFeed events_;
   quotas::ClientQuotas clients_;

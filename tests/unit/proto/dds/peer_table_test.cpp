@@ -189,6 +189,19 @@ TEST_F(PeerTableTest, AFloodOfManyPortsOfThisMachineLeavesFirstAskersTheirShare)
   }
 }
 
+TEST_F(PeerTableTest, AFloodOfAnotherAddressOfThisMachineTakesNoPortFromFirstAskers) {
+  std::uint64_t who = 0;
+  for (int ms = 0; ms < 10'000; ms += 2, now_ += milliseconds(2))
+    announce(++who,
+             PacketSource::ipv4({127, 0, 0, 2}, static_cast<std::uint16_t>(40'000 + ms / 2 % 256)),
+             {.lease = seconds(15)});
+  for (std::uint16_t i = 0; i < 64; ++i)
+    ASSERT_EQ(
+        announce(++who, PacketSource::ipv4({127, 0, 0, 1}, static_cast<std::uint16_t>(40'000 + i))),
+        Heard)
+        << i;
+}
+
 TEST_F(PeerTableTest, TakesShortLivedClientsOfOneHost) {
   std::uint64_t who = 0;
   for (int i = 0; i < 64; ++i)  // at once
