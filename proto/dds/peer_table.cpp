@@ -17,7 +17,13 @@ constexpr std::chrono::seconds kAfterLease{5}, kAfterDeparture{5};
 
 /// So many that the ports of one flood are next to never taken for another client's.
 constexpr std::size_t kHashes = std::size_t{1} << 20U;
-constexpr std::size_t kPortStride = 13;  // ports of one address stay apart: 65 536 * 13 < kHashes
+
+std::size_t hash_of(const PacketSource& source) {
+  constexpr std::size_t kPortStride = 13;  // ports of one address stay apart: 65 536 * 13 < kHashes
+  const std::string_view address(reinterpret_cast<const char*>(source.address.data()),
+                                 source.address.size());
+  return (std::hash<std::string_view>()(address) + source.port * kPortStride) % kHashes;
+}
 
 }  // namespace
 
@@ -83,6 +89,8 @@ PacketVerdict PeerTable::take_known(Entry& entry, const Datagram& datagram,
     entry.announcements.take(now);
     if (datagram.announcement->is_departure) {
       entry.expires = now + kAfterDeparture;
+      if (entry.peer.is_local && !asked_.empty())
+        asked_[hash_of(entry.peer.source)] = false;
       return PacketVerdict::Heard;
     }
   }
@@ -137,17 +145,14 @@ PacketVerdict PeerTable::judge_newcomer(const PacketSource& source, bool is_loca
   return is_local || overall_->has_token(now) ? PacketVerdict::Heard : PacketVerdict::OverallRate;
 }
 
-/// Whether no newcomer has asked from this address and port of this machine for half a minute.
-/// Another one of the same hash is taken for it.
+/// Whether no newcomer has asked from this address and port of this machine for half a minute, but
+/// those that have said that they go.
 bool PeerTable::asks_first(const PacketSource& source, TimePoint now) {
   if (asked_.empty() || now - cleared_ >= std::chrono::seconds(30)) {
     cleared_ = now;
     asked_.assign(kHashes, false);
   }
-  const std::string_view address(reinterpret_cast<const char*>(source.address.data()),
-                                 source.address.size());
-  const std::size_t hash =
-      (std::hash<std::string_view>()(address) + source.port * kPortStride) % kHashes;
+  const std::size_t hash = hash_of(source);
   const bool is_first = !asked_[hash];
   asked_[hash] = true;
   return is_first;

@@ -138,8 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
     Of, DiscoveryFlood,
     testing::Values(Flood{"OneSocket", 500},
                     Flood{"OneSocketAtASecuredServer", 200, true, "127.0.0.1", 1, 16},
-                    Flood{"ManyPortsOfAnotherAddress", 500, false, "127.0.0.2", 256, 24},
-                    Flood{"ManyPortsOfTheNewcomersAddress", 500, false, "127.0.0.1", 256, 24}),
+                    Flood{"ManyPortsOfAnotherAddress", 500, false, "127.0.0.2", 256, 32},
+                    Flood{"ManyPortsOfTheNewcomersAddress", 500, false, "127.0.0.1", 256, 32}),
     [](const auto& flood) { return std::string(flood.param.name); });
 
 }  // namespace

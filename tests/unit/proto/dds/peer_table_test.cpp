@@ -202,6 +202,19 @@ TEST_F(PeerTableTest, AFloodOfAnotherAddressOfThisMachineTakesNoPortFromFirstAsk
         << i;
 }
 
+TEST_F(PeerTableTest, APortThatAParticipantHasLeftIsTheNextOnes) {
+  std::uint64_t who = 0;
+  const auto newcomer = PacketSource::ipv4({127, 0, 0, 1}, 50'000);
+  for (int ms = 0; ms < 20'000; ms += 2, now_ += milliseconds(2)) {
+    const auto port = static_cast<std::uint16_t>(40'000 + ms / 2 % 256);
+    announce(++who, PacketSource::ipv4({127, 0, 0, 2}, port), {.lease = seconds(15)});
+    if (ms % 2'000 == 0) {
+      ASSERT_EQ(announce(++who, newcomer), Heard) << ms;
+      ASSERT_EQ(announce(who, newcomer, {.is_departure = true}), Heard);
+    }
+  }
+}
+
 TEST_F(PeerTableTest, TakesShortLivedClientsOfOneHost) {
   std::uint64_t who = 0;
   for (int i = 0; i < 64; ++i)  // at once
