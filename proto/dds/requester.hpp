@@ -9,16 +9,14 @@
 
 namespace kinship::dds {
 
-/// The client's side of a conversation. May be shared between threads: calls run side by side. Its
-/// entities are made at the first use: a program that needs one conversation does not announce
-/// four.
+/// The client's side of a conversation. May be shared between threads: calls run side by side.
 template <typename Conversation>
 class Requester {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// \param participant  has to outlive this.
-  /// \param client_id    of this process; replies are found by it.
+  /// \param client_id  of this process; replies are found by it.
+  /// \throws Failure(Internal) if an entity cannot be created.
   Requester(const Participant& participant, const Uuid& client_id);
   ~Requester();
   Requester(const Requester&) = delete;
@@ -29,11 +27,11 @@ class Requester {
   /// \return the reply; InvalidInput or TooLarge if the request breaks a rule, or if the role in
   ///         the participant's credentials may not use the conversation (the request is not sent);
   ///         Unavailable if no reply came until the deadline or cancel() was called; Internal if
-  ///         the reply breaks a rule, or an entity cannot be created.
+  ///         the reply breaks a rule.
   Result<typename Conversation::Reply> call(const typename Conversation::Request& request,
                                             Clock::time_point deadline);
 
-  /// Number of servers that have appeared since the first use, a restarted one again: a change of
+  /// Number of servers that have appeared since construction, a restarted one again: a change of
   /// the number shows a new server. Does not wait.
   std::uint64_t count_servers();
 

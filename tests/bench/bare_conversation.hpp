@@ -17,7 +17,8 @@ namespace kinship::bench {
 class Bare {
  public:
   Bare(const dds::Participant& participant, bool is_server)
-      : request_(topic(participant, kinship_wire_FetchRequest_desc, "bench/request")),
+      : participant_(participant.get()),
+        request_(topic(participant, kinship_wire_FetchRequest_desc, "bench/request")),
         reply_(topic(participant, kinship_wire_FetchReply_desc, "bench/reply")),
         reader_(dds_create_reader(participant.get(), is_server ? request_.get() : reply_.get(),
                                   is_server ? dds::request_qos().get() : dds::reply_qos().get(),
@@ -48,6 +49,24 @@ class Bare {
     }
   }
 
+  /// Waits until the other side is known in both directions.
+  void connect() {
+    const dds::Entity matched(dds_create_waitset(participant_), "waitset");
+    dds::require(dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS), "status mask");
+    dds::require(dds_set_status_mask(reader_.get(), DDS_SUBSCRIPTION_MATCHED_STATUS),
+                 "status mask");
+    for (const dds_entity_t entity : {writer_.get(), reader_.get()})
+      dds::require(dds_waitset_attach(matched.get(), entity, 0), "waitset");
+    dds_publication_matched_status_t there{};
+    dds_subscription_matched_status_t back{};
+    while (there.current_count == 0 || back.current_count == 0) {
+      dds_attach_t ready = 0;
+      dds_waitset_wait(matched.get(), &ready, 1, DDS_SECS(1));
+      dds::require(dds_get_publication_matched_status(writer_.get(), &there), "status");
+      dds::require(dds_get_subscription_matched_status(reader_.get(), &back), "status");
+    }
+  }
+
   void call(const FetchRequest& fetch) {
     auto request = codec::encode({Uuid{}, ++sequence_number_}, fetch).value_or_throw();
     dds_write(writer_.get(), &request.wire);
@@ -74,6 +93,7 @@ class Bare {
     return dds_waitset_wait(waitset_.get(), &ready, 1, DDS_SECS(1)) > 0;
   }
 
+  dds_entity_t participant_;
   dds::Entity request_, reply_, reader_, writer_, condition_, waitset_;
   std::uint64_t sequence_number_ = 0;
 };

@@ -13,6 +13,7 @@
 #include "tests/bench/figure.hpp"
 #include "tests/bench/learning_sets.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/processor.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -131,7 +132,8 @@ void cold_fetches(Fleet& fleet, bool of_all) {
     print({.name = (of_all ? "2000 paths for " : "500 paths for ") + target,
            .value = wall_s() - start_s,
            .unit = "s",
-           .budget = of_all ? 2.5 : 0.25,
+           .reference = time_at_best(of_all ? 175e9 : 17.5e9, 1),
+           .ratio_budget = 1,
            .note = description(distribution, fleet.cpu_s() - start_cpu_s)});
   }
 }
@@ -153,7 +155,8 @@ void new_placement(Fleet& fleet) {
   print({.name = "new placement of 100 paths with scenes",
          .value = 1e3 * median(times_s),
          .unit = "ms",
-         .budget = 30,
+         .reference = time_at_best(2.1e9, 1e-3),
+         .ratio_budget = 1,
          .note = description(distribution, median(cpu_s))});
 }
 

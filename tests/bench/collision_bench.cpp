@@ -80,10 +80,8 @@ void check(const std::string& robot) {
           .reference = fcl,
           .note = std::to_string(100 * colliding / static_cast<std::size_t>(kConfigurations)) +
                   " % colliding"};
-      if (only_free && together > 1) {
-        figure.budget = 3e6;
+      if (only_free && together > 1)
         figure.ratio_budget = 10;
-      }
       print(figure);
     }
   }

@@ -59,22 +59,54 @@ def state(bench):
             f"before, {bench['load_after']} after")
 
 
+def alone(bench):
+    """Why some rows have no reference."""
+    if "failure" in bench or all("reference" in figure for figure in bench["figures"]):
+        return ""
+    return f". Without a reference: {bench['alone'] or 'not said'}."
+
+
 INTRODUCTION = ("Medians, and least to greatest where there were several runs; a note is of the last run. References were "
                 "measured in the same runs. What other work the machine did shows in the load: the runs themselves bring "
                 "it to 1 or 2.")
 
 
+#: What a reader wants first: benchmark and figure.
+FIRST = [("planning", "panda, CPU time of a plan"),
+         ("planning-upright", "panda, CPU time of a plan"),
+         ("collision", "panda, near a start, side by side"),
+         ("proof-planning", "panda, CPU time of a plan"),
+         ("inverse", "panda"),
+         ("cold-fetch", "500 paths for panda"),
+         ("cached-fetch", "30 KB from memory, p50"),
+         ("durable-report", "durable reports, 16 clients"),
+         ("em", "EM iteration, K = 50, to scikit-learn"),
+         ("command", "kinship status, p50")]
+
+
+def first(document):
+    """Title and figure of each of FIRST that was measured."""
+    found = {(bench["bench"], figure["name"]): (bench["title"], figure)
+             for bench in document["benches"] for figure in bench["figures"]}
+    return [found[each] for each in FIRST if each in found]
+
+
+def table(headings, rows):
+    lines = ["| " + " | ".join(headings) + " |", "|---" * len(headings) + "|"]
+    return lines + ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+
+
 def markdown(document):
     lines = ["# What was measured", "", "Made by `deploy/bench`; do not edit.", ""]
     lines += [f"- {line}" for line in machine(document)]
+    lines += ["", *table(["Of", *HEADINGS[:-1]], [[title, *columns(figure)[:-1]] for title, figure in first(document)])]
     lines += ["", INTRODUCTION]
     for bench in document["benches"]:
-        lines += ["", f"## {bench['title']}", "", f"`deploy/bench {bench['bench']}`: {state(bench)}", ""]
+        lines += ["", f"## {bench['title']}", "", f"`deploy/bench {bench['bench']}`: {state(bench)}{alone(bench)}", ""]
         if "failure" in bench:
             lines.append(f"FAILED: {bench['failure']}")
             continue
-        lines += ["| " + " | ".join(HEADINGS) + " |", "|---" * len(HEADINGS) + "|"]
-        lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in columns(f)) + " |" for f in bench["figures"]]
+        lines += table(HEADINGS, [columns(figure) for figure in bench["figures"]])
     return "\n".join(lines) + "\n"
 
 
@@ -108,7 +140,7 @@ def html(document):
     parts += [f"<p>{markup.escape(line)}</p>" for line in machine(document)]
     parts.append(f"<p>{INTRODUCTION} A bar shows how much of its budget a figure uses; the mark is the budget.</p>")
     for bench in document["benches"]:
-        parts.append(f"<h2>{markup.escape(bench['title'])}</h2><p class='state'>{markup.escape(state(bench))}</p>")
+        parts.append(f"<h2>{markup.escape(bench['title'])}</h2><p class='state'>{markup.escape(state(bench) + alone(bench))}</p>")
         if "failure" in bench:
             parts.append(f"<p class='missed'>FAILED: {markup.escape(bench['failure'])}</p>")
             continue

@@ -21,55 +21,75 @@ import report
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "bench"
 
-Bench = collections.namedtuple("Bench", "name program arguments title repeats minutes is_long")
+Bench = collections.namedtuple("Bench", "name program arguments title repeats minutes is_long alone")
 
 
-def bench(name, program, title, arguments=(), repeats=3, minutes=5, is_long=False):
-    """minutes: after which a run has failed."""
-    return Bench(name, program, list(arguments), title, repeats, minutes, is_long)
+def bench(name, program, title, arguments=(), repeats=3, minutes=5, is_long=False, alone=""):
+    """minutes: after which a run has failed; alone: why rows have no reference, where some have none."""
+    return Bench(name, program, list(arguments), title, repeats, minutes, is_long, alone)
 
 
 BENCHES = [
     bench("em", "fit_bench", "EM, N = 72 160, d = 7, CPU time", ["em"]),
-    bench("fit", "fit_bench", "Fits, N = 72 160, d = 7, CPU time, and samples", ["fit"], repeats=1),
+    bench("fit", "fit_bench", "Fits, N = 72 160, d = 7, CPU time, and samples", ["fit"], repeats=1,
+          alone="a mixture is drawn from and fitted; no package chooses K by a prior as this does"),
     bench("scores", "fit_bench", "Held-out paths of bundles, mean log density, and fits", ["scores"], repeats=1),
     bench("inverse", "inverse_bench", "Inverse kinematics, L = 8, d = 0.2, reachable poses, one thread"),
-    bench("transfer", "transfer_bench", "Transfer between the five cobots, two threads"),
-    bench("cold-fetch", "cold_fetch_bench", "Distributions that have to be made, over DDS"),
-    bench("cached-fetch", "cached_fetch_bench", "Distributions from memory, over DDS"),
+    bench("transfer", "transfer_bench", "Transfer between the five cobots, two threads",
+          alone="the parts of the first row"),
+    bench("cold-fetch", "cold_fetch_bench", "Distributions that have to be made, over DDS",
+          alone="made anew stands beside where there is both"),
+    bench("cached-fetch", "cached_fetch_bench", "Distributions from memory, over DDS",
+          alone="the load that the rows below it have beside them"),
     bench("durable-report", "report_bench", "Durable reports of 8 KB"),
-    bench("postgres", "postgres_bench", "Durable reports of 8 KB into PostgreSQL", repeats=1),
-    bench("fleet", "fleet_bench", "Several servers over one PostgreSQL database, over DDS", repeats=1),
-    bench("site", "site_bench", "A site that catches up, with the memory on its processors and disk", ["shared"], repeats=1),
-    bench("site-apart", "site_bench", "A site that catches up, with the memory apart", ["apart"], repeats=1),
-    bench("secured", "secured_bench", "Security: fetches, reports, 100 clients after a restart", repeats=1),
+    bench("postgres", "postgres_bench", "Durable reports of 8 KB into PostgreSQL", repeats=1,
+          alone="PostgreSQL's own rate is the reference of the first rows"),
+    bench("fleet", "fleet_bench", "Several servers over one PostgreSQL database, over DDS", repeats=1,
+          alone="against one server of the same run, or a wait that a person feels"),
+    bench("site", "site_bench", "A site that catches up, with the memory on its processors and disk", ["shared"], repeats=1,
+          alone="against the line down in the same run"),
+    bench("site-apart", "site_bench", "A site that catches up, with the memory apart", ["apart"], repeats=1,
+          alone="against the line down in the same run"),
+    bench("secured", "secured_bench", "Security: fetches, reports, 100 clients after a restart", repeats=1,
+          alone="against no security in the same run"),
     bench("collision", "collision_bench", "Collision checks, 12 boxes and a held box, one thread"),
     bench("planning", "planning_bench", "Uniform BiRRT in a shelf cell", ["free"], repeats=1),
     bench("planning-upright", "planning_bench", "Uniform CBiRRT2 carrying a container upright", ["upright"], repeats=1),
     bench("proof", "proof_bench", "Edges proven, beside steps and FCL's continuous collision", ["edges"], repeats=1),
     bench("proof-planning", "proof_bench", "Plans with proven edges, beside steps of 0.05", ["planning"], repeats=1),
-    bench("recall", "recall_bench", "Recalled paths in the studies' furniture, CPU time of everything", ["furniture", "ur10e", "panda"], repeats=1),
-    bench("recall-kitting", "recall_bench", "Recalled paths in the study of kitting, CPU time of everything", ["kitting", "ur10e", "panda"], repeats=1),
+    bench("recall", "recall_bench", "Recalled paths in the studies' furniture, CPU time of everything", ["furniture", "ur10e", "panda"], repeats=1,
+          alone="each is a ratio to uniform planning in the same run"),
+    bench("recall-kitting", "recall_bench", "Recalled paths in the study of kitting, CPU time of everything", ["kitting", "ur10e", "panda"], repeats=1,
+          alone="each is a ratio to uniform planning in the same run"),
     bench("dear", "recall_bench", "Recalled paths in the dear studies, one robot a kind, CPU time of everything", ["dear", "iiwa14_lift", "sara_like"],
-          repeats=1, minutes=60, is_long=True),
+          repeats=1, minutes=60, is_long=True,
+          alone="each is a ratio to uniform planning in the same run"),
     bench("recall-planner", "recall_planner_bench", "RecallPlanner beside OMPL's Lightning and RRTConnect in shelves, processor time", repeats=1),
     bench("order", "kinship-experiments", "Orders: 100 queries one after another from an empty store, CPU time of plans",
-          ["order", "--out", "order", "--models", str(ROOT / "robots" / "models"), "--figures"], repeats=1),
-    bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1),
+          ["order", "--out", "order", "--models", str(ROOT / "robots" / "models"), "--figures"], repeats=1,
+          alone="each is a share of uniform planning's time"),
+    bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1,
+          alone="each is a share of uniform planning's checks, or a time that nobody else's stands beside"),
     bench("command", "command_bench", "One-shot commands against a local server"),
-    bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1),
+    bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1,
+          alone="sizes, and times of which the part that grows stands beside the pair alone"),
     bench("large-store", "large_store_bench", "A store of 1 000 000 paths of 200 robots and tasks", ["1000000", "200"],
-          repeats=1, minutes=60, is_long=True),
+          repeats=1, minutes=60, is_long=True,
+          alone="sizes, and times of which the part that grows stands beside the pair alone"),
     bench("large-postgres", "large_postgres_bench", "A PostgreSQL database of 10 000 000 paths of 1000 robots and tasks",
-          ["10000000", "1000"], repeats=1, minutes=90, is_long=True),
-    bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True),
-    bench("soak", "soak_bench", "20 minutes of reports, fits, fetches and short-lived clients", repeats=1, minutes=30, is_long=True),
+          ["10000000", "1000"], repeats=1, minutes=90, is_long=True,
+          alone="sizes, and times of which the part that grows stands beside the pair alone"),
+    bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True,
+          alone="waits that people feel, and memory"),
+    bench("soak", "soak_bench", "20 minutes of reports, fits, fetches and short-lived clients", repeats=1, minutes=30, is_long=True,
+          alone="growth from one third to the next"),
 ]
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(prog="deploy/bench")
     parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--all", action="store_true")
     parser.add_argument("--repeat", type=int, metavar="N")
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--no-references", action="store_true")
@@ -85,8 +105,8 @@ def parse_arguments():
         parser.error(f"--repeat {options.repeat}: at least 1")
     if options.eaik and not (options.eaik.is_absolute() and options.eaik.is_dir()):
         parser.error(f"--eaik {options.eaik}: no absolute path of a folder")
-    if options.write_results and options.names:
-        parser.error("--write-results needs all benchmarks, so no names")
+    if options.names and (options.all or options.write_results):
+        parser.error(f"{' '.join(options.names)}: --all and --write-results are of all benchmarks, so no names")
     return options
 
 
@@ -206,7 +226,7 @@ def merge(runs):
 def measure(wanted, options, scratch):
     """A benchmark as the report has it."""
     repeats = options.repeat or wanted.repeats
-    result = {"bench": wanted.name, "title": wanted.title, "runs": repeats, "load_before": load(), "figures": []}
+    result = {"bench": wanted.name, "title": wanted.title, "alone": wanted.alone, "runs": repeats, "load_before": load(), "figures": []}
     start = time.monotonic()
     runs = []
     try:

@@ -148,7 +148,6 @@ void measure(const std::vector<Teacher>& robots) {
   const auto& [tracks, random] = ways;
   Figure figure = mean(tracks, pairs);
   figure.reference = Reference{random.name, random.sum_per_s / pairs};
-  figure.budget = 300e3;
   figure.ratio_budget = 0.7;
   print(figure);
   print({.name = "tracks, poses done",
