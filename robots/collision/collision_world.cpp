@@ -112,8 +112,10 @@ std::vector<CollisionWorld::Enclosed> CollisionWorld::find_enclosed(
   place(q);
   std::vector<Enclosed> found;
   const auto look = [&](std::size_t inner, std::size_t mesh) {
+    if (!bodies_[mesh].solid.is_hollow())
+      return;
     const Enclosed names{bodies_[inner].name, bodies_[mesh].name};
-    if (bodies_[mesh].solid.is_hollow() && std::ranges::find(found, names) == found.end() &&
+    if (std::ranges::find(found, names) == found.end() &&
         encloses(bodies_[mesh].solid, T_base_bodies_[mesh], bodies_[inner].solid,
                  T_base_bodies_[inner]) &&
         !touching({inner, mesh}))

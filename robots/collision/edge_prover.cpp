@@ -43,7 +43,7 @@ EdgeProver::EdgeProver(CollisionWorld& world)
       moving_.push_back(body);
   }
   motion_m_.setZero(chain.moving_joints() + 1, static_cast<Eigen::Index>(world.bodies_.size()));
-  grown_m_ = motion_m_;
+  grown_m_.setZero(chain.moving_joints() + 1, chain.moving_joints());
   for (auto& [first, second] : pairs_)
     if (world.bodies_[first].joint > world.bodies_[second].joint)
       std::swap(first, second);
@@ -112,13 +112,13 @@ const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen
 }
 
 void EdgeProver::ask_lanes() {
-  edge_motions_m_.resize(std::max(edge_motions_m_.size(), proofs_.size()), motion_m_);
+  edge_motions_m_.resize(std::max(edge_motions_m_.size(), proofs_.size()), grown_m_);
   parts_.clear();
   for (std::size_t edge = 0; edge < proofs_.size(); ++edge) {
     const auto column = static_cast<Eigen::Index>(edge);
     Eigen::MatrixXd& motion_m = edge_motions_m_[edge];
     bounds_.bound_all(from_.col(column), from_.col(column) + change_.col(column), motion_m);
-    const double farthest_m = motion_m.cols() == 0 ? 0 : motion_m.row(0).maxCoeff();
+    const double farthest_m = motion_m.row(0).maxCoeff();
     if (!(farthest_m <= kFarthest_m))
       throw Failure(invalid_input("on an edge a body may move by " + number_text(farthest_m) +
                                   " m, of which at most " + number_text(kFarthest_m) +

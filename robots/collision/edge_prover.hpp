@@ -197,8 +197,9 @@ class EdgeProver {
   std::vector<std::size_t> open_;                // pairs
   std::vector<Part> parts_, rest_;               // checked by the lanes, now and next
   std::vector<Eigen::MatrixXd> edge_motions_m_;  // of each whole edge, by MotionBounds::bound_all
-  Eigen::MatrixXd motion_m_, grown_m_;  // moving joints + 1 x bodies: of a piece, of a part
-  Eigen::MatrixXd middles_;             // dof x kLanes
+  Eigen::MatrixXd motion_m_;                     // moving joints + 1 x bodies: of a piece
+  Eigen::MatrixXd grown_m_;                      // moving joints + 1 x moving joints: of a part
+  Eigen::MatrixXd middles_;                      // dof x kLanes
   std::vector<BodyPair> doubtful_;
   std::vector<std::uint64_t> body_stamps_;
   std::uint64_t stamp_ = 0;

@@ -94,18 +94,18 @@ LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                 const Eigen::Ref<const Eigen::MatrixXd>& motion_m,
                                 const LaneRoom& room, bool is_ahead) {
   constexpr double kOfFloats = 1 + 1e-6;
-  const auto moves = [&](int joint, std::size_t body) {  // as the joint's bodies see it
-    return motion_m(joint + 1, static_cast<Eigen::Index>(index_of_body_[body]));
+  const auto moves = [&](int joint, const LaneLink& link) {  // as the joint's bodies see it
+    return motion_m(joint + 1, link.joint);
   };
   const auto grown = [](double by_m) { return static_cast<float>(by_m * kOfFloats); };
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    growth_[i] = grown(moves(-1, i) + room.standing_m);
-    const LaneBody& body = bodies_[i];
-    for (int k = 0; k < body.others; ++k) {
-      const auto at = static_cast<std::size_t>(body.first_other + k);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const LaneLink& link = links_[i];
+    growth_[i] = grown(moves(-1, link) + room.standing_m);
+    for (int k = 0; k < link.pairs; ++k) {
+      const auto at = static_cast<std::size_t>(link.first_pair + k);
       const int both = joints_before_both_[at];
-      growth_[bodies_.size() + at] = grown(
-          moves(both, i) + moves(both, static_cast<std::size_t>(others_[at].body)) + room.moving_m);
+      const LaneLink& other = links_[static_cast<std::size_t>(link_pairs_[at].other)];
+      growth_[links_.size() + at] = grown(moves(both, link) + moves(both, other) + room.moving_m);
     }
   }
   return answer(qs, fastest(qs.cols()), is_ahead, true);
@@ -162,12 +162,13 @@ LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const 
   const std::uint32_t beyond = beyond_ = write_question(qs);
   const float* const growth = (is_grown ? growth_ : ungrown_).data();
   question_.growth = growth;
-  question_.other_growth = growth + bodies_.size();
+  question_.pair_growth = growth + links_.size();
   question_.is_ahead = is_ahead && beyond == 0;  // else an unknown one might hide later ones
   const LaneScene scene{static_cast<int>(joints_.size()),
-                        static_cast<int>(bodies_.size()),
+                        static_cast<int>(links_.size()),
                         slack_,
                         joints_.data(),
+                        links_.data(),
                         bodies_.data(),
                         obstacles_.data(),
                         static_cast<int>(bounds_.size()) / (6 * kLanes),
@@ -175,6 +176,7 @@ LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const 
                         reach_.data(),
                         spheres_.data(),
                         cover_.data(),
+                        link_pairs_.data(),
                         others_.data()};
   set.kernel(scene, question_, places_.empty() ? nullptr : places_.front().values);
   return {(question_.maybe | beyond) & asked, question_.surely & asked & ~beyond};

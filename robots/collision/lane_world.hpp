@@ -48,7 +48,8 @@ class LaneWorld {
 
   /// The same for grown bodies: those that may not collide have so much room. Bodies that surely
   /// collide do so without growth.
-  /// \param motion_m  moving joints + 1 x the constructor's bodies, as in MotionBounds: growth of
+  /// \param motion_m  moving joints + 1 x moving joints, as in MotionBounds: growth of the bodies
+  /// of
   ///                  each towards standing bodies ([0]) and bodies that the k-th joint moves ([k])
   /// \param room      additional growth of pairs
   /// \param is_ahead  the answer is undefined behind the first that surely collides
@@ -97,17 +98,19 @@ class LaneWorld {
   Writing writing_{};
   std::vector<LaneJoint> joints_;  // of the chain, then the mimic joints
   std::vector<Mimic> mimics_;
+  std::vector<LaneLink> links_;
   std::vector<LaneBody> bodies_;
   std::vector<LaneObstacle> obstacles_;
   std::vector<float> bounds_;
   std::vector<unsigned> reach_;
   std::vector<LaneSphere> spheres_;
   std::vector<float> cover_;
+  std::vector<LaneLinkPair> link_pairs_;
   std::vector<LaneOther> others_;
   std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
   std::vector<Place> places_;                                   // three a sphere
-  std::vector<int> joints_before_both_;                         // of each of others_ and its body
-  std::vector<float> growth_, ungrown_;                         // one a body, then one an other
+  std::vector<int> joints_before_both_;                         // of each of link_pairs_
+  std::vector<float> growth_, ungrown_;                         // one a link, then one a pair
   LaneQuestion question_;     // kept, so that asking needs no heap
   std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
   bool has_room_ = true;      // for all joints and bodies; else everything may collide

@@ -83,6 +83,7 @@ class LaneWorldMaker {
     find_slack();
     world_.slack_ = static_cast<float>(slack_m_);
     add_moving();
+    add_links();
     add_obstacles();
     add_bounds();
     add_pairs();
@@ -260,11 +261,38 @@ class LaneWorldMaker {
                                 .count = static_cast<int>(cover.size()),
                                 .first_cover = add_cover(cover.size()),
                                 .room = in_lanes(static_cast<int>(cover.size())),
-                                .first_reach = 0,
-                                .first_other = 0,
-                                .others = 0});
+                                .first_reach = 0});
     }
     world_.places_.resize(3 * world_.spheres_.size());
+  }
+
+  void add_links() {
+    const std::vector<LaneBody>& bodies = world_.bodies_;
+    for (std::size_t first = 0, end = 0; first < bodies.size(); first = end) {
+      Eigen::AlignedBox3d box;
+      while (end < bodies.size() && bodies[end].joint == bodies[first].joint) {
+        const Eigen::Vector3d center = center_of(bodies[end]);
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(bodies[end].radius);
+        box.extend(Eigen::AlignedBox3d(center - half, center + half));
+        ++end;
+      }
+      LaneLink link{};
+      link.joint = bodies[first].joint;
+      write(box.center(), link.center);
+      double radius_m = 0;
+      for (std::size_t i = first; i < end; ++i)
+        radius_m =
+            std::max(radius_m, (center_of(bodies[i]) - box.center()).norm() + bodies[i].radius);
+      link.radius = static_cast<float>(radius_m + slack_m_);
+      link.first = static_cast<int>(first);
+      link.count = static_cast<int>(end - first);
+      world_.links_.push_back(link);
+      link_of_body_.resize(end, world_.links_.size() - 1);
+    }
+  }
+
+  static Eigen::Vector3d center_of(const LaneBody& body) {
+    return {body.form.center[0], body.form.center[1], body.form.center[2]};
   }
 
   void add_obstacles() {
@@ -309,33 +337,64 @@ class LaneWorldMaker {
   }
 
   void add_pairs() {
-    std::vector<std::vector<int>> obstacles(world_.bodies_.size()), others(world_.bodies_.size());
+    const std::size_t links = world_.links_.size();
+    world_.reach_.resize((links + world_.bodies_.size()) * blocks_);
+    const auto first_reach = [this](std::size_t row) { return static_cast<int>(row * blocks_); };
+    for (std::size_t i = 0; i < links; ++i)
+      world_.links_[i].first_reach = first_reach(i);
+    for (std::size_t i = 0; i < world_.bodies_.size(); ++i)
+      world_.bodies_[i].first_reach = first_reach(links + i);
+    std::vector<LaneOther> others;
     for (const auto& [first, second] : pairs_) {
-      const int a = in_lanes_[first], b = in_lanes_[second];
-      if (bodies_[first].joint < 0 || bodies_[second].joint < 0) {
-        const auto [moving, standing] =
-            bodies_[first].joint < 0 ? std::pair(b, a) : std::pair(a, b);
-        obstacles[static_cast<std::size_t>(moving)].push_back(standing);
-      } else {
-        const auto [before, after] = std::minmax(a, b);
-        others[static_cast<std::size_t>(after)].push_back(before);
-      }
+      const auto [before, after] = std::minmax(in_lanes_[first], in_lanes_[second]);
+      if (bodies_[first].joint >= 0 && bodies_[second].joint >= 0)
+        others.push_back({after, before, body_at(after).radius + body_at(before).radius});
+      else if (bodies_[first].joint < 0)
+        add_obstacle_of(in_lanes_[second], in_lanes_[first]);
+      else
+        add_obstacle_of(in_lanes_[first], in_lanes_[second]);
     }
-    for (std::size_t i = 0; i < world_.bodies_.size(); ++i) {
-      LaneBody& body = world_.bodies_[i];
-      body.first_reach = static_cast<int>(world_.reach_.size());
-      world_.reach_.resize(world_.reach_.size() + blocks_);
-      for (const int obstacle : obstacles[i])
-        world_.reach_[static_cast<std::size_t>(body.first_reach) +
-                      static_cast<std::size_t>(obstacle / kLanes)] |= 1U << (obstacle % kLanes);
-      body.first_other = static_cast<int>(world_.others_.size());
-      body.others = static_cast<int>(others[i].size());
-      for (const int other : others[i]) {
-        const LaneBody& its = world_.bodies_[static_cast<std::size_t>(other)];
-        world_.others_.push_back({other, body.radius + its.radius});
-        world_.joints_before_both_.push_back(chain_.joint_before_both(body.joint, its.joint));
+    add_link_pairs(others);
+  }
+
+  const LaneBody& body_at(int body) const { return world_.bodies_[static_cast<std::size_t>(body)]; }
+  std::size_t link_of(int body) const { return link_of_body_[static_cast<std::size_t>(body)]; }
+
+  void add_obstacle_of(int body, int obstacle) {
+    for (const int first : {body_at(body).first_reach, world_.links_[link_of(body)].first_reach})
+      world_.reach_[static_cast<std::size_t>(first + obstacle / kLanes)] |= 1U
+                                                                            << (obstacle % kLanes);
+  }
+
+  /// The pairs of bodies, ordered by their links.
+  void add_link_pairs(const std::vector<LaneOther>& others) {
+    const std::size_t links = world_.links_.size();
+    std::vector<int> count(links * links);
+    const auto cell = [&](const LaneOther& pair) {
+      return link_of(pair.body) * links + link_of(pair.other);
+    };
+    for (const LaneOther& pair : others)
+      ++count[cell(pair)];
+    std::vector<int> next(links * links);
+    int first = 0;
+    for (std::size_t i = 0; i < links; ++i) {
+      LaneLink& link = world_.links_[i];
+      link.first_pair = static_cast<int>(world_.link_pairs_.size());
+      for (std::size_t k = 0; k <= i; ++k) {
+        const int its = count[i * links + k];
+        if (its == 0)
+          continue;
+        const LaneLink& other = world_.links_[k];
+        world_.link_pairs_.push_back({static_cast<int>(k), link.radius + other.radius, first, its});
+        world_.joints_before_both_.push_back(chain_.joint_before_both(link.joint, other.joint));
+        next[i * links + k] = first;
+        first += its;
       }
+      link.pairs = static_cast<int>(world_.link_pairs_.size()) - link.first_pair;
     }
+    world_.others_.resize(others.size());
+    for (const LaneOther& pair : others)
+      world_.others_[static_cast<std::size_t>(next[cell(pair)]++)] = pair;
   }
 
   LaneWorld& world_;
@@ -349,6 +408,7 @@ class LaneWorldMaker {
   Eigen::Isometry3d T_scene_base_ = Eigen::Isometry3d::Identity();
   std::vector<Eigen::AlignedBox3d> boxes_;  // around each of the lane's obstacles
   std::size_t blocks_ = 0;                  // of kLanes obstacles
+  std::vector<std::size_t> link_of_body_;   // of the lane's
   std::vector<int> in_lanes_;  // of each body: the lane's body or obstacle; -1: it is in no pair
 };
 
@@ -357,7 +417,7 @@ LaneWorld::LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bo
     : question_() {
   question_.likely_body = -1;
   LaneWorldMaker(*this, chain, bodies, pairs).make();
-  ungrown_.assign(bodies_.size() + others_.size(), 0);
+  ungrown_.assign(links_.size() + link_pairs_.size(), 0);
   growth_ = ungrown_;
 }
 

@@ -52,19 +52,36 @@ struct LaneForm {
 struct LaneBody {
   int joint;
   LaneForm form;
-  bool is_solid;            ///< false: a surface somewhere within the form, near its spheres
-  float radius;             ///< of the sphere about the form's centre
-  int first, count;         ///< of LaneScene::spheres
-  int first_cover;          ///< of LaneScene::cover: the same spheres, kCoverRows times `room`
-  int room;                 ///< capacity, a multiple of kLanes
-  int first_reach;          ///< of LaneScene::reach: a word per block, of obstacles it may touch
-  int first_other, others;  ///< of LaneScene::others: earlier bodies it may not touch
+  bool is_solid;     ///< false: a surface somewhere within the form, near its spheres
+  float radius;      ///< of the sphere about the form's centre
+  int first, count;  ///< of LaneScene::spheres
+  int first_cover;   ///< of LaneScene::cover: the same spheres, kCoverRows times `room`
+  int room;          ///< capacity, a multiple of kLanes
+  int first_reach;   ///< of LaneScene::reach: a word per block, of obstacles it may touch
 };
 
-/// One of two bodies that may not touch each other.
+/// Two bodies that may not touch each other.
 struct LaneOther {
-  int body;
+  int body, other;
   float reach;  ///< bodies with centres farther apart do not touch, m
+};
+
+/// The bodies that one joint moves, and one sphere around all of them.
+struct LaneLink {
+  int joint;
+  float center[3];
+  float radius;
+  int first, count;  ///< of LaneScene::body
+  int first_reach;   ///< as of LaneBody: what any of them may touch
+  int first_pair,
+      pairs;  ///< of LaneScene::link_pairs: earlier links whose bodies they may not touch
+};
+
+/// An earlier link, and the pairs of its bodies and the link's.
+struct LaneLinkPair {
+  int other;
+  float reach;       ///< links with centres farther apart do not touch, m
+  int first, count;  ///< of LaneScene::others
 };
 
 /// A solid that stands still, in the scene's frame.
@@ -77,9 +94,10 @@ struct LaneObstacle {
 /// A robot and its surroundings, as plain numbers, in a frame at the base's origin with the axes of
 /// the surrounding boxes, if most of these have the same.
 struct LaneScene {
-  int moving_joints, bodies;
+  int moving_joints, links;
   float slack;  ///< largest rounding error of a distance, m
   const LaneJoint* joints;
+  const LaneLink* link;
   const LaneBody* body;
   const LaneObstacle* obstacle;
   int blocks;             ///< of kLanes obstacles
@@ -87,6 +105,7 @@ struct LaneScene {
   const unsigned* reach;  ///< of each body and block: a bit per obstacle
   const LaneSphere* spheres;
   const float* cover;  ///< filled up with a far sphere without an inside
+  const LaneLinkPair* link_pairs;
   const LaneOther* others;
 };
 
@@ -102,14 +121,15 @@ struct alignas(64) LaneQuestion {
   float q[kLaneJoints]
          [kLanes];  ///< the joint's value plus the turn of its frame, rad in [-pi, pi], or m
   int count;        ///< lanes in use, from 0 on
-  /// Growth of each body, and of each of LaneScene::others towards its body, m: bodies that may not
-  /// collide have so much room. Bodies that surely collide do so without growth.
-  const float *growth, *other_growth;
+  /// Growth of the bodies of each link, and of each of LaneScene::link_pairs, m: bodies that may
+  /// not collide have so much room. Bodies that surely collide do so without growth.
+  const float *growth, *pair_growth;
   /// Whether lanes behind the first sure collision need no answer; they are then set in `surely`.
   bool is_ahead;
-  int likely_body, likely_obstacle;  ///< tried first; out: the last that surely collided
-  std::uint32_t maybe;               ///< out: may collide; the others are free for sure
-  std::uint32_t surely;              ///< out: collides for sure; a part of maybe
+  int likely_link, likely_body,
+      likely_obstacle;   ///< tried first; out: the last that surely collided
+  std::uint32_t maybe;   ///< out: may collide; the others are free for sure
+  std::uint32_t surely;  ///< out: collides for sure; a part of maybe
   /// Out: the bodies that may collide in lanes that do not collide for sure; the first kLaneDoubts
   /// of `doubts`. Nothing else touches there.
   LaneDoubt doubt[kLaneDoubts];

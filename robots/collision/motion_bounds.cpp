@@ -64,13 +64,13 @@ MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Bod
   }
   for (const Body& body : bodies) {
     Spanned span = span_of(body.solid.shape());
-    Hull hull{body.joint, body.T_joint_body * span.corners, span.radius_m, 0, 0};
+    Hull hull{body.joint, body.T_joint_body * span.corners, span.radius_m};
     if (body.joint >= 0)
       for (const auto& corner : hull.corners.colwise()) {
-        const Eigen::Vector3d& axis = steps_[static_cast<std::size_t>(body.joint)].axis;
+        Step& its = steps_[static_cast<std::size_t>(body.joint)];
         const Eigen::Vector3d at = corner;
-        hull.across_m = std::max(hull.across_m, at.cross(axis).norm() + span.radius_m);
-        hull.reach_m = std::max(hull.reach_m, at.norm() + span.radius_m);
+        its.across_m = std::max(its.across_m, at.cross(its.axis).norm() + span.radius_m);
+        its.reach_m = std::max(its.reach_m, at.norm() + span.radius_m);
       }
     hulls_.push_back(std::move(hull));
   }
@@ -79,14 +79,13 @@ MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Bod
 void MotionBounds::bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
                              const Eigen::Ref<const Eigen::VectorXd>& to,
                              Eigen::Ref<Eigen::MatrixXd> motion_m) const {
-  for (std::size_t body = 0; body < hulls_.size(); ++body) {
-    const Hull& hull = hulls_[body];
-    const auto column = static_cast<Eigen::Index>(body);
-    // Of the body's points, from the axis and from the origin of the joint that is looked at.
-    double across = hull.across_m, reach = hull.reach_m, motion = 0;
-    for (int k = hull.joint; k >= 0;) {
+  for (int joint = 0; joint < static_cast<int>(steps_.size()); ++joint) {
+    const Step& own = steps_[static_cast<std::size_t>(joint)];
+    // Of the bodies' points, from the axis and from the origin of the joint that is looked at.
+    double across = own.across_m, reach = own.reach_m, motion = 0;
+    for (int k = joint; k >= 0;) {
       const Step& step = steps_[static_cast<std::size_t>(k)];
-      motion_m(k + 1, column) = motion;
+      motion_m(k + 1, joint) = motion;
       const double change = std::abs(step.multiplier * (to[step.source] - from[step.source]));
       motion += change * (step.slides ? 1 : across) * (1 + kReachRounding);
       // One joint on: by how far it slides, and by where its origin is.
@@ -97,7 +96,7 @@ void MotionBounds::bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
       reach += step.origin_reach_m + slide + kReachRounding;
       k = step.before;
     }
-    motion_m(0, column) = motion;
+    motion_m(0, joint) = motion;
   }
 }
 

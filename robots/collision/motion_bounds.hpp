@@ -21,10 +21,11 @@ class MotionBounds {
  public:
   MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies);
 
-  /// Bounds of the way of all bodies' points on a line, in the frame of every joint before each, m:
-  /// coarser than bound(), without forward kinematics. They scale with parts of the line.
+  /// Bounds of the way of all bodies' points on a line, in the frame of every joint before each, m,
+  /// for all bodies of a joint alike: coarser than bound(), without forward kinematics. They scale
+  /// with parts of the line.
   /// \param from, to  dof, joint units: the ends of the line
-  /// \param motion_m  out: moving joints + 1 x bodies, as in bound()
+  /// \param motion_m  out: moving joints + 1 x moving joints, as in bound()
   void bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
                  const Eigen::Ref<const Eigen::VectorXd>& to,
                  Eigen::Ref<Eigen::MatrixXd> motion_m) const;
@@ -53,9 +54,8 @@ class MotionBounds {
  private:
   struct Hull {
     int joint = -1;
-    Eigen::Matrix3Xd corners;          // 3 x 1, 2 or 8, in the joint's moving frame
-    double radius_m = 0;               // the body lies within it of the corners' hull
-    double across_m = 0, reach_m = 0;  // from the joint's axis, from its origin
+    Eigen::Matrix3Xd corners;  // 3 x 1, 2 or 8, in the joint's moving frame
+    double radius_m = 0;       // the body lies within it of the corners' hull
   };
 
   /// A moving joint.
@@ -68,6 +68,7 @@ class MotionBounds {
     double offset = 0;      // and so much more, rad or m
     // Of its origin where it does not slide, from the axis and the origin of the joint before.
     double origin_across_m = 0, origin_reach_m = 0;
+    double across_m = 0, reach_m = 0;  // of its bodies, from its axis and from its origin
   };
 
   std::vector<Step> steps_;

@@ -22,26 +22,22 @@ class Group {
   Group(const LaneScene& scene, LaneQuestion& question, int first, float* places)
       : scene_(scene), question_(question), places_(places), first_(first) {
     place_joints(question, first);
-    for (int body = 0; body < scene.bodies; ++body)
-      is_placed_[body] = false;
+    for (int i = 0; i < scene.links; ++i) {
+      const LaneLink& link = scene.link[i];
+      is_at_[i] = false;
+      for (int body = link.first; body < link.first + link.count; ++body)
+        is_placed_[body] = false;
+    }
   }
 
   Verdict check() {
     try_likely();
-    for (int index = 0; index < scene_.bodies && verdict_.surely != kAllOfAGroup; ++index) {
-      const LaneBody& body = scene_.body[index];
-      const WidePoint center = moved(frames_[body.joint], body.form.center);
-      centers_[index] = center;
-      check_obstacles(index, center);
-      for (int i = 0; i < body.others; ++i) {
-        const LaneOther& other = scene_.others[body.first_other + i];
-        const float growth = question_.other_growth[body.first_other + i];
-        const float reach = other.reach + growth;
-        const unsigned near =
-            below(distance2(center, centers_[other.body]), all(reach * reach)) & ~verdict_.surely;
-        if (near != 0)
-          compare_bodies(index, other.body, near, growth);
-      }
+    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i) {
+      const LaneLink& link = scene_.link[i];
+      link_centers_[i] = moved(frames_[link.joint], link.center);
+      check_link(i);
+      for (int k = link.first_pair; k < link.first_pair + link.pairs; ++k)
+        check_link_pair(i, scene_.link_pairs[k], question_.pair_growth[k]);
     }
     return verdict_;
   }
@@ -79,43 +75,106 @@ class Group {
     if (question_.likely_body < 0)
       return;
     const LaneBody& body = scene_.body[question_.likely_body];
-    check_obstacle(question_.likely_body, question_.likely_obstacle,
-                   moved(frames_[body.joint], body.form.center), kAllOfAGroup);
+    const float growth = question_.growth[question_.likely_link];
+    check_obstacle({question_.likely_link, question_.likely_body, growth},
+                   question_.likely_obstacle, moved(frames_[body.joint], body.form.center),
+                   kAllOfAGroup);
   }
 
-  /// First checks the box around the body's places in all lanes against the boxes of many
-  /// obstacles.
-  KINSHIP_SIMD_INLINE void check_obstacles(int index, const WidePoint& center) {
-    const LaneBody& body = scene_.body[index];
-    const float growth = question_.growth[index], radius = body.radius + growth;
+  /// A body, its link, and how much it has grown.
+  struct Grown {
+    int link, body;
+    float growth;
+  };
+
+  /// The bodies of a link and the obstacles that its sphere reaches in some lane.
+  void check_link(int index) {
+    const LaneLink& link = scene_.link[index];
+    const float growth = question_.growth[index], radius = link.radius + growth;
+    const WidePoint& center = link_centers_[index];
+    for (int block = 0; block < scene_.blocks; ++block) {
+      unsigned open = 0;
+      for (unsigned near =
+               near_of_block(block, scene_.reach[link.first_reach + block], center, radius);
+           near != 0; near &= near - 1) {
+        const int which = __builtin_ctz(near);
+        if (link.count == 1 ||
+            (reach(scene_.obstacle[block * kLanes + which].form, center, radius) &
+             ~verdict_.surely) != 0)
+          open |= 1U << which;
+      }
+      if (open == 0)
+        continue;
+      place_bodies(index);
+      for (int body = link.first; body < link.first + link.count; ++body)
+        check_obstacles({index, body, growth}, block, open);
+    }
+  }
+
+  /// The bodies of two links that come near each other in some lane.
+  void check_link_pair(int index, const LaneLinkPair& pair, float growth) {
+    const float limit = pair.reach + growth;
+    if ((below(distance2(link_centers_[index], link_centers_[pair.other]), all(limit * limit)) &
+         ~verdict_.surely) == 0)
+      return;
+    place_bodies(index);
+    place_bodies(pair.other);
+    for (int i = pair.first; i < pair.first + pair.count; ++i) {
+      const LaneOther& other = scene_.others[i];
+      const float its = other.reach + growth;
+      const unsigned near =
+          below(distance2(centers_[other.body], centers_[other.other]), all(its * its)) &
+          ~verdict_.surely;
+      if (near != 0)
+        compare_bodies(other.body, other.other, near, growth);
+    }
+  }
+
+  void place_bodies(int index) {
+    if (is_at_[index])
+      return;
+    is_at_[index] = true;
+    const LaneLink& link = scene_.link[index];
+    for (int body = link.first; body < link.first + link.count; ++body)
+      centers_[body] = moved(frames_[link.joint], scene_.body[body].form.center);
+  }
+
+  /// Obstacles of a block whose boxes overlap the box around spheres in all lanes.
+  /// \param open  those that matter
+  KINSHIP_SIMD_INLINE unsigned near_of_block(int block, unsigned open, const WidePoint& center,
+                                             float radius) const {
+    if (open == 0)
+      return 0;
     const WidePoint low = {all(least(center.x) - radius), all(least(center.y) - radius),
                            all(least(center.z) - radius)};
     const WidePoint high = {all(largest(center.x) + radius), all(largest(center.y) + radius),
                             all(largest(center.z) + radius)};
-    for (int block = 0; block < scene_.blocks; ++block) {
-      unsigned open = scene_.reach[body.first_reach + block];
-      if (open == 0)
-        continue;
-      unsigned near = 0;
-      for (int part = 0; part < kLanes; part += KINSHIP_SIMD_WIDTH) {
-        const float* const bounds = scene_.bounds + block * 6 * kLanes + part;
-        const unsigned overlap =
-            below(load(bounds), high.x) & below(load(bounds + kLanes), high.y) &
-            below(load(bounds + 2 * kLanes), high.z) & below(low.x, load(bounds + 3 * kLanes)) &
-            below(low.y, load(bounds + 4 * kLanes)) & below(low.z, load(bounds + 5 * kLanes));
-        near |= overlap << part;
-      }
-      open &= near;
-      if (open == 0)
-        continue;
-      const WidePoint half = extents(body, growth);
-      for (; open != 0; open &= open - 1) {
-        const int lane = __builtin_ctz(open);
-        const unsigned within =
-            overlap(scene_.bounds + block * 6 * kLanes + lane, center, half) & ~verdict_.surely;
-        if (within != 0)
-          check_obstacle(index, block * kLanes + lane, center, within);
-      }
+    unsigned near = 0;
+    for (int part = 0; part < kLanes; part += KINSHIP_SIMD_WIDTH) {
+      const float* const bounds = scene_.bounds + block * 6 * kLanes + part;
+      const unsigned overlap =
+          below(load(bounds), high.x) & below(load(bounds + kLanes), high.y) &
+          below(load(bounds + 2 * kLanes), high.z) & below(low.x, load(bounds + 3 * kLanes)) &
+          below(low.y, load(bounds + 4 * kLanes)) & below(low.z, load(bounds + 5 * kLanes));
+      near |= overlap << part;
+    }
+    return open & near;
+  }
+
+  /// A body and obstacles of a block. \param open  those that matter
+  KINSHIP_SIMD_INLINE void check_obstacles(const Grown& grown, int block, unsigned open) {
+    const LaneBody& body = scene_.body[grown.body];
+    open &= scene_.reach[body.first_reach + block];
+    if (open == 0)
+      return;
+    const WidePoint& center = centers_[grown.body];
+    const WidePoint half = extents(body, grown.growth);
+    for (; open != 0; open &= open - 1) {
+      const int lane = __builtin_ctz(open);
+      const unsigned within =
+          overlap(scene_.bounds + block * 6 * kLanes + lane, center, half) & ~verdict_.surely;
+      if (within != 0)
+        check_obstacle(grown, block * kLanes + lane, center, within);
     }
   }
 
@@ -150,17 +209,18 @@ class Group {
   }
 
   /// \param open  lanes that matter
-  KINSHIP_SIMD_INLINE void check_obstacle(int index, int which, const WidePoint& center,
+  KINSHIP_SIMD_INLINE void check_obstacle(const Grown& grown, int which, const WidePoint& center,
                                           unsigned open) {
     const LaneObstacle& obstacle = scene_.obstacle[which];
     const unsigned near =
-        reach(obstacle.form, center, scene_.body[index].radius + question_.growth[index]) & open;
+        reach(obstacle.form, center, scene_.body[grown.body].radius + grown.growth) & open;
     if (near == 0)
       return;
     const unsigned before = verdict_.surely;
-    compare_closely(index, which, near);
+    compare_closely(grown, which, near);
     if (verdict_.surely != before) {
-      question_.likely_body = index;
+      question_.likely_link = grown.link;
+      question_.likely_body = grown.body;
       question_.likely_obstacle = which;
     }
   }
@@ -239,11 +299,12 @@ class Group {
   }
 
   /// A body and an obstacle, closely. \param near  lanes that matter
-  void compare_closely(int index, int which, unsigned near) {
+  void compare_closely(const Grown& grown, int which, unsigned near) {
+    const int index = grown.body;
+    const float growth = grown.growth;
     const LaneObstacle& obstacle = scene_.obstacle[which];
     const LaneBody& body = scene_.body[index];
     const bool few = __builtin_popcount(near) * (body.room / KINSHIP_SIMD_WIDTH) < body.count;
-    const float growth = question_.growth[index];
     const Verdict found = few && obstacle.is_solid
                               ? compare_lanes(body, obstacle.form, growth, near)
                               : compare_spheres(index, obstacle, growth, near);
@@ -380,7 +441,8 @@ class Group {
   int first_;  // lane of the question
   Verdict verdict_;
   WideFrame frames_[kLaneJoints];
-  WidePoint centers_[kLaneBodies];
+  WidePoint link_centers_[kLaneJoints], centers_[kLaneBodies];
+  bool is_at_[kLaneJoints];
   bool is_placed_[kLaneBodies];
 };
 
