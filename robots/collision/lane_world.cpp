@@ -177,7 +177,8 @@ LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const 
                         spheres_.data(),
                         cover_.data(),
                         link_pairs_.data(),
-                        others_.data()};
+                        others_.data(),
+                        grid_.view()};
   set.kernel(scene, question_, places_.empty() ? nullptr : places_.front().values);
   return {(question_.maybe | beyond) & asked, question_.surely & asked & ~beyond};
 }

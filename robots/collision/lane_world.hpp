@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robots/collision/body.hpp"
+#include "robots/collision/distance_grid.hpp"
 #include "robots/collision/lanes.hpp"
 #include "robots/kinematics/chain.hpp"
 
@@ -108,7 +109,8 @@ class LaneWorld {
   std::vector<LaneLinkPair> link_pairs_;
   std::vector<LaneOther> others_;
   std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
-  std::vector<Place> places_;                                   // three a sphere
+  DistanceGrid grid_;                                           // of a point cloud
+  std::vector<Place> places_;                                   // kPlaceRows a sphere
   std::vector<int> joints_before_both_;                         // of each of link_pairs_
   std::vector<float> growth_, ungrown_;                         // one a link, then one a pair
   LaneQuestion question_;     // kept, so that asking needs no heap

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "proto/types/turn.hpp"
@@ -198,6 +199,7 @@ class LaneWorldMaker {
   LaneSphere lane_sphere(const Eigen::Isometry3d& T, const CoverSphere& sphere) const {
     LaneSphere lane{};
     write(T * sphere.center, lane.center);
+    write(T * sphere.point, lane.point);
     lane.outer = static_cast<float>(sphere.outer_m + slack_m_);
     lane.inner = static_cast<float>(std::max(sphere.inner_m - slack_m_, 0.0));
     return lane;
@@ -263,7 +265,7 @@ class LaneWorldMaker {
                                 .room = in_lanes(static_cast<int>(cover.size())),
                                 .first_reach = 0});
     }
-    world_.places_.resize(3 * world_.spheres_.size());
+    world_.places_.resize(kPlaceRows * world_.spheres_.size());
   }
 
   void add_links() {
@@ -308,6 +310,7 @@ class LaneWorldMaker {
         if (body.solid.is_hollow()) {
           obstacle.first = add_spheres(T, body.solid.cover());
           obstacle.count = static_cast<int>(body.solid.cover().size());
+          obstacle.is_in_grid = add_cubes(body, T);
         }
         in_lanes_[index] = static_cast<int>(world_.obstacles_.size());
         world_.obstacles_.push_back(obstacle);
@@ -315,6 +318,24 @@ class LaneWorldMaker {
         const Eigen::Vector3d half = T.linear().cwiseAbs() * body.solid.half_extents_m();
         boxes_.emplace_back(T.translation() - half, T.translation() + half);
       }
+    world_.grid_ = DistanceGrid(cubes_, cube_m_, T_scene_grid_);
+  }
+
+  /// Adds a block to the grid: of the first cloud, whose blocks have one orientation and one
+  /// lattice. \return whether it is of that cloud.
+  bool add_cubes(const Body& body, const Eigen::Isometry3d& T_scene_body) {
+    if (body.solid.cube_m() == 0 || (!cubes_.empty() && body.name != cloud_))
+      return false;
+    if (cubes_.empty()) {
+      cloud_ = body.name;
+      cube_m_ = body.solid.cube_m();
+      T_scene_grid_ = T_scene_body;
+    }
+    const Eigen::Vector3d p_grid_body =
+        T_scene_grid_.inverse(Eigen::Isometry) * T_scene_body.translation();
+    for (const Eigen::AlignedBox3d& cube : body.solid.cubes())
+      cubes_.emplace_back(cube.min() + p_grid_body, cube.max() + p_grid_body);
+    return true;
   }
 
   /// The boxes along the axes around the obstacles, with room for rounding.
@@ -407,8 +428,12 @@ class LaneWorldMaker {
   double slack_m_ = 0;
   Eigen::Isometry3d T_scene_base_ = Eigen::Isometry3d::Identity();
   std::vector<Eigen::AlignedBox3d> boxes_;  // around each of the lane's obstacles
-  std::size_t blocks_ = 0;                  // of kLanes obstacles
-  std::vector<std::size_t> link_of_body_;   // of the lane's
+  std::vector<Eigen::AlignedBox3d> cubes_;  // of the cloud that is in the grid, in its frame
+  std::string cloud_;
+  double cube_m_ = 0;
+  Eigen::Isometry3d T_scene_grid_ = Eigen::Isometry3d::Identity();
+  std::size_t blocks_ = 0;                 // of kLanes obstacles
+  std::vector<std::size_t> link_of_body_;  // of the lane's
   std::vector<int> in_lanes_;  // of each body: the lane's body or obstacle; -1: it is in no pair
 };
 

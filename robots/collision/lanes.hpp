@@ -12,6 +12,7 @@ namespace kinship::collision {
 inline constexpr int kLanes = 16;        ///< configurations checked side by side
 inline constexpr int kLaneJoints = 32;   ///< of a chain, with their mimic joints
 inline constexpr int kLaneBodies = 128;  ///< moved by joints
+inline constexpr int kPlaceRows = 4;     ///< a sphere's x, y, z, then how far it is from the cloud
 inline constexpr int kCoverRows = 5;     ///< centres' x, y, z, then outer and inner radii
 inline constexpr int kLaneDoubts = 64;   ///< reported at most
 
@@ -28,7 +29,8 @@ struct LaneJoint {
 struct LaneSphere {
   float center[3];
   float outer;
-  float inner;  ///< not above 0: the inside is unknown
+  float inner;     ///< not above 0: the inside is unknown
+  float point[3];  ///< that belongs to the solid
 };
 
 enum class LaneShape {
@@ -88,7 +90,18 @@ struct LaneLinkPair {
 struct LaneObstacle {
   LaneForm form;
   bool is_solid;     ///< false: a surface somewhere within the form, near its spheres
+  bool is_in_grid;   ///< the grid knows all of it
   int first, count;  ///< of LaneScene::spheres; for surfaces only
+};
+
+/// Lower bounds on the distance of a cloud's cubes from the middles of cells, x fastest, m.
+struct LaneGrid {
+  const float* distances;  ///< null: there is no cloud
+  float R[9], p[3];        ///< of the scene in the grid's frame, whose origin is its corner
+  float cell;              ///< side of a cell, m
+  bool is_exact;           ///< a cell at distance 0 is within the cloud
+  int cells[3];
+  float center[3], half[3];  ///< of the box that holds all cubes, in the grid's frame
 };
 
 /// A robot and its surroundings, as plain numbers, in a frame at the base's origin with the axes of
@@ -107,6 +120,7 @@ struct LaneScene {
   const float* cover;  ///< filled up with a far sphere without an inside
   const LaneLinkPair* link_pairs;
   const LaneOther* others;
+  LaneGrid grid;
 };
 
 /// A body and an obstacle or body that it may touch.
@@ -136,8 +150,8 @@ struct alignas(64) LaneQuestion {
   int doubts;
 };
 
-/// Answers a question. \param places  room for 3 * kLanes floats per sphere of the scene, aligned
-/// as a LaneQuestion. No heap, no state.
+/// Answers a question. \param places  room for kPlaceRows * kLanes floats per sphere of the bodies,
+/// aligned as a LaneQuestion. No heap, no state.
 using LaneKernel = void (*)(const LaneScene& scene, LaneQuestion& question, float* places);
 
 /// The kernel of one instruction set and its name.

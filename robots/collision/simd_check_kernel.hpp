@@ -26,7 +26,7 @@ class Group {
       const LaneLink& link = scene.link[i];
       is_at_[i] = false;
       for (int body = link.first; body < link.first + link.count; ++body)
-        is_placed_[body] = false;
+        is_placed_[body] = is_near_known_[body] = false;
     }
   }
 
@@ -267,8 +267,10 @@ class Group {
     return below(distance2(form, center), all(limit * limit));
   }
 
+  float* place_of(int sphere) const { return places_ + kPlaceRows * KINSHIP_SIMD_WIDTH * sphere; }
+
   WidePoint sphere(int index) const {
-    const float* const place = places_ + 3 * KINSHIP_SIMD_WIDTH * index;
+    const float* const place = place_of(index);
     return {load(place), load(place + KINSHIP_SIMD_WIDTH), load(place + 2 * KINSHIP_SIMD_WIDTH)};
   }
 
@@ -279,23 +281,95 @@ class Group {
     const LaneBody& body = scene_.body[index];
     for (int i = body.first; i < body.first + body.count; ++i) {
       const WidePoint at = moved(frames_[body.joint], scene_.spheres[i].center);
-      float* const place = places_ + 3 * KINSHIP_SIMD_WIDTH * i;
+      float* const place = place_of(i);
       store(place, at.x);
       store(place + KINSHIP_SIMD_WIDTH, at.y);
       store(place + 2 * KINSHIP_SIMD_WIDTH, at.z);
     }
   }
 
-  /// Lanes in which a sphere reaches the spheres that cover a surface.
-  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, float radius) const {
+  /// Where points are in the grid, and the lower bound for the middle of their cell.
+  struct InGrid {
+    WidePoint at, from_middle;  ///< m
+    Wide distance;              ///< m
+  };
+
+  InGrid look_up(const WidePoint& point) const {
+    const LaneGrid& grid = scene_.grid;
+    const float(&R)[9] = grid.R;
+    InGrid found;
+    found.at = {point.x * R[0] + point.y * R[1] + point.z * R[2] + grid.p[0],
+                point.x * R[3] + point.y * R[4] + point.z * R[5] + grid.p[1],
+                point.x * R[6] + point.y * R[7] + point.z * R[8] + grid.p[2]};
+    const float per_cell = 1 / grid.cell;
+    const WideInt i = whole(found.at.x * per_cell, grid.cells[0] - 1);
+    const WideInt j = whole(found.at.y * per_cell, grid.cells[1] - 1);
+    const WideInt k = whole(found.at.z * per_cell, grid.cells[2] - 1);
+    found.from_middle = {found.at.x - (rounded(i) + 0.5F) * grid.cell,
+                         found.at.y - (rounded(j) + 0.5F) * grid.cell,
+                         found.at.z - (rounded(k) + 0.5F) * grid.cell};
+    found.distance = gather(grid.distances, (k * grid.cells[1] + j) * grid.cells[0] + i);
+    return found;
+  }
+
+  /// Lower bounds on the distance of points from the cloud; below 0: unknown.
+  Wide distance_of_cloud(const WidePoint& point) const {
+    constexpr float kRounding = 1e-5F;
+    const InGrid found = look_up(point);
+    const WidePoint& middle = found.from_middle;
+    const Wide near = found.distance - root(dot(middle, middle)) * (1 + kRounding);
+    const Wide beyond =
+        root(distance2_of_box(scene_.grid.center, scene_.grid.half, found.at)) * (1 - kRounding);
+    return larger(near, beyond) - 4 * scene_.slack;
+  }
+
+  /// Lanes in which points are within a cube for sure.
+  unsigned within_cloud(const WidePoint& point) const {
+    const InGrid found = look_up(point);
+    const Wide limit = all(scene_.grid.cell / 2 - 4 * scene_.slack);
+    return below(found.distance, all(scene_.slack)) & below(absolute(found.from_middle.x), limit) &
+           below(absolute(found.from_middle.y), limit) &
+           below(absolute(found.from_middle.z), limit);
+  }
+
+  /// A grown body and the cloud; keeps the distances of its spheres.
+  Verdict near_cloud(const Grown& grown) {
+    const int index = grown.body;
+    if (is_near_known_[index])
+      return near_cloud_[index];
+    is_near_known_[index] = true;
+    const LaneBody& body = scene_.body[index];
+    const WideFrame& frame = frames_[body.joint];
+    Verdict found;
+    const unsigned around = below(distance_of_cloud(moved(frame, body.form.center)),
+                                  body.radius + grown.growth + Wide{});
+    if (around != 0) {
+      place_spheres(index);
+      for (int i = body.first; i < body.first + body.count; ++i) {
+        const LaneSphere& its = scene_.spheres[i];
+        const Wide distance = distance_of_cloud(sphere(i));
+        store(place_of(i) + 3 * KINSHIP_SIMD_WIDTH, distance);
+        const unsigned near = below(distance, its.outer + grown.growth + Wide{}) & around;
+        found.maybe |= near;
+        if ((near & ~found.surely) != 0 && scene_.grid.is_exact)
+          found.surely |= within_cloud(moved(frame, its.point));
+      }
+    }
+    return near_cloud_[index] = found;
+  }
+
+  /// Lanes in which a sphere reaches the spheres that cover a surface. \param open  that matter
+  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, float radius,
+                         unsigned open) const {
     unsigned reached = 0;
-    for (int i = obstacle.first; i < obstacle.first + obstacle.count; ++i) {
+    for (int i = obstacle.first; i < obstacle.first + obstacle.count && (open & ~reached) != 0;
+         ++i) {
       const LaneSphere& its = scene_.spheres[i];
       const float limit = radius + its.outer;
       const WidePoint center = {all(its.center[0]), all(its.center[1]), all(its.center[2])};
       reached |= below(distance2(at, center), all(limit * limit));
     }
-    return reached;
+    return open & reached;
   }
 
   /// A body and an obstacle, closely. \param near  lanes that matter
@@ -304,10 +378,13 @@ class Group {
     const float growth = grown.growth;
     const LaneObstacle& obstacle = scene_.obstacle[which];
     const LaneBody& body = scene_.body[index];
+    const Verdict cloud = obstacle.is_in_grid ? near_cloud(grown) : Verdict{near, 0};
+    if ((near &= cloud.maybe) == 0)
+      return;
     const bool few = __builtin_popcount(near) * (body.room / KINSHIP_SIMD_WIDTH) < body.count;
-    const Verdict found = few && obstacle.is_solid
-                              ? compare_lanes(body, obstacle.form, growth, near)
-                              : compare_spheres(index, obstacle, growth, near);
+    Verdict found = few && obstacle.is_solid ? compare_lanes(body, obstacle.form, growth, near)
+                                             : compare_spheres(index, obstacle, growth, near);
+    found.surely |= found.maybe & cloud.surely;
     conclude(found, {0, index, which, -1}, [&](unsigned open) {
       Planes planes =
           separated(placed(body.form, frames_[body.joint]), body.form, standing(obstacle.form),
@@ -356,6 +433,7 @@ class Group {
     const LaneBody& body = scene_.body[index];
     place_spheres(index);
     const float extra = obstacle.form.shape == LaneShape::Capsule ? obstacle.form.radius : 0.0F;
+    const bool is_hollow = !body.is_solid || !obstacle.is_solid;  // so nothing collides surely
     Verdict found;
     for (int i = body.first; i < body.first + body.count; ++i) {
       const LaneSphere& its = scene_.spheres[i];
@@ -365,12 +443,14 @@ class Group {
       unsigned touched = below(squared, all(outer * outer)) & near;
       if (touched == 0)
         continue;
-      if (!obstacle.is_solid)
-        touched &= reach_surface(obstacle, at, its.outer + growth);
+      if (obstacle.is_in_grid)
+        touched &= below(load(place_of(i) + 3 * KINSHIP_SIMD_WIDTH), its.outer + growth + Wide{});
+      else if (!obstacle.is_solid)
+        touched = reach_surface(obstacle, at, its.outer + growth, touched);
       else if (its.inner > 0)
         found.surely |= below(squared, all(inner * inner)) & near;
       found.maybe |= touched;
-      near &= ~found.surely;  // of those nothing else matters
+      near &= ~(is_hollow ? found.maybe : found.surely);  // of those nothing else matters
       if (near == 0)
         break;
     }
@@ -443,7 +523,8 @@ class Group {
   WideFrame frames_[kLaneJoints];
   WidePoint link_centers_[kLaneJoints], centers_[kLaneBodies];
   bool is_at_[kLaneJoints];
-  bool is_placed_[kLaneBodies];
+  bool is_placed_[kLaneBodies], is_near_known_[kLaneBodies];
+  Verdict near_cloud_[kLaneBodies];
 };
 
 void check_lanes(const LaneScene& scene, LaneQuestion& question, float* places) {

@@ -73,6 +73,31 @@ KINSHIP_SIMD_INLINE float least(Wide value) {
 
 KINSHIP_SIMD_INLINE float largest(Wide value) { return -least(-value); }
 
+KINSHIP_SIMD_INLINE Wide larger(Wide a, Wide b) { return a > b ? a : b; }
+
+/// The integers that values from 0 on begin with, at most `last`.
+KINSHIP_SIMD_INLINE WideInt whole(Wide value, int last) {
+  const Wide limit = all(static_cast<float>(last));
+  const Wide within = positive(value);
+  return __builtin_convertvector(within < limit ? within : limit, WideInt);
+}
+
+KINSHIP_SIMD_INLINE Wide rounded(WideInt value) { return __builtin_convertvector(value, Wide); }
+
+/// The value at each lane's index.
+KINSHIP_SIMD_INLINE Wide gather(const float* values, WideInt index) {
+#if KINSHIP_SIMD_WIDTH == 16
+  return Wide(_mm512_mask_i32gather_ps(__m512(Wide{}), 0xffff, __m512i(index), values, 4));
+#elif KINSHIP_SIMD_WIDTH == 8
+  return Wide(_mm256_i32gather_ps(values, __m256i(index), 4));
+#else
+  Wide found;
+  for (int lane = 0; lane < KINSHIP_SIMD_WIDTH; ++lane)
+    found[lane] = values[index[lane]];
+  return found;
+#endif
+}
+
 /// One bit per lane with a < b.
 KINSHIP_SIMD_INLINE unsigned below(Wide a, Wide b) {
 #if KINSHIP_SIMD_WIDTH == 16

@@ -258,7 +258,8 @@ std::vector<CoverSphere> cover_triangles(const Eigen::Matrix3Xd& triangles, int 
   }
   std::vector<CoverSphere> spheres;
   for (; !clusters.empty(); clusters.pop())
-    spheres.push_back({clusters.top().center, clusters.top().radius_m, 0});
+    spheres.push_back({clusters.top().center, clusters.top().radius_m, 0,
+                       clusters.top().triangles.front().rowwise().mean()});
   return spheres;
 }
 
@@ -278,10 +279,21 @@ Solid::Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles)
 Solid::Solid(const geometry::VoxelBlock& block, double voxel_m)
     : shape_(BoxShape{block.size}),
       is_hollow_(true),
+      cube_m_(voxel_m),
       cover_(std::make_shared<const std::vector<CoverSphere>>(cover_voxels(block, voxel_m))),
       geometry_(make_octree(block.voxels.colwise() - block.center, voxel_m)) {
   p_point_ = block.voxels.col(0) - block.center;
   bound();
+}
+
+std::vector<Eigen::AlignedBox3d> Solid::cubes() const {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  if (const auto* tree = dynamic_cast<const fcl::OcTree<double>*>(geometry_.get()))
+    for (const auto& [x, y, z, side, cost, threshold] : tree->toBoxes()) {
+      const Eigen::Vector3d center(x, y, z), half = Eigen::Vector3d::Constant(side / 2);
+      boxes.emplace_back(center - half, center + half);
+    }
+  return boxes;
 }
 
 void Solid::bound() {

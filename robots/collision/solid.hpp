@@ -17,8 +17,9 @@ namespace kinship::collision {
 /// One of the spheres that together hold a solid.
 struct CoverSphere {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< in the solid's frame, m
-  double outer_m = 0;  ///< the spheres of these radii hold all of the solid
-  double inner_m = 0;  ///< the sphere of this radius is within the solid; 0: unknown
+  double outer_m = 0;              ///< the spheres of these radii hold all of the solid
+  double inner_m = 0;              ///< the sphere of this radius is within the solid; 0: unknown
+  Eigen::Vector3d point = center;  ///< that belongs to the solid; of cubes any
 };
 
 /// Spheres that hold every point of a shape; a thin one needs many to be held closely.
@@ -57,6 +58,11 @@ class Solid {
   /// Spheres that together hold all of the solid closely.
   const std::vector<CoverSphere>& cover() const noexcept { return *cover_; }
 
+  /// Of a block of a point cloud: its cubes, several that fill a larger one as that, in the
+  /// solid's frame, with corners at multiples of cube_m(). Of others empty.
+  std::vector<Eigen::AlignedBox3d> cubes() const;
+  double cube_m() const noexcept { return cube_m_; }  ///< edge of a cube; 0: there are none
+
   /// Whether two solids share a point, given their poses in one frame.
   friend bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
                     const Eigen::Isometry3d& T_base_b);
@@ -90,6 +96,7 @@ class Solid {
 
   Shape shape_;
   bool is_hollow_ = false;
+  double cube_m_ = 0;
   double radius_m_ = 0;
   Eigen::Vector3d half_extents_m_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_point_ = Eigen::Vector3d::Zero();  // one that belongs to the solid
