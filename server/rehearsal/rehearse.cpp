@@ -1,11 +1,14 @@
 #include "server/rehearsal/rehearse.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <utility>
 
+#include "proto/types/duration_text.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/split_mix.hpp"
 #include "proto/types/stopped.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -45,12 +48,34 @@ Guide cheapest(std::span<const GuideCost> costs) {
   const bool is_timed =
       std::ranges::all_of(costs, [](const GuideCost& cost) { return cost.mean_time_s > 0; });
   double GuideCost::*const mean = is_timed ? &GuideCost::mean_time_s : &GuideCost::mean_checks;
-  const double enough = kAsGood * std::ranges::min(costs, {}, mean).*mean;
-  const GuideCost* best = nullptr;
+  const auto as_good = [](std::vector<const GuideCost*> of, const auto& cost_of) {
+    const double enough =
+        kAsGood *
+        cost_of(*std::ranges::min(of, {}, [&](const GuideCost* cost) { return cost_of(*cost); }));
+    std::erase_if(of, [&](const GuideCost* cost) { return cost_of(*cost) > enough; });
+    return of;
+  };
+  const auto of_search = [&](const GuideCost& cost) {
+    const auto search = std::ranges::find(costs, without_recall(cost.guide), &GuideCost::guide);
+    return (search == costs.end() ? cost : *search).*mean;
+  };
+  std::vector<const GuideCost*> best;
   for (const GuideCost& cost : costs)
-    if (cost.*mean <= enough && (best == nullptr || effort_of(cost) < effort_of(*best)))
-      best = &cost;
-  return best->guide;
+    best.push_back(&cost);
+  best = as_good(std::move(best), [&](const GuideCost& cost) { return cost.*mean; });
+  best = as_good(std::move(best), of_search);
+  return (*std::ranges::min_element(best, {},
+                                    [](const GuideCost* cost) { return effort_of(*cost); }))
+      ->guide;
+}
+
+std::string described(const std::vector<GuideCost>& costs) {
+  std::string text;
+  for (const GuideCost& cost : costs)
+    text += (text.empty() ? "; mean time " : ", ") + std::string(to_text(cost.guide)) + " " +
+            duration_text(cost.mean_time_s) + " (" +
+            std::to_string(std::llround(cost.mean_checks)) + " checks)";
+  return text;
 }
 
 std::size_t half_of(const Uuid& path) { return path.bytes.back() % kHalves; }

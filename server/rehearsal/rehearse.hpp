@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "proto/types/mixture.hpp"
@@ -36,10 +37,13 @@ struct Subject {
   std::array<std::optional<Mixture>, kHalves> mixtures = {};
 };
 
-/// The guide with the least mean time; of guides that take up to 3 % more, the one with the least
-/// preparation. Where no time is known, by checks.
-/// \param costs  at least one.
+/// The guide with the least mean time. Of guides that take up to 3 % more: those whose search
+/// alone, where nothing is recalled, takes least, or up to 3 % more; of these the one with the
+/// least preparation. Where no time is known, by checks. \param costs  at least one.
 Guide cheapest(std::span<const GuideCost> costs);
+
+/// "; mean time none 4.12 ms (1552 checks), ways 1.05 ms (361 checks)".
+std::string described(const std::vector<GuideCost>& costs);
 
 struct RehearsalOptions {
   std::size_t rounds = 4;  ///< times that each query is planned with each guide, each with a seed

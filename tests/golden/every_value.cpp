@@ -323,6 +323,7 @@ FetchRequest every_fetch_request() {
   request.rehearsed = true;
   request.known_recall = next.count();
   request.start = {next.real(), -next.real()};
+  request.T_task_goal = next.pose();
   return request;
 }
 

@@ -43,7 +43,7 @@ TEST_F(Rehearse, AQueryIsWhereThePathBeganAndEnded) {
   ASSERT_TRUE(query.scene);
   EXPECT_EQ(query.scene->objects.front().name, "post");
   ASSERT_TRUE(query.own);
-  EXPECT_EQ(query.own->waypoints, waypoints);
+  EXPECT_EQ(*query.own, waypoints);
   EXPECT_FALSE(queries_for(ur10e_).queries.front().own) << "another arm's";
   EXPECT_EQ(found.steps.step, 0.1);
   EXPECT_EQ(found.steps.overshoot, 1);
@@ -102,7 +102,7 @@ TEST_F(Rehearse, ItsOwnQueriesStandWhereTheyStood) {
   const std::vector<Attempt> attempts = report_sweeps(1, post(then), then);
   const RecordedQuery own = queries_for(panda_).queries.front();
   ASSERT_TRUE(own.own);
-  EXPECT_TRUE(own.own->T_task_base.isApprox(then, 1e-9));
+  EXPECT_TRUE(own.T_task_base.isApprox(then, 1e-9));
   const auto posed = pose_query(*robot(panda_), today, own);
   ASSERT_TRUE(posed);
   EXPECT_TRUE(posed->query.T_task_base.isApprox(then, 1e-9));
@@ -161,6 +161,16 @@ TEST(Cheapest, GoesByTimeAndByPreparationAmongThoseAboutAsFast) {
   EXPECT_EQ(cheapest(costs), Guide::Ways);
   costs[2].mean_time_s = 0.00207;
   EXPECT_EQ(cheapest(costs), Guide::Mixture);
+}
+
+TEST(Cheapest, OfThoseThatRecallAlikeTheBestSearchIsTaken) {
+  const std::vector<GuideCost> costs{{Guide::None, 20, 20, 900, 900, 0.004},
+                                     {Guide::Retreat, 20, 20, 300, 300, 0.002},
+                                     {Guide::Mixture, 20, 20, 300, 300, 0.002},
+                                     {Guide::Recall, 20, 20, 30, 30, 0.001},
+                                     {Guide::RecallRetreat, 20, 20, 30, 30, 0.00102},
+                                     {Guide::RecallMixture, 20, 20, 30, 30, 0.001}};
+  EXPECT_EQ(cheapest(costs), Guide::RecallRetreat) << "all was recalled: other queries may not be";
 }
 
 TEST(Cheapest, GoesByChecksWhereNoTimeIsKnown) {
