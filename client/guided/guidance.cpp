@@ -202,6 +202,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     request.rehearsed = wanted.rehearsed;
     request.start.assign(wanted.start.begin(), wanted.start.end());
     request.T_task_goal = wanted.T_task_goal;
+    request.to_configuration = wanted.to_configuration;
   }
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {
@@ -249,6 +250,7 @@ std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(
 
 std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(const Problem& problem) {
   wanted_.T_task_goal = problem.T_task_goal;
+  wanted_.to_configuration = problem.goal_configurations.cols() == 1;
   if (!problem.T_task_goal && wanted_.chain && problem.goal_configurations.cols() > 0 &&
       problem.goal_configurations.rows() == wanted_.dof)
     wanted_.T_task_goal =
@@ -256,6 +258,7 @@ std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(const Problem& problem
         kinematics::T_base_transfer(*wanted_.chain, problem.goal_configurations.col(0));
   const auto answer = ask(problem.T_task_base);
   wanted_.T_task_goal.reset();
+  wanted_.to_configuration = false;
   return answer;
 }
 

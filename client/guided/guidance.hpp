@@ -33,6 +33,7 @@ struct GuidanceOptions {
   Selection selection;
   Eigen::VectorXd start;                              ///< FetchRequest::start; empty: not told
   std::optional<Eigen::Isometry3d> T_task_goal = {};  ///< of FetchRequest
+  bool to_configuration = false;                      ///< of FetchRequest
   SamplingModeOptions sampling;
   std::optional<Guide> guide;             ///< missing: the one found by rehearsal, else all
   bool rehearsed = false;                 ///< wait for a rehearsal, as for a distribution

@@ -136,6 +136,7 @@ struct FetchRequest {
   /// Where the transfer frame is to go in the query that the request is for: what other robots
   /// recorded, and this one cannot plan to its recorded goal, is planned to there.
   std::optional<Eigen::Isometry3d> T_task_goal = {};
+  bool to_configuration = false;  ///< queries ask for one configuration, not for any at a pose
 };
 
 template <>
@@ -153,7 +154,8 @@ inline constexpr std::tuple kFieldsOf<FetchRequest>{
     Field{"rehearsed", &FetchRequest::rehearsed},
     Field{"known_recall", &FetchRequest::known_recall},
     Field{"start", &FetchRequest::start, {.limit = kMaxDof}},
-    Field{"T_task_goal", &FetchRequest::T_task_goal}};
+    Field{"T_task_goal", &FetchRequest::T_task_goal},
+    Field{"to_configuration", &FetchRequest::to_configuration}};
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
 

@@ -63,6 +63,7 @@ struct RehearsalKey {
   std::uint32_t experience_bytes = 0;  ///< of the stored pose paths that the robot gets
   Eigen::VectorXd start = {};          ///< FetchRequest::start, maybe empty
   std::optional<Eigen::Isometry3d> T_task_goal = {};  ///< of FetchRequest; of the newest request
+  bool to_configuration = false;                      ///< likewise
 };
 
 /// Finds the best guide for a robot and task before its first query, and makes its library of paths

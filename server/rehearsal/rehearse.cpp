@@ -41,6 +41,14 @@ std::ptrdiff_t effort_of(const GuideCost& cost) {
   return 2 * at + (has_recall(cost.guide) ? 1 : 0);
 }
 
+/// The configuration that a query asked for, as far as that is known.
+Eigen::MatrixXd drawn_goal(const RecordedQuery& query, const Eigen::MatrixXd& goals) {
+  if (query.own)
+    return query.own->rightCols<1>();
+  return goals.col(static_cast<Eigen::Index>(split_mixed(query.path.bytes.front()) %
+                                             static_cast<std::uint64_t>(goals.cols())));
+}
+
 }  // namespace
 
 Guide cheapest(std::span<const GuideCost> costs) {
@@ -98,6 +106,8 @@ bool Rehearsing::step() {
   std::optional<PosedQuery> posed =
       pose_query(*subject_.robot, subject_.T_task_base, subject_.recorded.queries[next_],
                  subject_.starts, Branch::Drawn);
+  if (posed && subject_.to_configuration)
+    posed->query.goals = drawn_goal(subject_.recorded.queries[next_], posed->query.goals);
   is_usable_[next_] = posed.has_value();
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
   std::vector<recall::Warp> failed;
@@ -155,7 +165,10 @@ std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed,
     return std::nullopt;
   const planning::TrackQuery& planned = posed.query;
   recall::Query query{planned.T_task_base, planned.bounds, planned.start, {}};
-  query.T_base_goal = kinematics::T_base_transfer(subject_.robot->chain, planned.goals.col(0));
+  if (subject_.to_configuration)
+    query.goals = planned.goals;
+  else
+    query.T_base_goal = kinematics::T_base_transfer(subject_.robot->chain, planned.goals.col(0));
   query.T_task_anchors =
       recall::find_anchors(subject_.recall->library().anchors, posed.surroundings.scene.objects);
   query.constraint = posed.constraint ? &*posed.constraint : nullptr;

@@ -30,6 +30,7 @@ struct Subject {
   std::shared_ptr<const runtime::Robot> robot;
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
   Starts starts = {};
+  bool to_configuration = false;  ///< its queries ask for one configuration, not any at a pose
   RecordedQueries recorded;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< not null
   std::shared_ptr<const recall::RecallGuide> recall;            ///< null: there is none

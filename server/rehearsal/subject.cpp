@@ -38,6 +38,7 @@ Result<Subject> read_subject(const RehearsalKey& key, const RehearsalScheduler::
     return Error{ErrorCode::InvalidInput, "the server knows no shapes of robot '" +
                                               subject.robot->label +
                                               "': " + subject.robot->geometry};
+  subject.to_configuration = key.to_configuration;
   subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
   subject.recorded = read_queries(parts.store, parts.robots, key.distribution, max_queries, stop);
   subject.starts =

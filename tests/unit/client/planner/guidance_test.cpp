@@ -186,7 +186,7 @@ TEST(GuidanceCache, TellsTheGoalOfAProblemAsAPose) {
       },
       with_chain);
   Problem problem = problem_at(1);
-  problem.goal_configurations = Eigen::MatrixXd::Zero(kDof, 2);
+  problem.goal_configurations = Eigen::MatrixXd::Zero(kDof, 1);
   cache.ask(problem);
   problem = problem_at(2);
   problem.T_task_goal = placement(7);
@@ -197,6 +197,8 @@ TEST(GuidanceCache, TellsTheGoalOfAProblemAsAPose) {
       placement(1) * kinematics::T_base_transfer(*with_chain.chain, Eigen::VectorXd::Zero(kDof))));
   EXPECT_TRUE(seen[1].T_task_goal->isApprox(placement(7)));
   EXPECT_FALSE(seen[2].T_task_goal);
+  EXPECT_TRUE(seen[0].to_configuration);
+  EXPECT_FALSE(seen[1].to_configuration);
 }
 
 TEST(GuidanceCache, AMissingPlacementIsAskedForAsMissing) {

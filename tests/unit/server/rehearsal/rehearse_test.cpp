@@ -125,6 +125,18 @@ TEST_F(Rehearse, WhatARobotCannotReachIsLeftOut) {
   EXPECT_FALSE(result.message.empty());
 }
 
+TEST_F(Rehearse, WhereQueriesAskForOneConfigurationTheyArePlannedToOne) {
+  report_sweeps(4);
+  for (const Digest& digest : {panda_, ur10e_}) {
+    Subject subject = subject_of(digest);
+    const Rehearsal to_poses = rehearsed(subject);
+    subject.to_configuration = true;
+    const Rehearsal to_one = rehearsed(subject);
+    ASSERT_EQ(to_one.queries, 4U);
+    EXPECT_NE(to_one.costs[0].mean_checks, to_poses.costs[0].mean_checks);
+  }
+}
+
 TEST_F(Rehearse, EveryGuideThatThereIsPlansEveryQuery) {
   report_sweeps(3);
   const Rehearsal without = rehearsed(subject_of(panda_), 2);
