@@ -112,23 +112,42 @@ bool Rehearsing::step() {
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
   std::vector<recall::Warp> failed;
   const std::optional<Cost> recalled = posed ? recall(*posed, failed) : std::nullopt;
+  struct Costs {
+    TriedGuide* of;
+    Cost alone;
+    std::optional<Cost> after_recall;
+  };
+  std::vector<Costs> all;
+  bool is_solved = recalled && recalled->is_solved;
   for (std::size_t i = 0; posed && i < guides_.size(); ++i) {
     TriedGuide& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first: cold caches
     if (tried.is_left)
       continue;
     posed->query.failed_paths = {};
-    Cost planned = plan(*posed, seed, tried.guide);
-    tried.alone.add(planned);
-    if (!recalled)
-      continue;
-    if (!recalled->is_solved && planned.has_used_tracks && !failed.empty()) {
+    Costs costs{&tried, plan(*posed, seed, tried.guide), {}};
+    Cost planned = costs.alone;
+    if (recalled && !recalled->is_solved && planned.has_used_tracks && !failed.empty()) {
       posed->query.failed_paths = [&failed] { return recall::whole(failed); };
       planned = plan(*posed, seed, tried.guide);
     }
-    tried.after_recall.add(recalled->is_solved
+    if (recalled)
+      costs.after_recall = recalled->is_solved
                                ? *recalled
                                : Cost{recalled->checks + planned.checks,
-                                      recalled->time_s + planned.time_s, planned.is_solved});
+                                      recalled->time_s + planned.time_s, planned.is_solved};
+    is_solved = is_solved || costs.alone.is_solved || planned.is_solved;
+    all.push_back(costs);
+  }
+  // A drawn configuration that nothing reaches is none that a robot asks for.
+  const bool is_drawn = subject_.to_configuration && !subject_.recorded.queries[next_].own;
+  if (is_drawn && !is_solved && round_ == 0)
+    is_usable_[next_] = false;
+  for (const Costs& costs : all) {
+    if (!is_usable_[next_])
+      break;
+    costs.of->alone.add(costs.alone);
+    if (costs.after_recall)
+      costs.of->after_recall.add(*costs.after_recall);
   }
   ++next_;
   advance();

@@ -137,6 +137,20 @@ TEST_F(Rehearse, WhereQueriesAskForOneConfigurationTheyArePlannedToOne) {
   }
 }
 
+TEST_F(Rehearse, ADrawnConfigurationThatNoGuideReachesIsLeftOut) {
+  report_sweeps(4);
+  for (const Digest& digest : {panda_, ur10e_}) {
+    Subject subject = subject_of(digest);
+    subject.to_configuration = true;
+    Rehearsing rehearsing(subject, {.rounds = 2, .max_checks = 1});
+    while (rehearsing.step()) {
+    }
+    const Rehearsal result = rehearsing.result();
+    EXPECT_EQ(result.queries, digest == panda_ ? 4U : 0U) << "a robot's own goal was reached once";
+    EXPECT_EQ(result.queries + result.left_out, 4U);
+  }
+}
+
 TEST_F(Rehearse, EveryGuideThatThereIsPlansEveryQuery) {
   report_sweeps(3);
   const Rehearsal without = rehearsed(subject_of(panda_), 2);
