@@ -112,46 +112,51 @@ bool Rehearsing::step() {
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
   std::vector<recall::Warp> failed;
   const std::optional<Cost> recalled = posed ? recall(*posed, failed) : std::nullopt;
-  struct Costs {
-    TriedGuide* of;
-    Cost alone;
-    std::optional<Cost> after_recall;
-  };
-  std::vector<Costs> all;
-  bool is_solved = recalled && recalled->is_solved;
+  std::vector<std::pair<TriedGuide*, Costs>> all;
+  bool is_solved = false;
   for (std::size_t i = 0; posed && i < guides_.size(); ++i) {
     TriedGuide& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first: cold caches
     if (tried.is_left)
       continue;
-    posed->query.failed_paths = {};
-    Costs costs{&tried, plan(*posed, seed, tried.guide), {}};
-    Cost planned = costs.alone;
-    if (recalled && !recalled->is_solved && planned.has_used_tracks && !failed.empty()) {
-      posed->query.failed_paths = [&failed] { return recall::whole(failed); };
-      planned = plan(*posed, seed, tried.guide);
-    }
-    if (recalled)
-      costs.after_recall = recalled->is_solved
-                               ? *recalled
-                               : Cost{recalled->checks + planned.checks,
-                                      recalled->time_s + planned.time_s, planned.is_solved};
-    is_solved = is_solved || costs.alone.is_solved || planned.is_solved;
-    all.push_back(costs);
+    all.emplace_back(&tried, try_guide(*posed, seed, tried.guide, recalled, failed));
+    const Costs& costs = all.back().second;
+    is_solved =
+        is_solved || costs.alone.is_solved || (costs.after_recall && costs.after_recall->is_solved);
   }
   // A drawn configuration that nothing reaches is none that a robot asks for.
   const bool is_drawn = subject_.to_configuration && !subject_.recorded.queries[next_].own;
   if (is_drawn && !is_solved && round_ == 0)
     is_usable_[next_] = false;
-  for (const Costs& costs : all) {
+  for (const auto& [tried, costs] : all) {
     if (!is_usable_[next_])
       break;
-    costs.of->alone.add(costs.alone);
+    tried->alone.add(costs.alone);
     if (costs.after_recall)
-      costs.of->after_recall.add(*costs.after_recall);
+      tried->after_recall.add(*costs.after_recall);
   }
   ++next_;
   advance();
   return true;
+}
+
+/// \param recalled  what it cost to try; nothing: there is nothing to recall.
+/// \param failed    paths that were tried in vain.
+Rehearsing::Costs Rehearsing::try_guide(PosedQuery& posed, std::uint64_t seed, Guide guide,
+                                        const std::optional<Cost>& recalled,
+                                        std::vector<recall::Warp>& failed) const {
+  posed.query.failed_paths = {};
+  Costs costs{plan(posed, seed, guide), recalled};
+  if (!recalled || recalled->is_solved)
+    return costs;
+  Cost planned = costs.alone;
+  if (planned.has_used_tracks && !failed.empty()) {
+    posed.query.failed_paths = [&failed] { return recall::whole(failed); };
+    planned = plan(posed, seed, guide);
+  }
+  planned.checks += recalled->checks;
+  planned.time_s += recalled->time_s;
+  costs.after_recall = planned;
+  return costs;
 }
 
 bool Rehearsing::is_done() const { return round_ >= options_.rounds || next_ == is_usable_.size(); }

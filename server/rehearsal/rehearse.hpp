@@ -90,6 +90,14 @@ class Rehearsing {
     bool is_left = false;
   };
 
+  /// Of one query with one guide.
+  struct Costs {
+    Cost alone;
+    std::optional<Cost> after_recall;  // nothing: there is nothing to recall
+  };
+
+  Costs try_guide(PosedQuery& posed, std::uint64_t seed, Guide guide,
+                  const std::optional<Cost>& recalled, std::vector<recall::Warp>& failed) const;
   Cost plan(PosedQuery& posed, std::uint64_t seed, Guide guide) const;
   std::optional<Cost> recall(PosedQuery& posed, std::vector<recall::Warp>& failed) const;
   bool is_done() const;
