@@ -39,7 +39,7 @@ int main(int count, char** words) try {
   const guided::PlanSettings settings;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Problem problem = around_a_post(seed);
-    if (const auto [answer, is_new] = guidance.ask(problem.T_task_base); is_new)
+    if (const auto [answer, is_new] = guidance.ask(problem); is_new)
       std::cout << answer.message << '\n';  // without a server too: planned uniformly then
     const guided::PlannedProblem planned = guided::plan_problem(
         robot, problem, guidance.choose(problem), settings, [] { return false; });

@@ -6,6 +6,7 @@
 
 #include "proto/evidence/machine_speed.hpp"
 #include "proto/types/enum_text.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::guided {
 namespace {
@@ -89,9 +90,10 @@ bool needs_server(const GuidanceOptions& wanted) {
   return !wanted.guide || needs_experience(*wanted.guide);
 }
 
-/// The rehearsal's; as long as it has none, what costs less than all guides together.
+/// The rehearsal's; as long as it has none, what costs less than all guides together. Where no
+/// recorded query could be planned it has no costs, and says that none helps.
 Guide guide_by(const Rehearsal* rehearsal, bool are_ways) {
-  if (rehearsal != nullptr && !rehearsal->costs.empty())
+  if (rehearsal != nullptr && (!rehearsal->costs.empty() || rehearsal->guide == Guide::None))
     return rehearsal->guide;
   return are_ways ? Guide::RecallRetreatWays : Guide::All;
 }
@@ -199,6 +201,8 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     request.known_recall = known.recall ? known.recall->library().revision : 0;
     request.rehearsed = wanted.rehearsed;
     request.start.assign(wanted.start.begin(), wanted.start.end());
+    request.T_task_goal = wanted.T_task_goal;
+    request.to_configuration = wanted.to_configuration;
   }
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {
@@ -242,6 +246,20 @@ std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(
   if (answer.sampling && (needs_server(wanted_) || !sampling_))
     sampling_ = answer.sampling;
   return {answers_.emplace(key, std::move(answer)).first->second, true};
+}
+
+std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(const Problem& problem) {
+  wanted_.T_task_goal = problem.T_task_goal;
+  wanted_.to_configuration = problem.goal_configurations.cols() == 1;
+  if (!problem.T_task_goal && wanted_.chain && problem.goal_configurations.cols() > 0 &&
+      problem.goal_configurations.rows() == wanted_.dof)
+    wanted_.T_task_goal =
+        problem.T_task_base.value_or(Eigen::Isometry3d::Identity()) *
+        kinematics::T_base_transfer(*wanted_.chain, problem.goal_configurations.col(0));
+  const auto answer = ask(problem.T_task_base);
+  wanted_.T_task_goal.reset();
+  wanted_.to_configuration = false;
+  return answer;
 }
 
 QueryGuidance GuidanceCache::choose(const Problem& problem) const {

@@ -31,7 +31,9 @@ struct GuidanceOptions {
   std::optional<kinematics::Chain> chain;
   std::string profile = "default";
   Selection selection;
-  Eigen::VectorXd start;  ///< FetchRequest::start; empty: not told
+  Eigen::VectorXd start;                              ///< FetchRequest::start; empty: not told
+  std::optional<Eigen::Isometry3d> T_task_goal = {};  ///< of FetchRequest
+  bool to_configuration = false;                      ///< of FetchRequest
   SamplingModeOptions sampling;
   std::optional<Guide> guide;             ///< missing: the one found by rehearsal, else all
   bool rehearsed = false;                 ///< wait for a rehearsal, as for a distribution
@@ -75,6 +77,8 @@ class GuidanceCache {
 
   /// Fetches unless the placement is known. \return the answer, and whether it is new.
   std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base);
+  /// The same for a problem, whose goal the server is told.
+  std::pair<const GuidanceAnswer&, bool> ask(const Problem& problem);
 
   /// Guidance and sampling mode of the next problem, from the answers of ask() and the attempts of
   /// add(). Never waits.

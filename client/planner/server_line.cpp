@@ -146,7 +146,7 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
       break;
     if (!line.problem)
       continue;
-    const auto [answer, is_new] = guidance_->ask(line.problem->T_task_base);
+    const auto [answer, is_new] = guidance_->ask(*line.problem);
     if (!is_new)
       continue;
     const std::string outcome = answer.guidance ? "" : "none, ";

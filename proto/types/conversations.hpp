@@ -133,6 +133,10 @@ struct FetchRequest {
   /// Where queries of the robot usually begin, joint units: what other robots recorded is planned
   /// from there. Empty: the server looks for a start.
   std::vector<double> start = {};
+  /// Where the transfer frame is to go in the query that the request is for: what other robots
+  /// recorded, and this one cannot plan to its recorded goal, is planned to there.
+  std::optional<Eigen::Isometry3d> T_task_goal = {};
+  bool to_configuration = false;  ///< queries ask for one configuration, not for any at a pose
 };
 
 template <>
@@ -149,7 +153,9 @@ inline constexpr std::tuple kFieldsOf<FetchRequest>{
     Field{"known_experience", &FetchRequest::known_experience},
     Field{"rehearsed", &FetchRequest::rehearsed},
     Field{"known_recall", &FetchRequest::known_recall},
-    Field{"start", &FetchRequest::start, {.limit = kMaxDof}}};
+    Field{"start", &FetchRequest::start, {.limit = kMaxDof}},
+    Field{"T_task_goal", &FetchRequest::T_task_goal},
+    Field{"to_configuration", &FetchRequest::to_configuration}};
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
 

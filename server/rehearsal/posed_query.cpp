@@ -92,7 +92,7 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
                                      Branch branch) {
   PosedQuery posed;
   const Eigen::Isometry3d T_task_base =
-      recorded.own ? recorded.own->T_task_base : T_task_base_today;
+      recorded.own ? recorded.T_task_base : recorded.T_task_drawn_base.value_or(T_task_base_today);
   const collision::RobotSolids solids(robot.chain, robot.shapes);
   posed.surroundings = recorded.scene
                            ? transfer::recorded_surroundings(solids, *recorded.scene, T_task_base)
@@ -103,7 +103,7 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
       recorded.scene ? recorded.scene->constraint : std::nullopt;
   const planning::IsFree is_free = planning::free_in(*posed.world);
   const std::optional<Eigen::VectorXd> start =
-      recorded.own ? std::optional<Eigen::VectorXd>(recorded.own->waypoints.col(0))
+      recorded.own ? std::optional<Eigen::VectorXd>(recorded.own->col(0))
       : !starts.are_recorded && is_start(robot.chain, starts.usual) && is_free(starts.usual)
           ? std::optional<Eigen::VectorXd>(starts.usual)
           : find_start(robot.chain, T_base_task * recorded.T_task_start, is_free, starts.usual,

@@ -39,9 +39,9 @@ std::vector<recall::PosedQuery> recall_queries(const runtime::Robot& robot,
                               std::move(posed->query.goals),
                               query.scene->constraint};
     if (query.own) {
-      if (!is_usable(query.own->waypoints, wanted.bounds))
+      if (!is_usable(*query.own, wanted.bounds))
         return;
-      wanted.solution = query.own->waypoints;
+      wanted.solution = query.own;
     }
     queries.push_back(std::move(wanted));
   };

@@ -87,11 +87,14 @@ class QueryReader {
         stored.T_task_base.value_or(Eigen::Isometry3d::Identity());
     const Eigen::VectorXd start = stored.path.waypoints().col(0);
     RecordedQuery query{
-        stored.report_uuid, T_task_base * kinematics::T_base_transfer(robot.chain, start),
+        stored.report_uuid,
+        T_task_base,
+        T_task_base * kinematics::T_base_transfer(robot.chain, start),
         T_task_base * kinematics::T_base_transfer(robot.chain, stored.path.waypoints().col(last)),
-        std::nullopt, std::move(scene)};
+        std::nullopt,
+        std::move(scene)};
     if (robot.digest == key_.robot)
-      query.own = {T_task_base, stored.path.waypoints()};
+      query.own = stored.path.waypoints();
     found_.queries.push_back(std::move(query));
     newest_ = stored.report_uuid;
   }

@@ -18,15 +18,14 @@ namespace kinship::rehearsal {
 /// The query that a stored path answered, independent of its robot.
 struct RecordedQuery {
   Uuid path;                       ///< the report with the answer
+  Eigen::Isometry3d T_task_base;   ///< where the robot that answered stood
   Eigen::Isometry3d T_task_start;  ///< of the transfer frame
   Eigen::Isometry3d T_task_goal;
-  /// The rehearsed robot's own answer: where it stood, and its path, dof x n.
-  struct Own {
-    Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
-    Eigen::MatrixXd waypoints;
-  };
-  std::optional<Own> own;                      ///< missing: another robot answered
+  /// The rehearsed robot's own answer, dof x n; missing: another robot answered.
+  std::optional<Eigen::MatrixXd> own;
   std::shared_ptr<const RecordedScene> scene;  ///< null: none was recorded
+  /// Where the rehearsed robot stands instead of where it is today; of another robot's.
+  std::optional<Eigen::Isometry3d> T_task_drawn_base = {};
 };
 
 /// Step parameters of the planner of a task's reports: "step=0.1 overshoot=1" in their options.

@@ -57,7 +57,8 @@ catalog::FetchDone with_rehearsal(RehearsalScheduler& rehearsals, const FetchReq
   const auto& start = request.start;
   const Addition addition(rehearsals,
                           {*distribution, request.experience_bytes,
-                           Eigen::Map<const Eigen::VectorXd>(start.data(), std::ssize(start))},
+                           Eigen::Map<const Eigen::VectorXd>(start.data(), std::ssize(start)),
+                           request.T_task_goal, request.to_configuration},
                           request.known_recall);
   return [&rehearsals, addition, deadline = now + request.deadline, waits = request.rehearsed,
           done = std::move(done)](const FetchReply& reply) {

@@ -1,8 +1,6 @@
 #include "server/rehearsal/rehearsal_scheduler.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <exception>
 #include <string>
 
@@ -21,33 +19,12 @@ namespace {
 constexpr int kNiceness = 10;  // about a tenth of a processor where others want all of it
 constexpr std::size_t kMaxQueued = 1024;
 
-std::uint64_t count_selected(const store::ExperienceStore& store,
-                             const fitting::DistributionKey& key) {
-  return fitting::count_paths(fitting::selected_experience(key, store.experience(key.task)));
-}
-
 /// Another number once a path of the task was retired.
 std::uint64_t count_retirements(const store::ExperienceStore& store, std::string_view task) {
   std::uint64_t sum = 0;
   for (const store::ExperienceSummary& robot : store.experience(task))
     sum += robot.retired_generation;
   return sum;
-}
-
-std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", value);
-  return text;
-}
-
-/// "; mean time none 4.12 ms (1552 checks), ways 1.05 ms (361 checks)".
-std::string described(const std::vector<GuideCost>& costs) {
-  std::string text;
-  for (const GuideCost& cost : costs)
-    text += (text.empty() ? "; mean time " : ", ") + std::string(to_text(cost.guide)) + " " +
-            duration_text(cost.mean_time_s) + " (" +
-            std::to_string(std::llround(cost.mean_checks)) + " checks)";
-  return text;
 }
 
 /// Equal for keys that differ in the placement alone.
@@ -82,13 +59,14 @@ void RehearsalScheduler::load() {
     if (each.retired != count_retirements(parts_.store, each.task))
       continue;
     Entry& entry = entries_[each.id];
+    entry.id = each.id;
     entry.key.distribution.task = std::move(each.task);  // a request brings the rest
     entry.key.distribution.T_task_base = each.T_task_base;
     entry.kind = each.kind;
     entry.known = std::make_shared<const Rehearsal>(std::move(each.rehearsal));
     if (each.library)
       entry.library = std::make_shared<const RecallLibrary>(*std::move(each.library));
-    entry.paths = each.paths;
+    entry.made_of.all = each.paths;
     entry.last_used = ++uses_;
   }
 }
@@ -102,31 +80,40 @@ SharedRehearsal RehearsalScheduler::ask(const RehearsalKey& key) {
   return known;
 }
 
-/// Its own complete rehearsal, or that of the nearest placement, or its own so far.
+/// Its own complete rehearsal, or that of the nearest placement, or its own so far. One in which
+/// nothing could be planned tells nothing where another one tells something.
 SharedRehearsal RehearsalScheduler::known_to(const Entry& entry) const {
-  if (entry.known && entry.known->is_complete)
+  const bool is_complete = entry.known && entry.known->is_complete;
+  if (is_complete && entry.known->queries > 0)
     return entry.known;
-  const Entry* const near = nearest(entry.key);
-  return near != nullptr ? near->known : entry.known;
+  const Entry* const near = nearest(entry.key, Worth::Any);
+  const bool is_better = near != nullptr && (!is_complete || near->known->queries > 0);
+  return is_better ? near->known : entry.known;
 }
 
 /// The entry of an equal key at the nearest other placement that has been rehearsed.
-const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey& key) const {
+/// \param worth  Enough: not one in which nothing could be planned, nor one without a library where
+///               the experience has changed since: one may be made by now.
+const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey& key,
+                                                             Worth worth) const {
   constexpr double kNear_m = 1.5;  // a radian counts as 0.3 m
   const auto place = [](const RehearsalKey& of) {
     return of.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
   };
-  const Digest kind = kind_of(key);
+  const Digest kind = kind_of(key), own = identify(key.distribution);
   const Entry* found = nullptr;
-  double least = kNear_m;
+  std::pair<bool, double> least{true, kNear_m};  // nothing could be planned there; distance
   for (const auto& [id, entry] : entries_) {
-    if (!entry.known || !entry.known->is_complete || entry.is_lost || entry.kind != kind)
+    if (!entry.known || !entry.known->is_complete || entry.is_lost || entry.kind != kind ||
+        id == own)
       continue;
-    if (!entry.library && entry.looked_at != versions_.of(entry.key.distribution.task).changes)
-      continue;  // one may be made by now
+    const bool is_empty = entry.known->queries == 0;
+    if (worth == Worth::Enough && (is_empty || (!entry.library && !is_compared(entry))))
+      continue;
     const double distance = planning::pose_distance_m(place(entry.key), place(key));
-    if (distance <= least) {
-      least = distance;
+    const std::pair here(is_empty, distance);
+    if (distance <= kNear_m && here <= least) {
+      least = here;
       found = &entry;
     }
   }
@@ -150,7 +137,8 @@ void RehearsalScheduler::wait(const RehearsalKey& key, TimePoint deadline, const
     if (!is_stopping_ && options_.processor_fraction > 0) {
       Entry& entry = use(key);
       known = known_to(entry);
-      const bool is_served = known && known != entry.known;  // by another placement's
+      const bool is_complete = entry.known && entry.known->is_complete;
+      const bool is_served = !is_complete && nearest(key) != nullptr;
       waits = entry.is_working && !is_served && waiters_ < options_.max_waiters;
       if (waits) {
         entry.waiters.push_back({deadline, done});
@@ -168,20 +156,37 @@ void RehearsalScheduler::wait(const RehearsalKey& key, TimePoint deadline, const
 RehearsalScheduler::Entry& RehearsalScheduler::use(const RehearsalKey& key) {
   const Digest id = identify(key.distribution);
   Entry& entry = entries_[id];
+  entry.id = id;
   entry.key = key;
   entry.kind = kind_of(key);
   entry.last_used = ++uses_;
   ++entry.asked;
-  const bool is_current = entry.known && !entry.is_lost &&
-                          entry.looked_at == versions_.of(key.distribution.task).changes;
   const Entry* const near = entry.known ? nullptr : nearest(key);
   if (near != nullptr)
     near->last_used = ++uses_;  // it serves, too
-  const bool is_served = entry.asked == 1 && near != nullptr;
-  if (!is_current && !entry.is_working && !is_served)
+  if (entry.asked > 1 || near == nullptr) {
+    begin(id, entry);
+  } else {
+    const Digest near_id = near->id;
+    Entry& serving = entries_[near_id];
+    const std::optional<Eigen::Isometry3d> T_task_base = serving.key.distribution.T_task_base;
+    serving.key = key;  // of one from before a restart the placement alone is known
+    serving.key.distribution.T_task_base = T_task_base;
+    begin(near_id, serving);
+  }
+  return entry;
+}
+
+/// Whether it was compared with the task's experience as that is now.
+bool RehearsalScheduler::is_compared(const Entry& entry) const {
+  return entry.looked_at == versions_.of(entry.key.distribution.task).changes;
+}
+
+/// Compares it with the experience, which may rehearse it, unless that was done or is under way.
+void RehearsalScheduler::begin(const Digest& id, Entry& entry) {
+  if (!entry.is_working && !(entry.known && !entry.is_lost && is_compared(entry)))
     entry.is_working = pool_.submit(runtime::WorkerPool::Priority::Background,
                                     {.run = [this, id] { work(id); }, .abandon = {}});
-  return entry;
 }
 
 std::optional<RehearsalScheduler::TimePoint> RehearsalScheduler::next_deadline() const {
@@ -249,7 +254,7 @@ void RehearsalScheduler::work(const Digest& id) {
     before.key = entry.key;
     before.known = entry.known;
     before.library = entry.library;
-    before.paths = entry.paths;
+    before.made_of = entry.made_of;
     before.is_lost = entry.is_lost;
     entry.is_lost = false;
     changes = versions_.of(entry.key.distribution.task).changes;
@@ -275,20 +280,34 @@ void RehearsalScheduler::work(const Digest& id) {
     done(known);
 }
 
-bool RehearsalScheduler::is_out_of_date(const RehearsalKey& key, const Entry& entry) {
+RehearsalScheduler::Counts RehearsalScheduler::count_selected(
+    const fitting::DistributionKey& key) const {
+  const std::vector<store::ExperienceSummary> selected =
+      fitting::selected_experience(key, parts_.store.experience(key.task));
+  Counts counts{fitting::count_paths(selected), 0};
+  for (const store::ExperienceSummary& source : selected)
+    if (source.robot == key.robot)
+      *counts.own += source.paths;
+  return counts;
+}
+
+bool RehearsalScheduler::is_out_of_date(const RehearsalKey& key, const Entry& entry) const {
   if (!entry.known || entry.is_lost)
     return true;
-  const std::uint64_t now = count_selected(parts_.store, key.distribution);
+  const Counts now = count_selected(key.distribution);
+  const Counts& then = entry.made_of;
   const std::uint64_t growth =
-      entry.library ? std::max<std::uint64_t>(10, entry.paths / 5)
-                    : std::max<std::uint64_t>(1, entry.paths / 20);  // one may be made of it
-  return now >= entry.paths + growth;
+      entry.library ? std::max<std::uint64_t>(10, then.all / 5)
+                    : std::max<std::uint64_t>(1, then.all / 20);  // one may be made of it
+  // The first own ones tell more than many of another robot's.
+  const bool is_doubled = then.own && *now.own >= std::max<std::uint64_t>(1, 2 * *then.own);
+  return now.all >= then.all + growth || is_doubled;
 }
 
 void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   const double begin_s = planning::thread_time_s();
   const std::uint64_t retired = count_retirements(parts_.store, key.distribution.task);
-  const std::uint64_t paths = count_selected(parts_.store, key.distribution);
+  const Counts paths = count_selected(key.distribution);
   Rehearsal result;
   result.is_complete = true;
   Result<Subject> subject =
@@ -304,7 +323,7 @@ void RehearsalScheduler::rehearse(const Digest& id, const RehearsalKey& key) {
   result.processor_time_s = planning::thread_time_s() - begin_s;
   options_.log("rehearsal " + id.short_hex() + " of task '" + key.distribution.task +
                "': " + std::to_string(result.queries) + " queries, guide " +
-               std::string(to_text(result.guide)) + ", " + seconds(result.processor_time_s) +
+               std::string(to_text(result.guide)) + ", " + duration_text(result.processor_time_s) +
                " of processor time" + described(result.costs) +
                (result.message.empty() ? "" : ": " + result.message));
   keep(id, std::move(result), paths);
@@ -324,7 +343,7 @@ void RehearsalScheduler::do_in_parts(const Digest& id, const std::function<bool(
 
 /// A first result, before the long work: each guide on a few queries.
 void RehearsalScheduler::try_a_few(const Digest& id, const Subject& subject, RehearsalOptions plan,
-                                   std::uint64_t paths) {
+                                   const Counts& paths) {
   constexpr std::size_t kFew = 10;
   Subject few = subject;
   std::vector<RecordedQuery>& queries = few.recorded.queries;
@@ -342,7 +361,7 @@ void RehearsalScheduler::try_a_few(const Digest& id, const Subject& subject, Reh
 }
 
 /// Makes the library, then plans every query with every guide.
-Rehearsal RehearsalScheduler::try_guides(const Digest& id, Subject subject, std::uint64_t paths) {
+Rehearsal RehearsalScheduler::try_guides(const Digest& id, Subject subject, const Counts& paths) {
   const double begin_s = planning::thread_time_s();
   const runtime::Robot& robot = *subject.robot;
   // A longer way round than the robot needs, or a shorter one.
@@ -394,11 +413,11 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
   return entry.library;
 }
 
-void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths) {
+void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, const Counts& paths) {
   auto known = std::make_shared<const Rehearsal>(std::move(rehearsal));
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[id];
-  entry.paths = paths;
+  entry.made_of = paths;
   if (known->is_complete) {
     totals_.processor_time_s += known->processor_time_s;
     ++totals_.done;
@@ -417,7 +436,7 @@ void RehearsalScheduler::save(const Digest& id, std::uint64_t retired) {
                                 .task = key.task,
                                 .made_ms = parts_.clock.unix_ms(),
                                 .kind = entry.kind,
-                                .paths = entry.paths,
+                                .paths = entry.made_of.all,
                                 .retired = retired,
                                 .T_task_base = key.T_task_base,
                                 .rehearsal = *entry.known};

@@ -62,14 +62,16 @@ struct RehearsalKey {
   fitting::DistributionKey distribution;
   std::uint32_t experience_bytes = 0;  ///< of the stored pose paths that the robot gets
   Eigen::VectorXd start = {};          ///< FetchRequest::start, maybe empty
+  std::optional<Eigen::Isometry3d> T_task_goal = {};  ///< of FetchRequest; of the newest request
+  bool to_configuration = false;                      ///< likewise
 };
 
 /// Finds the best guide for a robot and task before its first query, and makes its library of paths
 /// to recall, on a low-priority thread of its own. Both are valid until the experience has grown by
-/// a fifth and ten paths, or lost one, also after a restart: complete ones are in the store. At a
-/// placement that has none, those of the nearest one count; it is rehearsed itself from its second
-/// request on. May be shared between threads; no lock is held across the store, a plan or an
-/// answer.
+/// a fifth and ten paths, the robot's own has doubled, or a path is lost, also after a restart:
+/// complete ones are in the store. At a placement that has none, those of the nearest one count; it
+/// is rehearsed itself from its second request on. May be shared between threads; no lock is held
+/// across the store, a plan or an answer.
 class RehearsalScheduler {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -120,17 +122,23 @@ class RehearsalScheduler {
   void stop();
 
  private:
+  /// Of paths.
+  struct Counts {
+    std::uint64_t all = 0;
+    std::optional<std::uint64_t> own;  // the robot's; nothing: not known since a restart
+  };
   struct Waiter {
     TimePoint deadline;
     Done done;
   };
   struct Entry {
+    Digest id;
     RehearsalKey key;
     Digest kind;  // of the key without its placement
     SharedRehearsal known;
     SharedLibrary library;
     std::uint64_t asked = 0;
-    std::uint64_t paths = 0;  // it was made of
+    Counts made_of;
     /// Changes of the task's experience when it was last compared; nothing: by no request yet.
     std::optional<std::uint64_t> looked_at;
     bool is_lost = false;  // paths were retired since
@@ -145,20 +153,24 @@ class RehearsalScheduler {
   // Under the lock.
   Entry& use(const RehearsalKey& key);
   SharedRehearsal known_to(const Entry& entry) const;
-  const Entry* nearest(const RehearsalKey& key) const;
+  enum class Worth { Enough, Any };
+  const Entry* nearest(const RehearsalKey& key, Worth worth = Worth::Enough) const;
+  bool is_compared(const Entry& entry) const;
+  void begin(const Digest& id, Entry& entry);
   void let_go(Entry& entry, WaiterAnswers& answers);
   void make_room();
 
   // On its own thread, without the lock.
   void work(const Digest& id);
-  bool is_out_of_date(const RehearsalKey& key, const Entry& entry);
+  Counts count_selected(const fitting::DistributionKey& key) const;
+  bool is_out_of_date(const RehearsalKey& key, const Entry& entry) const;
   void rehearse(const Digest& id, const RehearsalKey& key);
   void do_in_parts(const Digest& id, const std::function<bool()>& part);
   void try_a_few(const Digest& id, const Subject& subject, RehearsalOptions plan,
-                 std::uint64_t paths);
-  Rehearsal try_guides(const Digest& id, Subject subject, std::uint64_t paths);
+                 const Counts& paths);
+  Rehearsal try_guides(const Digest& id, Subject subject, const Counts& paths);
   SharedLibrary make_library(const Digest& id, const Subject& subject);
-  void keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths);
+  void keep(const Digest& id, Rehearsal rehearsal, const Counts& paths);
   void save(const Digest& id, std::uint64_t retired);
   void rest(const Digest& id, double worked_s);
 

@@ -1,11 +1,14 @@
 #include "server/rehearsal/rehearse.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <utility>
 
+#include "proto/types/duration_text.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/split_mix.hpp"
 #include "proto/types/stopped.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -38,6 +41,14 @@ std::ptrdiff_t effort_of(const GuideCost& cost) {
   return 2 * at + (has_recall(cost.guide) ? 1 : 0);
 }
 
+/// The configuration that a query asked for, as far as that is known.
+Eigen::MatrixXd drawn_goal(const RecordedQuery& query, const Eigen::MatrixXd& goals) {
+  if (query.own)
+    return query.own->rightCols<1>();
+  return goals.col(static_cast<Eigen::Index>(split_mixed(query.path.bytes.front()) %
+                                             static_cast<std::uint64_t>(goals.cols())));
+}
+
 }  // namespace
 
 Guide cheapest(std::span<const GuideCost> costs) {
@@ -45,12 +56,34 @@ Guide cheapest(std::span<const GuideCost> costs) {
   const bool is_timed =
       std::ranges::all_of(costs, [](const GuideCost& cost) { return cost.mean_time_s > 0; });
   double GuideCost::*const mean = is_timed ? &GuideCost::mean_time_s : &GuideCost::mean_checks;
-  const double enough = kAsGood * std::ranges::min(costs, {}, mean).*mean;
-  const GuideCost* best = nullptr;
+  const auto as_good = [](std::vector<const GuideCost*> of, const auto& cost_of) {
+    const double enough =
+        kAsGood *
+        cost_of(*std::ranges::min(of, {}, [&](const GuideCost* cost) { return cost_of(*cost); }));
+    std::erase_if(of, [&](const GuideCost* cost) { return cost_of(*cost) > enough; });
+    return of;
+  };
+  const auto of_search = [&](const GuideCost& cost) {
+    const auto search = std::ranges::find(costs, without_recall(cost.guide), &GuideCost::guide);
+    return (search == costs.end() ? cost : *search).*mean;
+  };
+  std::vector<const GuideCost*> best;
   for (const GuideCost& cost : costs)
-    if (cost.*mean <= enough && (best == nullptr || effort_of(cost) < effort_of(*best)))
-      best = &cost;
-  return best->guide;
+    best.push_back(&cost);
+  best = as_good(std::move(best), [&](const GuideCost& cost) { return cost.*mean; });
+  best = as_good(std::move(best), of_search);
+  return (*std::ranges::min_element(best, {},
+                                    [](const GuideCost* cost) { return effort_of(*cost); }))
+      ->guide;
+}
+
+std::string described(const std::vector<GuideCost>& costs) {
+  std::string text;
+  for (const GuideCost& cost : costs)
+    text += (text.empty() ? "; mean time " : ", ") + std::string(to_text(cost.guide)) + " " +
+            duration_text(cost.mean_time_s) + " (" +
+            std::to_string(std::llround(cost.mean_checks)) + " checks)";
+  return text;
 }
 
 std::size_t half_of(const Uuid& path) { return path.bytes.back() % kHalves; }
@@ -73,31 +106,57 @@ bool Rehearsing::step() {
   std::optional<PosedQuery> posed =
       pose_query(*subject_.robot, subject_.T_task_base, subject_.recorded.queries[next_],
                  subject_.starts, Branch::Drawn);
+  if (posed && subject_.to_configuration)
+    posed->query.goals = drawn_goal(subject_.recorded.queries[next_], posed->query.goals);
   is_usable_[next_] = posed.has_value();
   const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
   std::vector<recall::Warp> failed;
   const std::optional<Cost> recalled = posed ? recall(*posed, failed) : std::nullopt;
+  std::vector<std::pair<TriedGuide*, Costs>> all;
+  bool is_solved = false;
   for (std::size_t i = 0; posed && i < guides_.size(); ++i) {
     TriedGuide& tried = guides_[(i + next_ + round_) % guides_.size()];  // the first: cold caches
     if (tried.is_left)
       continue;
-    posed->query.failed_paths = {};
-    Cost planned = plan(*posed, seed, tried.guide);
-    tried.alone.add(planned);
-    if (!recalled)
-      continue;
-    if (!recalled->is_solved && planned.has_used_tracks && !failed.empty()) {
-      posed->query.failed_paths = [&failed] { return recall::whole(failed); };
-      planned = plan(*posed, seed, tried.guide);
-    }
-    tried.after_recall.add(recalled->is_solved
-                               ? *recalled
-                               : Cost{recalled->checks + planned.checks,
-                                      recalled->time_s + planned.time_s, planned.is_solved});
+    all.emplace_back(&tried, try_guide(*posed, seed, tried.guide, recalled, failed));
+    const Costs& costs = all.back().second;
+    is_solved =
+        is_solved || costs.alone.is_solved || (costs.after_recall && costs.after_recall->is_solved);
+  }
+  // A drawn configuration that nothing reaches is none that a robot asks for.
+  const bool is_drawn = subject_.to_configuration && !subject_.recorded.queries[next_].own;
+  if (is_drawn && !is_solved && round_ == 0)
+    is_usable_[next_] = false;
+  for (const auto& [tried, costs] : all) {
+    if (!is_usable_[next_])
+      break;
+    tried->alone.add(costs.alone);
+    if (costs.after_recall)
+      tried->after_recall.add(*costs.after_recall);
   }
   ++next_;
   advance();
   return true;
+}
+
+/// \param recalled  what it cost to try; nothing: there is nothing to recall.
+/// \param failed    paths that were tried in vain.
+Rehearsing::Costs Rehearsing::try_guide(PosedQuery& posed, std::uint64_t seed, Guide guide,
+                                        const std::optional<Cost>& recalled,
+                                        std::vector<recall::Warp>& failed) const {
+  posed.query.failed_paths = {};
+  Costs costs{plan(posed, seed, guide), recalled};
+  if (!recalled || recalled->is_solved)
+    return costs;
+  Cost planned = costs.alone;
+  if (planned.has_used_tracks && !failed.empty()) {
+    posed.query.failed_paths = [&failed] { return recall::whole(failed); };
+    planned = plan(posed, seed, guide);
+  }
+  planned.checks += recalled->checks;
+  planned.time_s += recalled->time_s;
+  costs.after_recall = planned;
+  return costs;
 }
 
 bool Rehearsing::is_done() const { return round_ >= options_.rounds || next_ == is_usable_.size(); }
@@ -130,7 +189,10 @@ std::optional<Rehearsing::Cost> Rehearsing::recall(PosedQuery& posed,
     return std::nullopt;
   const planning::TrackQuery& planned = posed.query;
   recall::Query query{planned.T_task_base, planned.bounds, planned.start, {}};
-  query.T_base_goal = kinematics::T_base_transfer(subject_.robot->chain, planned.goals.col(0));
+  if (subject_.to_configuration)
+    query.goals = planned.goals;
+  else
+    query.T_base_goal = kinematics::T_base_transfer(subject_.robot->chain, planned.goals.col(0));
   query.T_task_anchors =
       recall::find_anchors(subject_.recall->library().anchors, posed.surroundings.scene.objects);
   query.constraint = posed.constraint ? &*posed.constraint : nullptr;

@@ -5,6 +5,7 @@
 
 #include "proto/types/stopped.hpp"
 #include "server/fitting/fit_distribution.hpp"
+#include "server/rehearsal/asked_queries.hpp"
 
 namespace kinship::rehearsal {
 namespace {
@@ -37,10 +38,14 @@ Result<Subject> read_subject(const RehearsalKey& key, const RehearsalScheduler::
     return Error{ErrorCode::InvalidInput, "the server knows no shapes of robot '" +
                                               subject.robot->label +
                                               "': " + subject.robot->geometry};
+  subject.to_configuration = key.to_configuration;
   subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
   subject.recorded = read_queries(parts.store, parts.robots, key.distribution, max_queries, stop);
   subject.starts =
       find_starts(subject.robot->chain, subject.T_task_base, subject.recorded.queries, key.start);
+  if (key.T_task_goal)
+    ask_in_recorded_scenes(*key.T_task_goal, *subject.robot, subject.T_task_base, subject.starts,
+                           subject.recorded.queries);
   std::promise<catalog::SharedChoice> chosen;
   parts.experience.ask(
       {key.distribution.task, key.distribution.sources, key.distribution.since_ms,

@@ -323,6 +323,8 @@ FetchRequest every_fetch_request() {
   request.rehearsed = true;
   request.known_recall = next.count();
   request.start = {next.real(), -next.real()};
+  request.T_task_goal = next.pose();
+  request.to_configuration = true;
   return request;
 }
 

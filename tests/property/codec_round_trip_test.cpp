@@ -131,11 +131,18 @@ TEST(CodecRoundTrip, FetchRequestComesBack) {
     written.experience_bytes = static_cast<std::uint32_t>(1 + values.below(kMaxExperienceBytes));
     written.rehearsed = values.coin();
     written.known_recall = values.count();
+    if (values.coin())
+      written.T_task_goal = values.pose();
+    written.to_configuration = values.coin();
     const auto read = decode(encode(kHead, written).value_or_throw().wire).value_or_throw();
     EXPECT_EQ(read.selection, written.selection);
     EXPECT_EQ(read.follow, written.follow);
     EXPECT_EQ(read.rehearsed, written.rehearsed);
     EXPECT_EQ(read.known_recall, written.known_recall);
+    EXPECT_EQ(read.to_configuration, written.to_configuration);
+    ASSERT_EQ(read.T_task_goal.has_value(), written.T_task_goal.has_value());
+    if (read.T_task_goal)
+      EXPECT_TRUE(read.T_task_goal->isApprox(*written.T_task_goal, 1e-12));
     EXPECT_EQ(read.deadline, written.deadline);
     EXPECT_EQ(read.task + read.profile, written.task + written.profile);
     EXPECT_EQ(read.minimum_generation, written.minimum_generation);

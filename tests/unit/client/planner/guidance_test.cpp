@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
@@ -105,8 +106,10 @@ TEST(FetchGuidance, TakesTheRehearsedGuideAndUntilThereIsOneLeavesTheMixtureOut)
   };
   EXPECT_EQ(guide(ways), Guide::RecallRetreatWays);
   EXPECT_EQ(guide({}), Guide::All) << "the mixture is all there is";
-  reply.rehearsal.emplace().message = "no recorded query can be planned";
+  reply.rehearsal.emplace().message = "not rehearsed";
   EXPECT_EQ(guide(ways), Guide::RecallRetreatWays);
+  reply.rehearsal->guide = Guide::None;
+  EXPECT_EQ(guide(ways), Guide::None) << "no recorded query could be planned";
   reply.rehearsal->costs.push_back({.guide = Guide::Mixture});
   reply.rehearsal->guide = Guide::Mixture;
   EXPECT_EQ(guide(ways), Guide::Mixture);
@@ -170,6 +173,32 @@ TEST(GuidanceCache, AsksOncePerPlacementWithinAMillimetre) {
   EXPECT_FALSE(cache.ask(placement(0.1001)).second);
   EXPECT_TRUE(cache.ask(placement(0.2)).second);
   EXPECT_EQ(asked, 2);
+}
+
+TEST(GuidanceCache, TellsTheGoalOfAProblemAsAPose) {
+  std::vector<FetchRequest> seen;
+  GuidanceOptions with_chain = wanted();
+  with_chain.chain = kinship::test::PlanarArm{{0.5, 0.5}}.chain();
+  GuidanceCache cache(
+      [&](const FetchRequest& request) {
+        seen.push_back(request);
+        return Result<FetchReply>(ready());
+      },
+      with_chain);
+  Problem problem = problem_at(1);
+  problem.goal_configurations = Eigen::MatrixXd::Zero(kDof, 1);
+  cache.ask(problem);
+  problem = problem_at(2);
+  problem.T_task_goal = placement(7);
+  cache.ask(problem);
+  cache.ask(problem_at(3).T_task_base);
+  ASSERT_EQ(seen.size(), 3U);
+  EXPECT_TRUE(seen[0].T_task_goal->isApprox(
+      placement(1) * kinematics::T_base_transfer(*with_chain.chain, Eigen::VectorXd::Zero(kDof))));
+  EXPECT_TRUE(seen[1].T_task_goal->isApprox(placement(7)));
+  EXPECT_FALSE(seen[2].T_task_goal);
+  EXPECT_TRUE(seen[0].to_configuration);
+  EXPECT_FALSE(seen[1].to_configuration);
 }
 
 TEST(GuidanceCache, AMissingPlacementIsAskedForAsMissing) {

@@ -167,6 +167,62 @@ TEST_F(RecalledPaths, WhereThereIsNoneTheNextPathIsReasonToRehearse) {
   EXPECT_EQ(rehearsals.totals().done, 3U);
 }
 
+TEST_F(RecalledPaths, AreMadeAgainWhenTheRobotsOwnPathsHaveDoubled) {
+  report_sweeps(2);
+  RehearsalScheduler rehearsals(parts_, quick());
+  const RehearsalKey key = key_at(panda_);
+  const auto queries = [&](std::size_t more) {
+    report_sweeps(more);
+    rehearsals.new_experience("sweep");
+    EXPECT_TRUE(wait(rehearsals, key));
+    return rehearsals.library(key)->queries.size();
+  };
+  EXPECT_EQ(queries(0), 2U);
+  EXPECT_EQ(queries(1), 2U);
+  EXPECT_EQ(queries(1), 4U);
+}
+
+TEST_F(RecalledPaths, WhatServesAnotherPlacementIsComparedWithTheExperience) {
+  report_sweeps(2);
+  RehearsalScheduler rehearsals(parts_, quick());
+  const RehearsalKey key = key_at(panda_);
+  ASSERT_TRUE(wait(rehearsals, key));
+  report_sweeps(2);
+  rehearsals.new_experience("sweep");
+  EXPECT_TRUE(rehearsals.ask(key_at(panda_, 0.5)));  // one request of each place
+  ASSERT_TRUE(wait(rehearsals, key));
+  EXPECT_EQ(rehearsals.library(key)->queries.size(), 4U);
+  EXPECT_EQ(rehearsals.totals().done, 2U);
+}
+
+TEST_F(RecalledPaths, WhereOthersGraspOutOfReachTheGoalOfTheRequestIsPlanned) {
+  report_sweeps(3);
+  RehearsalScheduler rehearsals(parts_, quick());
+  RehearsalKey key = key_at(ur10e_, 3);
+  const SharedRehearsal nothing = wait(rehearsals, key);
+  ASSERT_TRUE(nothing);
+  EXPECT_EQ(nothing->queries, 0U);
+  EXPECT_EQ(nothing->guide, Guide::None);
+  EXPECT_FALSE(rehearsals.library(key));
+
+  const kinematics::Chain& chain = robot(ur10e_)->chain;
+  const Eigen::VectorXd start = Eigen::VectorXd::Constant(6, -1.2);
+  Eigen::VectorXd goal = start;
+  goal[0] += 1;
+  RehearsalKey told = key_at(ur10e_, 3.5);
+  told.start = start;
+  told.T_task_goal = *told.distribution.T_task_base * kinematics::T_base_transfer(chain, goal);
+  ASSERT_TRUE(wait(rehearsals, told));
+  const SharedLibrary library = rehearsals.library(told);
+  ASSERT_TRUE(library);
+  EXPECT_EQ(library->queries.size(), 3U);
+  for (const RecallQuery& query : library->queries) {
+    EXPECT_TRUE(query.is_synthetic);
+    EXPECT_TRUE((query.T_task_base * kinematics::T_base_transfer(chain, query.goal))
+                    .isApprox(*told.T_task_goal, 1e-4));
+  }
+}
+
 TEST_F(RecalledPaths, AnotherPlacementIsServedByTheNearestRehearsedOne) {
   report_sweeps(5);
   RehearsalScheduler rehearsals(parts_, quick());

@@ -43,7 +43,7 @@ TEST_F(Rehearse, AQueryIsWhereThePathBeganAndEnded) {
   ASSERT_TRUE(query.scene);
   EXPECT_EQ(query.scene->objects.front().name, "post");
   ASSERT_TRUE(query.own);
-  EXPECT_EQ(query.own->waypoints, waypoints);
+  EXPECT_EQ(*query.own, waypoints);
   EXPECT_FALSE(queries_for(ur10e_).queries.front().own) << "another arm's";
   EXPECT_EQ(found.steps.step, 0.1);
   EXPECT_EQ(found.steps.overshoot, 1);
@@ -102,7 +102,7 @@ TEST_F(Rehearse, ItsOwnQueriesStandWhereTheyStood) {
   const std::vector<Attempt> attempts = report_sweeps(1, post(then), then);
   const RecordedQuery own = queries_for(panda_).queries.front();
   ASSERT_TRUE(own.own);
-  EXPECT_TRUE(own.own->T_task_base.isApprox(then, 1e-9));
+  EXPECT_TRUE(own.T_task_base.isApprox(then, 1e-9));
   const auto posed = pose_query(*robot(panda_), today, own);
   ASSERT_TRUE(posed);
   EXPECT_TRUE(posed->query.T_task_base.isApprox(then, 1e-9));
@@ -123,6 +123,32 @@ TEST_F(Rehearse, WhatARobotCannotReachIsLeftOut) {
   EXPECT_TRUE(result.is_complete);
   EXPECT_EQ(result.guide, Guide::None) << "where others went leads nowhere";
   EXPECT_FALSE(result.message.empty());
+}
+
+TEST_F(Rehearse, WhereQueriesAskForOneConfigurationTheyArePlannedToOne) {
+  report_sweeps(4);
+  for (const Digest& digest : {panda_, ur10e_}) {
+    Subject subject = subject_of(digest);
+    const Rehearsal to_poses = rehearsed(subject);
+    subject.to_configuration = true;
+    const Rehearsal to_one = rehearsed(subject);
+    ASSERT_EQ(to_one.queries, 4U);
+    EXPECT_NE(to_one.costs[0].mean_checks, to_poses.costs[0].mean_checks);
+  }
+}
+
+TEST_F(Rehearse, ADrawnConfigurationThatNoGuideReachesIsLeftOut) {
+  report_sweeps(4);
+  for (const Digest& digest : {panda_, ur10e_}) {
+    Subject subject = subject_of(digest);
+    subject.to_configuration = true;
+    Rehearsing rehearsing(subject, {.rounds = 2, .max_checks = 1});
+    while (rehearsing.step()) {
+    }
+    const Rehearsal result = rehearsing.result();
+    EXPECT_EQ(result.queries, digest == panda_ ? 4U : 0U) << "a robot's own goal was reached once";
+    EXPECT_EQ(result.queries + result.left_out, 4U);
+  }
 }
 
 TEST_F(Rehearse, EveryGuideThatThereIsPlansEveryQuery) {
@@ -161,6 +187,16 @@ TEST(Cheapest, GoesByTimeAndByPreparationAmongThoseAboutAsFast) {
   EXPECT_EQ(cheapest(costs), Guide::Ways);
   costs[2].mean_time_s = 0.00207;
   EXPECT_EQ(cheapest(costs), Guide::Mixture);
+}
+
+TEST(Cheapest, OfThoseThatRecallAlikeTheBestSearchIsTaken) {
+  const std::vector<GuideCost> costs{{Guide::None, 20, 20, 900, 900, 0.004},
+                                     {Guide::Retreat, 20, 20, 300, 300, 0.002},
+                                     {Guide::Mixture, 20, 20, 300, 300, 0.002},
+                                     {Guide::Recall, 20, 20, 30, 30, 0.001},
+                                     {Guide::RecallRetreat, 20, 20, 30, 30, 0.00102},
+                                     {Guide::RecallMixture, 20, 20, 30, 30, 0.001}};
+  EXPECT_EQ(cheapest(costs), Guide::RecallRetreat) << "all was recalled: other queries may not be";
 }
 
 TEST(Cheapest, GoesByChecksWhereNoTimeIsKnown) {
