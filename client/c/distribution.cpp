@@ -34,6 +34,9 @@ FetchRequest read_recall_request(const kinship_request& given) {
                                   ", must be 1 to " + std::to_string(kMaxDof)));
     request.start.assign(given.start, given.start + given.start_dof);
   }
+  if (given.T_task_goal != nullptr)
+    request.T_task_goal = read_pose(given.T_task_goal, "request->T_task_goal");
+  request.to_configuration = given.to_configuration != 0;
   return request;
 }
 

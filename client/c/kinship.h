@@ -255,6 +255,10 @@ typedef struct kinship_request {
   const double* start;
   size_t start_dof; /**< of start */
   int with_recall;  /**< not 0: the follower holds what kinship_follower_recall() gives, too */
+  /** Where the transfer frame is to go in the next query, in the task frame: where nobody went
+   * there, the server plans that goal in recorded scenes for kinship_recall. NULL: not told. */
+  const double* T_task_goal;
+  int to_configuration; /**< not 0: queries ask for one configuration, not for any at a pose */
 } kinship_request;
 
 /** Waits until the distribution is made, up to the deadline.

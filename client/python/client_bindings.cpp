@@ -88,7 +88,8 @@ struct GuidanceWish {
   std::string guide;
   std::optional<double> share, control_share;
   bool is_rehearsed = false;
-  std::optional<Array> start;
+  std::optional<Array> start, T_task_goal;
+  bool is_to_configuration = false;
 };
 
 std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Robot& robot,
@@ -107,6 +108,8 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
   wanted.wait = to_milliseconds(wish.deadline, "deadline");
   if (wish.start)
     wanted.start = read_configurations(*wish.start, robot.chain().dof(), "start").columns.col(0);
+  wanted.T_task_goal = read_pose(wish.T_task_goal, "T_task_goal");
+  wanted.to_configuration = wish.is_to_configuration;
   FetchStatus status = FetchStatus::Ready;
   const auto fetch = [&](const FetchRequest& asked) -> Result<FetchReply> {
     FetchReply reply =
@@ -356,18 +359,21 @@ void bind_guidance(ClientClass& client) {
          double deadline, const std::optional<Array>& T_task_base, const std::string& profile,
          const std::vector<RobotName>& sources, const std::string& weighting, std::int64_t since_ms,
          const std::string& guide, std::optional<double> share, std::optional<double> control_share,
-         bool rehearsed, const std::optional<Array>& start) {
+         bool rehearsed, const std::optional<Array>& start, const std::optional<Array>& T_task_goal,
+         bool to_configuration) {
         const FetchRequest request =
             request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
         return guidance_of(self, *robot, request,
-                           {deadline, guide, share, control_share, rehearsed, start});
+                           {deadline, guide, share, control_share, rehearsed, start, T_task_goal,
+                            to_configuration});
       },
       py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("deadline") = 30.0,
       py::arg("T_task_base") = py::none(), py::arg("profile") = "default",
       py::arg("sources") = std::vector<RobotName>(), py::arg("weighting") = "",
       py::arg("since_ms") = 0, py::arg("guide") = "", py::arg("share") = py::none(),
       py::arg("control_share") = py::none(), py::arg("rehearsed") = false,
-      py::arg("start") = py::none(),
+      py::arg("start") = py::none(), py::arg("T_task_goal") = py::none(),
+      py::arg("to_configuration") = false,
       R"(What kinship-plan would guide the robot with: distribution, stored ways, advice.
 
 As fetch() for what it shares with it; plan() takes what it returns. Raises as fetch().
@@ -377,7 +383,10 @@ guide          what of them is used, e.g. 'retreat+ways'; empty: what the server
 share          of guided samples, 0 to 1; by default what the server advises
 control_share  of queries planned uniformly to compare; by default as the evidence says
 rehearsed      True: waits until the server knows which guide is best
-start          where the robot's queries usually begin: what others recorded is planned from there)");
+start          where the robot's queries usually begin: what others recorded is planned from there
+T_task_goal    (4, 4) or (7,), where the transfer frame is to go in the next query: where nobody went there,
+               the server plans that goal in the scenes that others recorded
+to_configuration  True: queries ask for one configuration, not for any at a pose)");
 }
 
 }  // namespace

@@ -359,6 +359,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_outbox, refused), 24U);
   EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
   EXPECT_EQ(offsetof(kinship_request, with_recall), 64U);
+  EXPECT_EQ(offsetof(kinship_request, to_configuration), 80U);
   EXPECT_EQ(offsetof(kinship_distribution_info, recommended_share), 40U);
   EXPECT_EQ(sizeof(kinship_robot), 32U);
   EXPECT_EQ(offsetof(kinship_surroundings, allowed_collision_pairs), 40U);
