@@ -35,7 +35,7 @@ int main(int count, char** words) {
   char folder[4096];
   kinship_robot_file arm = {.size = sizeof arm, .source = folder};
   kinship_surroundings around = {.size = sizeof around, .objects = &post, .object_count = 1};
-  kinship_request request = {sizeof request, &robot, "sweep", NULL, NULL, 60000, start, 6, 0};
+  kinship_request request = {.size = sizeof request, .robot = &robot, .task = "sweep"};
   kinship_recall_query query = {sizeof query, NULL, 6,       start,        goal, 1, NULL,
                                 &post,        1,    is_free, is_line_free, NULL, 0};
   kinship_recalled recalled = {.size = sizeof recalled};
@@ -46,6 +46,9 @@ int main(int count, char** words) {
       kinship_register_file(client, &arm, &robot, NULL))
     return failed("no robot");
   query.user = world;
+  request.deadline_ms = 60000;
+  request.start = start;
+  request.start_dof = 6;
   if (kinship_fetch_recall(client, &request, &recall) ||
       kinship_recall_path(recall, &query, path[0], KINSHIP_RECALL_WAYPOINTS, &recalled))
     return failed("no paths to recall"); /* whatever the reason: search */
