@@ -14,6 +14,7 @@ namespace kinship::inverse {
 namespace {
 
 constexpr std::size_t kJoints = 6;
+static_assert(kLaneLocks == kMaxLocked);
 
 /// "5-6-7": joints counted from 1, as people do.
 std::string joint_range(int first, int second, int third) {
@@ -94,6 +95,44 @@ std::vector<std::vector<int>> planar_choices(int dof, int count) {
   return result;
 }
 
+/// A locked arm for the kernels, if two neighbours of the three axes that place its wrist meet.
+/// \param windows  of the free joints.
+std::optional<LaneWrist> lane_wrist(const SixJointStructure& six,
+                                    const std::vector<TurnWindow>& windows, double slack) {
+  const SixJointRule& rule = six.rule;
+  const bool meet = rule.point == PointRule::FirstMeet || rule.point == PointRule::LastMeet;
+  if (six.locks.empty() || !meet || rule.kind != SixJointRule::Kind::SphericalWrist)
+    return std::nullopt;
+  LaneWrist lanes{};
+  const int count = lanes.count = static_cast<int>(six.axes.size());
+  lanes.locks = static_cast<int>(six.locks.size());
+  const auto place_of = [&](int joint) { return rule.reversed ? count - 1 - joint : joint; };
+  for (int joint = 0; joint < count; ++joint) {
+    const Axis& axis = six.axes[static_cast<std::size_t>(joint)];
+    LaneWrist::Axis& lane = lanes.axes[place_of(joint)];
+    std::copy_n(axis.direction.data(), 3, lane.direction);
+    std::copy_n(axis.point.data(), 3, lane.point);
+    lane.slides = axis.prismatic;
+    lane.locked = std::ranges::binary_search(six.locks, joint);
+  }
+  const int front = place_of(rule.reversed ? six.locks.back() : six.locks.front());
+  const int back = place_of(rule.reversed ? six.locks.front() : six.locks.back());
+  lanes.carries_on = front >= count - 1 - back;
+  lanes.last_meet = rule.point == PointRule::LastMeet;
+  const auto last = std::ranges::find(std::rbegin(lanes.axes) + (6 + kLaneLocks - count),
+                                      std::rend(lanes.axes), false, &LaneWrist::Axis::locked);
+  Eigen::Map<Eigen::Vector3d>(lanes.side) =
+      Eigen::Map<const Eigen::Vector3d>(last->direction).unitOrthogonal();
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const TurnWindow& window = windows[rule.reversed ? kJoints - 1 - i : i];
+    lanes.windows[i] = {window.cosine_middle,
+                        rule.reversed ? -window.sine_middle : window.sine_middle,
+                        window.cosine_half};
+  }
+  lanes.slack = slack;
+  return lanes;
+}
+
 }  // namespace
 
 double ClosedForm::deviation() const noexcept {
@@ -144,6 +183,35 @@ void ClosedForm::append_six(const Displacement& T, std::span<const double> locke
     for (std::size_t i = 0; i < locks_.size(); ++i)
       q[locks_[i]] = locked[i];
   }
+}
+
+void ClosedForm::append_lanes(const SimdKernels& kernels, const Eigen::Isometry3d& T_base_transfer,
+                              const double (&locked)[kLaneLocks][kLanes], int most,
+                              LaneWristBranches& branches) const {
+  const bool reversed = six_->rule.reversed;
+  const Displacement T{T_base_transfer.linear(), T_base_transfer.translation() / scale_m_};
+  const Displacement along = T * T_transfer_base_;
+  const Displacement D = reversed ? along.inverse() : along;
+  double wanted[12];
+  for (int i = 0; i < 12; ++i)
+    wanted[i] = i < 9 ? D.R(i / 3, i % 3) : D.p[i - 9];
+  double values[kLaneLocks][kLanes];
+  for (std::size_t k = 0; k < locks_.size(); ++k) {
+    const double scale = (prismatic_[k] ? 1 / scale_m_ : 1) * (reversed ? -1 : 1);
+    double* lanes = values[reversed ? locks_.size() - 1 - k : k];
+    for (int lane = 0; lane < kLanes; ++lane)
+      lanes[lane] = scale * locked[k][lane];
+  }
+  kernels.wrist(*lanes_, wanted, values, most, branches);
+}
+
+void ClosedForm::write(const LaneWristBranches& branches, int i,
+                       const double (&locked)[kLaneLocks][kLanes], double* q) const {
+  const bool reversed = six_->rule.reversed;
+  for (std::size_t j = 0; j < kJoints; ++j)
+    q[free_[j]] = reversed ? -branches.angles[kJoints - 1 - j][i] : branches.angles[j][i];
+  for (std::size_t k = 0; k < locks_.size(); ++k)
+    q[locks_[k]] = locked[k][branches.lane[i]];
 }
 
 void ClosedForm::append_planar(const Displacement& T, std::span<const double> locked,
@@ -207,6 +275,7 @@ struct ClosedFormSearch {
       return result;
     for (SixJointStructure& six : six_joint_structures(axes)) {
       result.push_back(form(six.locks, six.exact() ? 0 : six.deviation));
+      result.back().lanes_ = lane_wrist(six, result.back().windows_, result.back().slack_);
       result.back().six_ = std::move(six);
     }
     return result;

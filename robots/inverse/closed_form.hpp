@@ -8,6 +8,7 @@
 
 #include "proto/types/limits.hpp"
 #include "robots/inverse/axis.hpp"
+#include "robots/inverse/lanes.hpp"
 #include "robots/inverse/planar_form.hpp"
 #include "robots/inverse/structure.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -80,6 +81,21 @@ class ClosedForm {
   void append(const Eigen::Isometry3d& T_base_transfer, std::span<const double> locked,
               Branches& branches) const;
 
+  /// Whether `append_lanes` can do what `append` does, for many values of the locked joints.
+  bool has_lanes() const noexcept { return lanes_.has_value(); }
+
+  /// The same for eight values of each locked joint, side by side. Lanes that are marked as hard
+  /// are left to `append`.
+  /// \param locked  joint units, by lock and lane.
+  /// \param most    ends with the lane that reaches so many branches.
+  void append_lanes(const SimdKernels& kernels, const Eigen::Isometry3d& T_base_transfer,
+                    const double (&locked)[kLaneLocks][kLanes], int most,
+                    LaneWristBranches& branches) const;
+
+  /// The values of one configuration from `append_lanes`, dof of them, joint units.
+  void write(const LaneWristBranches& branches, int i, const double (&locked)[kLaneLocks][kLanes],
+             double* q) const;
+
  private:
   friend struct ClosedFormSearch;
   ClosedForm() = default;
@@ -93,6 +109,7 @@ class ClosedForm {
   std::optional<PlanarForm> planar_;
   std::vector<bool> prismatic_;      ///< per lock
   std::vector<TurnWindow> windows_;  ///< per free joint
+  std::optional<LaneWrist> lanes_;   ///< of locked arms with a wrist or shoulder
   Displacement T_transfer_base_;     ///< with every joint at 0
   double scale_m_ = 1;
   double slack_ = 0;

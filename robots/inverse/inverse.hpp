@@ -37,6 +37,6 @@ InverseSolutions inverse(const kinematics::Chain& chain, const Eigen::Isometry3d
 std::string solver_name(const kinematics::Chain& chain);
 
 /// Version of this solver; part of a distribution's key. Raised when solutions change.
-inline constexpr int kInverseVersion = 5;
+inline constexpr int kInverseVersion = 6;
 
 }  // namespace kinship::inverse

@@ -16,7 +16,7 @@ constexpr double kSeam = 1e-8;         // rad: nearer to half a turn from mid-ra
 
 /// As wrapped(), but for rounding, in a tenth of the time.
 double rounded_turns_off(double angle) {
-  const double turns = (angle / kTurn + kRounder) - kRounder;
+  const double turns = (angle * (1 / kTurn) + kRounder) - kRounder;
   return angle - turns * kTurn;
 }
 
@@ -58,9 +58,9 @@ bool JointSpace::normalize(double* q, double margin) const noexcept {
   return inside;
 }
 
-double JointSpace::squared_distance(const double* a, const double* b) const noexcept {
+double JointSpace::squared_distance(const double* a, const double* b, double most) const noexcept {
   double squared = 0;
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
+  for (std::size_t j = 0; j < joints_.size() && squared < most; ++j) {
     const double difference = joints_[j].continuous ? rounded_turns_off(a[j] - b[j]) : a[j] - b[j];
     squared += difference * difference;
   }

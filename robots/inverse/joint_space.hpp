@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "robots/kinematics/chain.hpp"
@@ -27,7 +28,9 @@ class JointSpace {
 
   /// Euclidean, squared, 1 m = 1 rad; wrapped for continuous joints only, since a joint with limits
   /// cannot take the short way across them.
-  double squared_distance(const double* a, const double* b) const noexcept;
+  /// \param most  where the distance is that or more, so is the result, which may be too small.
+  double squared_distance(const double* a, const double* b,
+                          double most = std::numeric_limits<double>::infinity()) const noexcept;
 
   /// The value of a joint for a number in [0, 1): uniform within its limits; within a turn around
   /// mid-range if they are wider.

@@ -113,6 +113,39 @@ struct LaneBranches {
   double q[6][kLaneBranches];  ///< lane's values, any turn; not finite where a step failed
 };
 
+inline constexpr int kLaneLocks = 2;
+
+/// Six turning joints, the last three axes of which meet, in a chain whose other joints are locked.
+/// Of the first three axes, two neighbours meet at any value of the locks. Read from tip to base if
+/// it is the first three of the chain that meet: axes in that order, every angle of other sign.
+/// Lengths in units of the arm's size; everything in the base link with every joint at 0.
+struct LaneWrist {
+  struct Axis {
+    double direction[3], point[3];
+    bool slides, locked;
+  };
+  struct Window {
+    double cosine_middle, sine_middle, cosine_half;
+  };
+  int count, locks;  ///< axes; locked ones among them
+  Axis axes[6 + kLaneLocks];
+  bool carries_on;    ///< whether locks move the axes behind them instead of those before them
+  bool last_meet;     ///< of the first three axes, the last two meet; else the first two
+  double side[3];     ///< a unit vector across the last axis
+  Window windows[6];  ///< of the free joints; see TurnWindow
+  double slack;       ///< see SixJointTask::slack
+};
+
+/// Branches of a LaneWrist within the windows: those of the first lane, then of the next one.
+struct alignas(64) LaneWristBranches {
+  static constexpr int kCapacity = 8 * kLanes;
+  int count;
+  int lane[kCapacity];
+  double angles[6][kCapacity];  ///< of the free joints in the order of LaneWrist::axes, rad
+  unsigned hard;  ///< of these lanes, as bits: a step was singular, and the branches are left out
+  unsigned outside;  ///< of these lanes, as bits: a branch is outside the windows
+};
+
 /// The kernels of one instruction set. Pure functions of their arguments: no heap, no state.
 struct SimdKernels {
   /// One iteration of damped Levenberg-Marquardt in every lane.
@@ -135,6 +168,16 @@ struct SimdKernels {
   void (*eliminate)(const LaneChain& chain, const LaneElimination& arm,
                     const LaneHarmonics& harmonics, const double (&target)[12],
                     LaneBranches& branches);
+
+  /// The branches of one pose at eight values of the locked joints.
+  /// \param wanted  R row-major, then p: the pose times that of all joints at 0, inverted, and all
+  ///                inverted where the chain is read from tip to base.
+  /// \param locked  lock's values in the order of LaneWrist::axes; rad, or in units of the arm's
+  ///                size.
+  /// \param most    ends with the lane that reaches so many branches.
+  /// Source: see robots/inverse/subproblems.hpp.
+  void (*wrist)(const LaneWrist& arm, const double (&wanted)[12],
+                const double (&locked)[kLaneLocks][kLanes], int most, LaneWristBranches& branches);
 };
 
 // One unit each; to be called only where the machine knows the instructions.

@@ -33,6 +33,7 @@ constexpr int kOddPatience = 100;     // and one is missing for certain
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
 constexpr double kSettled = 1e-9;     // squared step of a lane that converges so fast
 constexpr int kFewestLocks = 8;       // random values of the locked joints
+constexpr int kLaneLockValues = 64;   // the same where they go side by side
 constexpr int kIdleLocks = 24;        // in a row without a new solution
 constexpr int kPolishSteps = 8;
 constexpr double kPolished = 1e-9;    // m and rad: singular poses, which exceed it, take a polish
@@ -66,7 +67,7 @@ Eigen::MatrixXd Configurations::matrix() const {
 bool is_apart(const JointSpace& space, const Configurations& from, const double* q,
               double distance) noexcept {
   for (std::size_t i = 0; i < from.size(); ++i)
-    if (space.squared_distance(q, from[i]) < distance * distance)
+    if (space.squared_distance(q, from[i], distance * distance) < distance * distance)
       return false;
   return true;
 }
@@ -164,10 +165,11 @@ bool Search::knows_all(const ClosedForm& form) const {
 }
 
 void Search::append_branches(const ClosedForm& form) {
+  if (form.has_lanes())
+    return append_lanes(form);
   const auto locks = form.locks();
   const int attempts = locks.empty() ? 1 : std::max(kFewestLocks, 2 * static_cast<int>(wanted_));
   std::array<double, kLaneJoints> locked;
-  Branches branches;
   std::size_t known = 0;
   for (int attempt = 0, idle = 0; attempt < attempts && idle < kIdleLocks && !enough(); ++attempt) {
     idle = found_.size() == known ? idle + 1 : 0;
@@ -175,11 +177,46 @@ void Search::append_branches(const ClosedForm& form) {
     CounterGenerator generator = generator_.of_attempt(next_start_++);
     for (std::size_t i = 0; i < locks.size(); ++i)
       locked[i] = solver_.space().value_at(locks[i], generator.uniform());
-    branches.clear();
-    form.append(T_base_transfer_, {locked.data(), locks.size()}, branches);
-    outside_limits_ = outside_limits_ || branches.outside_limits();
-    for (int i = 0; i < branches.size(); ++i)
-      form.exact() ? propose_exact(branches[i]) : propose_near(branches[i]);
+    append_at(form, {locked.data(), locks.size()});
+  }
+  form.exact() ? verify_or_polish() : polish();
+}
+
+void Search::append_at(const ClosedForm& form, std::span<const double> locked) {
+  Branches branches;
+  form.append(T_base_transfer_, locked, branches);
+  outside_limits_ = outside_limits_ || branches.outside_limits();
+  for (int i = 0; i < branches.size(); ++i)
+    form.exact() ? propose_exact(branches[i]) : propose_near(branches[i]);
+}
+
+void Search::append_lanes(const ClosedForm& form) {
+  const auto locks = form.locks();
+  const int attempts = std::max(kLaneLockValues, 2 * static_cast<int>(wanted_));
+  double locked[kLaneLocks][kLanes] = {};
+  LaneWristBranches branches;
+  std::array<double, kLaneJoints> q;
+  for (int attempt = 0, idle = 0; attempt < attempts && idle < kIdleLocks && !enough();
+       attempt += kLanes) {
+    const std::size_t known = promised();
+    for (int lane = 0; lane < kLanes; ++lane) {
+      CounterGenerator generator = generator_.of_attempt(next_start_++);
+      for (std::size_t i = 0; i < locks.size(); ++i)
+        locked[i][lane] = solver_.space().value_at(locks[i], generator.uniform());
+    }
+    const int most = 2 * kLanes;
+    form.append_lanes(solver_.kernels(), T_base_transfer_, locked, most, branches);
+    outside_limits_ = outside_limits_ || branches.outside != 0;
+    for (int i = 0; i < branches.count && !enough(); ++i) {
+      form.write(branches, i, locked, q.data());
+      form.exact() ? propose_exact(q.data()) : propose_near(q.data());
+    }
+    for (int lane = 0; lane < kLanes && !enough(); ++lane)
+      if ((branches.hard >> static_cast<unsigned>(lane) & 1U) != 0)
+        append_at(form, std::array{locked[0][lane], locked[1][lane]});
+    if (promised() >= wanted_)
+      form.exact() ? verify_or_polish() : polish();
+    idle = promised() == known ? idle + kLanes : 0;
   }
   form.exact() ? verify_or_polish() : polish();
 }
@@ -300,8 +337,7 @@ void Search::descend(const Effort& effort) {
         busy &= ~(1U << static_cast<unsigned>(lane));
       }
     }
-    if (!solver_.redundant() || busy == 0 ||
-        found_.size() + static_cast<std::size_t>(handed_over_) >= wanted_)
+    if (!solver_.redundant() || busy == 0 || promised() >= wanted_)
       verify();
   }
   verify();

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "robots/inverse/counter_generator.hpp"
@@ -63,6 +64,10 @@ class Search {
 
   /// Candidates of the closed form.
   void append_branches(const ClosedForm& form);
+  /// The same with values of the locked joints side by side.
+  void append_lanes(const ClosedForm& form);
+  /// Candidates of the closed form at values of the locked joints.
+  void append_at(const ClosedForm& form, std::span<const double> locked);
   /// Branches of the elimination, polished. \return whether they are complete: there are some, and
   /// each led to a distinct solution or leaves the limits.
   bool append_eliminated(const LaneElimination& arm);
@@ -98,6 +103,10 @@ class Search {
   void keep(int lane);
   /// Verifies the candidates handed over, and keeps the solutions.
   void verify();
+  /// Solutions, and the candidates that may become some.
+  std::size_t promised() const noexcept {
+    return found_.size() + static_cast<std::size_t>(handed_over_ + proposed_);
+  }
   bool enough() const noexcept { return found_.size() >= wanted_; }
   /// Whether so many starts in a row gave no new branch that further ones are not worthwhile.
   bool complete(const Effort& effort) const noexcept;

@@ -132,6 +132,14 @@ KINSHIP_SIMD_INLINE Wide angle_of(Wide sine, Wide cosine) {
   return sine < 0.0 ? -half : half;
 }
 
+/// The same to about 1e-16 for a sine and cosine of unit length: the rest is a sine of 2e-8.
+KINSHIP_SIMD_INLINE Wide exact_angle_of(Wide sine, Wide cosine) {
+  const Wide near = angle_of(sine, cosine);
+  Wide near_sine, near_cosine;
+  sine_cosine(near, near_sine, near_cosine);
+  return near + (sine * near_cosine - cosine * near_sine);
+}
+
 /// Sines and cosines of all joints: computed side by side, before the poses, which depend on each
 /// other.
 struct WideTurns {

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/descent.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
@@ -162,6 +166,69 @@ TEST(Lanes, HalfATurnIsLeftAndIsNoSolution) {
   for (int i = 0; i < 40; ++i)
     instruction_sets().back().kernels.step(lanes, LaneLimits::Ignore, batch);
   EXPECT_LT(batch.squared[0], 1e-16);
+}
+
+bool is_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).unaryExpr([](double turn) { return std::remainder(turn, 2 * M_PI); }).norm() <
+         1e-7;
+}
+
+struct Compared {
+  int branches = 0, hard = 0;
+};
+
+/// Each branch of eight values of the locked joints, side by side, is one that the values alone
+/// give, and none is missing but of lanes left to that.
+void compare_with_alone(const ClosedForm& form, const InstructionSet& set,
+                        const Eigen::Isometry3d& T, const double (&locked)[kLaneLocks][kLanes],
+                        Eigen::Index dof, Compared& compared) {
+  LaneWristBranches together;
+  form.append_lanes(set.kernels, T, locked, LaneWristBranches::kCapacity, together);
+  compared.hard += std::popcount(together.hard);
+  std::vector<Eigen::VectorXd> left;
+  for (int i = 0; i < together.count; ++i)
+    form.write(together, i, locked, left.emplace_back(dof).data());
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if ((together.hard >> static_cast<unsigned>(lane) & 1U) != 0)
+      continue;
+    const std::array<double, kLaneLocks> values = {locked[0][lane], locked[1][lane]};
+    Branches alone;
+    form.append(T, {values.data(), form.locks().size()}, alone);
+    for (int i = 0; i < alone.size(); ++i, ++compared.branches) {
+      const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(alone[i], dof);
+      const auto same = std::ranges::find_if(
+          left, [&](const Eigen::VectorXd& other) { return is_same(q, other); });
+      ASSERT_NE(same, left.end()) << set.name;
+      left.erase(same);
+    }
+  }
+  ASSERT_TRUE(left.empty()) << set.name;
+}
+
+TEST(Lanes, WristsGiveTheBranchesOfEachLockedValue) {
+  for (const char* name : {"iiwa14", "panda", "sara_like"}) {
+    const kinematics::Chain chain = test::model_chain(name);
+    const ClosedFormFinding finding = find_closed_form(chain);
+    ASSERT_TRUE(finding.form && finding.form->has_lanes()) << name;
+    std::mt19937_64 generator(5);
+    Compared compared;
+    for (int pose = 0; pose < 100; ++pose) {
+      const Eigen::Isometry3d T =
+          kinematics::T_base_transfer(chain, test::random_configuration(chain, generator));
+      double locked[kLaneLocks][kLanes] = {};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Eigen::VectorXd q = test::random_configuration(chain, generator);
+        for (std::size_t k = 0; k < finding.form->locks().size(); ++k)
+          locked[k][lane] = q[finding.form->locks()[k]];
+      }
+      for (const InstructionSet& set : instruction_sets())
+        ASSERT_NO_FATAL_FAILURE(
+            compare_with_alone(*finding.form, set, T, locked, chain.dof(), compared))
+            << name << ", pose " << pose;
+    }
+    EXPECT_GT(compared.branches, 1000) << name;
+    EXPECT_LT(compared.hard, compared.branches / 10) << name;
+  }
 }
 
 TEST(LaneChain, ReachBoundsTheArm) {
