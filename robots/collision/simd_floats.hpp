@@ -1,5 +1,7 @@
 // Vectors of KINSHIP_SIMD_WIDTH floats. Included only by the units that are compiled for one
 // instruction set, which define the width: everything has internal linkage.
+#pragma once
+
 #ifndef KINSHIP_SIMD_WIDTH
 #error "define KINSHIP_SIMD_WIDTH"
 #endif

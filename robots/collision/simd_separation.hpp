@@ -1,7 +1,9 @@
 // Planes between two forms, KINSHIP_SIMD_WIDTH pairs at once. Included only by the units that are
-// compiled for one instruction set, after simd_floats.hpp.
+// compiled for one instruction set.
+#pragma once
 
 #include "robots/collision/lanes.hpp"
+#include "robots/collision/simd_floats.hpp"
 
 namespace kinship::collision {
 namespace {
