@@ -80,14 +80,15 @@ class Chaos : public testing::Test {
             }};
   }
   /// Killed, frozen or stopped.
-  std::vector<Nuisance> server_nuisances(const std::string& name, Supervised& server) {
-    return {kill_of(name, server),
-            freeze_of(name, server),
-            {"stop " + name, [&server](Dice& dice) {
-               server.terminate();  // not 0 if it was still starting
-               pause(dice, milliseconds(0), milliseconds(200));
-               server.start();
-             }}};
+  void add_server_nuisances(const std::string& name, Supervised& server,
+                            std::vector<Nuisance>& nuisances) {
+    nuisances.push_back(kill_of(name, server));
+    nuisances.push_back(freeze_of(name, server));
+    nuisances.push_back({"stop " + name, [&server](Dice& dice) {
+                           server.terminate();  // not 0 if it was still starting
+                           pause(dice, milliseconds(0), milliseconds(200));
+                           server.start();
+                         }});
   }
   std::vector<Nuisance> common_nuisances() {
     return {{"kill a client", [this](Dice& dice) { clients_->any(dice).kill_and_start(); }},
@@ -225,9 +226,8 @@ class ChaosOfOneFile : public Chaos {
 };
 
 TEST_F(ChaosOfOneFile, LosesNothing) {
-  std::vector<Nuisance> nuisances = server_nuisances("the server", *server_);
-  const std::vector<Nuisance> others = common_nuisances();
-  nuisances.insert(nuisances.end(), others.begin(), others.end());
+  std::vector<Nuisance> nuisances = common_nuisances();
+  add_server_nuisances("the server", *server_, nuisances);
   nuisances.push_back({"fill the disk", [this](Dice& dice) { fill_disk(dice); }});
   nuisances.push_back({"back up", [this](Dice&) { back_up(); }});
   nuisances.push_back({"restore", [this](Dice&) { restore(); }});
@@ -284,9 +284,8 @@ class ChaosOfADatabase : public Chaos {
 };
 
 TEST_F(ChaosOfADatabase, LosesNothing) {
-  std::vector<Nuisance> nuisances = server_nuisances("the server", *server_);
-  const std::vector<Nuisance> others = common_nuisances();
-  nuisances.insert(nuisances.end(), others.begin(), others.end());
+  std::vector<Nuisance> nuisances = common_nuisances();
+  add_server_nuisances("the server", *server_, nuisances);
   nuisances.push_back({"lose the primary", [this](Dice& dice) { lose_the_primary(dice); }});
   nuisances.push_back({"end sessions", [this](Dice& dice) { end_sessions(dice); }});
   nuisances.push_back({"freeze the primary", [this](Dice& dice) {
@@ -363,8 +362,7 @@ class ChaosOfTwoSites : public Chaos {
 TEST_F(ChaosOfTwoSites, BothEndWithAll) {
   std::vector<Nuisance> nuisances = common_nuisances();
   for (std::size_t site = 0; site < 2; ++site)
-    for (const Nuisance& one : server_nuisances("site " + std::to_string(site), *servers_[site]))
-      nuisances.push_back(one);
+    add_server_nuisances("site " + std::to_string(site), *servers_[site], nuisances);
   nuisances.push_back({"kill the memory", [this](Dice& dice) {
                          memory_->kill();
                          pause(dice, milliseconds(0), milliseconds(2000));
