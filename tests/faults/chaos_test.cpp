@@ -46,11 +46,6 @@ class Chaos : public testing::Test {
  protected:
   static constexpr std::size_t kClients = 5;
 
-  void SetUp() override {
-    if (const std::string missing = JumpingClock::missing(); !missing.empty())
-      GTEST_SKIP() << missing;
-  }
-
   std::unique_ptr<Supervised> make_server(const std::string& name,
                                           std::vector<std::string> arguments) {
     return std::make_unique<Supervised>(clock_, "kinshipd", folder_ / (name + ".log").c_str(),
@@ -147,9 +142,6 @@ class Chaos : public testing::Test {
 class ChaosOfOneFile : public Chaos {
  protected:
   void SetUp() override {
-    Chaos::SetUp();
-    if (IsSkipped())
-      return;
     if (!disk_.is_mounted())
       GTEST_SKIP() << "no small file system can be mounted here: " << disk_.why();
     const fs::path fleet = folder_ / "fleet";
@@ -232,8 +224,9 @@ TEST_F(ChaosOfOneFile, LosesNothing) {
   nuisances.push_back({"back up", [this](Dice&) { back_up(); }});
   nuisances.push_back({"restore", [this](Dice&) { restore(); }});
   run(nuisances, {server_.get()});
-  if (is_long_run())
+  if (is_long_run()) {
     EXPECT_GT(restores_, 0);
+  }
   EXPECT_EQ(server_->terminate(), 0);
   expect_sound(store_);
   expect_all_in(*store::open_sqlite_store(store_));
@@ -243,11 +236,8 @@ TEST_F(ChaosOfOneFile, LosesNothing) {
 class ChaosOfADatabase : public Chaos {
  protected:
   void SetUp() override {
-    Chaos::SetUp();
     if (const std::string missing = missing_postgres(); !missing.empty())
       GTEST_SKIP() << missing;
-    if (IsSkipped())
-      return;
     primary_ = std::make_unique<PostgresCluster>(PostgresCluster::Options{
         .name = "a", .settings = {"synchronous_standby_names = 'ANY 1 (a, b)'"}});
     primary_->create_database("fleet");
@@ -307,11 +297,8 @@ TEST_F(ChaosOfADatabase, LosesNothing) {
 class ChaosOfTwoSites : public Chaos {
  protected:
   void SetUp() override {
-    Chaos::SetUp();
     if (const std::string missing = missing_postgres(); !missing.empty())
       GTEST_SKIP() << missing;
-    if (IsSkipped())
-      return;
     memory_ = std::make_unique<PostgresCluster>();
     url_ = memory_->create_database("kinship");
     std::vector<ChaosClients::Place> places;
