@@ -14,6 +14,7 @@
 
 #include "proto/dds/binding.hpp"
 #include "proto/dds/network_interface.hpp"
+#include "proto/dds/steady_waits.hpp"
 #include "proto/types/failure.hpp"
 
 // Of dds/ddsi/ddsi_proxy_participant.h and q_addrset.h, which are no C++.
@@ -264,7 +265,8 @@ PacketGuard::PacketGuard(bool needs_identity) : needs_identity_(needs_identity) 
     return is_in_front_of_cyclone(name, reinterpret_cast<void*>(function));  // NOLINT: as above
   };
   if (!is_in_front("ddsrt_recvmsg", &ddsrt_recvmsg) ||
-      !is_in_front("ddsi_new_proxy_participant", &ddsi_new_proxy_participant))
+      !is_in_front("ddsi_new_proxy_participant", &ddsi_new_proxy_participant) ||
+      !are_waits_steady())
     throw Failure(ErrorCode::InvalidInput,
                   "cannot serve: this process loaded Cyclone DDS (libddsc), or another copy of "
                   "Kinship, first, so that what Kinship checks about packets would not be asked; "

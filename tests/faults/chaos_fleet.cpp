@@ -1,6 +1,8 @@
 #include "tests/faults/chaos_fleet.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -14,15 +16,6 @@ namespace kinship::test {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// libfaketime as Debian has it for this machine; empty if it is not there.
-std::string find_fake_time() {
-  for (const auto& folder : std::filesystem::directory_iterator("/usr/lib"))
-    if (const auto file = folder.path() / "faketime/libfaketimeMT.so.1";
-        std::filesystem::exists(file))
-      return file;
-  return {};
-}
 
 /// Variables of the environment, for what is started while it lives.
 class Environment {
@@ -49,28 +42,22 @@ milliseconds Dice::time(milliseconds from, milliseconds to) {
   return from + milliseconds(below(static_cast<std::size_t>((to - from).count()) + 1));
 }
 
-std::string JumpingClock::missing() {
-  return find_fake_time().empty() ? "libfaketime is not there (package faketime)" : "";
-}
-
 JumpingClock::JumpingClock(std::filesystem::path file) : file_(std::move(file)) {
   jump_to(std::chrono::seconds(0));
 }
 
 void JumpingClock::jump_to(std::chrono::seconds ahead) const {
-  const std::filesystem::path next = file_.string() + ".next";
-  std::ofstream(next) << (ahead.count() < 0 ? "" : "+") << ahead.count() << "\n";
-  std::filesystem::rename(next, file_);  // a reader finds one or the other
+  const std::int64_t seconds = ahead.count();
+  const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  EXPECT_EQ(pwrite(file, &seconds, sizeof seconds, 0), ssize_t{sizeof seconds}) << file_;
+  close(file);
 }
 
 std::unique_ptr<Program> JumpingClock::start(const std::string& name,
                                              const std::vector<std::string>& arguments,
                                              const std::filesystem::path& log) const {
-  const Environment environment({{"LD_PRELOAD", find_fake_time()},
-                                 {"FAKETIME_TIMESTAMP_FILE", file_.string()},
-                                 {"FAKETIME_CACHE_DURATION", "1"},
-                                 {"FAKETIME_DONT_FAKE_MONOTONIC", "1"},
-                                 {"NO_FAKE_STAT", "1"}});
+  const Environment environment(
+      {{"LD_PRELOAD", KINSHIP_JUMPING_CLOCK}, {"KINSHIP_CLOCK", file_.string()}});
   return std::make_unique<Program>(name, arguments, log);
 }
 

@@ -30,15 +30,13 @@ class Dice {
   std::mt19937_64 generator_;
 };
 
-/// The wall clock of processes that are started with it (libfaketime); their steady clocks go on.
+/// The wall clock of processes that are started with it (jumping_clock.cpp); their steady clocks go
+/// on.
 class JumpingClock {
  public:
-  /// \return why there is none; empty: nothing is missing.
-  static std::string missing();
-
   /// \param file  that says how far it is ahead.
   explicit JumpingClock(std::filesystem::path file);
-  void jump_to(std::chrono::seconds ahead) const;  ///< noticed within a second
+  void jump_to(std::chrono::seconds ahead) const;
   /// Starts a process with it.
   std::unique_ptr<Program> start(const std::string& name, const std::vector<std::string>& arguments,
                                  const std::filesystem::path& log) const;

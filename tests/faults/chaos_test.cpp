@@ -46,11 +46,6 @@ class Chaos : public testing::Test {
  protected:
   static constexpr std::size_t kClients = 5;
 
-  void SetUp() override {
-    if (const std::string missing = JumpingClock::missing(); !missing.empty())
-      GTEST_SKIP() << missing;
-  }
-
   std::unique_ptr<Supervised> make_server(const std::string& name,
                                           std::vector<std::string> arguments) {
     return std::make_unique<Supervised>(clock_, "kinshipd", folder_ / (name + ".log").c_str(),
@@ -80,14 +75,15 @@ class Chaos : public testing::Test {
             }};
   }
   /// Killed, frozen or stopped.
-  std::vector<Nuisance> server_nuisances(const std::string& name, Supervised& server) {
-    return {kill_of(name, server),
-            freeze_of(name, server),
-            {"stop " + name, [&server](Dice& dice) {
-               server.terminate();  // not 0 if it was still starting
-               pause(dice, milliseconds(0), milliseconds(200));
-               server.start();
-             }}};
+  void add_server_nuisances(const std::string& name, Supervised& server,
+                            std::vector<Nuisance>& nuisances) {
+    nuisances.push_back(kill_of(name, server));
+    nuisances.push_back(freeze_of(name, server));
+    nuisances.push_back({"stop " + name, [&server](Dice& dice) {
+                           server.terminate();  // not 0 if it was still starting
+                           pause(dice, milliseconds(0), milliseconds(200));
+                           server.start();
+                         }});
   }
   std::vector<Nuisance> common_nuisances() {
     return {{"kill a client", [this](Dice& dice) { clients_->any(dice).kill_and_start(); }},
@@ -146,9 +142,6 @@ class Chaos : public testing::Test {
 class ChaosOfOneFile : public Chaos {
  protected:
   void SetUp() override {
-    Chaos::SetUp();
-    if (IsSkipped())
-      return;
     if (!disk_.is_mounted())
       GTEST_SKIP() << "no small file system can be mounted here: " << disk_.why();
     const fs::path fleet = folder_ / "fleet";
@@ -225,15 +218,15 @@ class ChaosOfOneFile : public Chaos {
 };
 
 TEST_F(ChaosOfOneFile, LosesNothing) {
-  std::vector<Nuisance> nuisances = server_nuisances("the server", *server_);
-  const std::vector<Nuisance> others = common_nuisances();
-  nuisances.insert(nuisances.end(), others.begin(), others.end());
+  std::vector<Nuisance> nuisances = common_nuisances();
+  add_server_nuisances("the server", *server_, nuisances);
   nuisances.push_back({"fill the disk", [this](Dice& dice) { fill_disk(dice); }});
   nuisances.push_back({"back up", [this](Dice&) { back_up(); }});
   nuisances.push_back({"restore", [this](Dice&) { restore(); }});
   run(nuisances, {server_.get()});
-  if (is_long_run())
+  if (is_long_run()) {
     EXPECT_GT(restores_, 0);
+  }
   EXPECT_EQ(server_->terminate(), 0);
   expect_sound(store_);
   expect_all_in(*store::open_sqlite_store(store_));
@@ -243,11 +236,8 @@ TEST_F(ChaosOfOneFile, LosesNothing) {
 class ChaosOfADatabase : public Chaos {
  protected:
   void SetUp() override {
-    Chaos::SetUp();
     if (const std::string missing = missing_postgres(); !missing.empty())
       GTEST_SKIP() << missing;
-    if (IsSkipped())
-      return;
     primary_ = std::make_unique<PostgresCluster>(PostgresCluster::Options{
         .name = "a", .settings = {"synchronous_standby_names = 'ANY 1 (a, b)'"}});
     primary_->create_database("fleet");
@@ -284,9 +274,8 @@ class ChaosOfADatabase : public Chaos {
 };
 
 TEST_F(ChaosOfADatabase, LosesNothing) {
-  std::vector<Nuisance> nuisances = server_nuisances("the server", *server_);
-  const std::vector<Nuisance> others = common_nuisances();
-  nuisances.insert(nuisances.end(), others.begin(), others.end());
+  std::vector<Nuisance> nuisances = common_nuisances();
+  add_server_nuisances("the server", *server_, nuisances);
   nuisances.push_back({"lose the primary", [this](Dice& dice) { lose_the_primary(dice); }});
   nuisances.push_back({"end sessions", [this](Dice& dice) { end_sessions(dice); }});
   nuisances.push_back({"freeze the primary", [this](Dice& dice) {
@@ -308,11 +297,8 @@ TEST_F(ChaosOfADatabase, LosesNothing) {
 class ChaosOfTwoSites : public Chaos {
  protected:
   void SetUp() override {
-    Chaos::SetUp();
     if (const std::string missing = missing_postgres(); !missing.empty())
       GTEST_SKIP() << missing;
-    if (IsSkipped())
-      return;
     memory_ = std::make_unique<PostgresCluster>();
     url_ = memory_->create_database("kinship");
     std::vector<ChaosClients::Place> places;
@@ -363,8 +349,7 @@ class ChaosOfTwoSites : public Chaos {
 TEST_F(ChaosOfTwoSites, BothEndWithAll) {
   std::vector<Nuisance> nuisances = common_nuisances();
   for (std::size_t site = 0; site < 2; ++site)
-    for (const Nuisance& one : server_nuisances("site " + std::to_string(site), *servers_[site]))
-      nuisances.push_back(one);
+    add_server_nuisances("site " + std::to_string(site), *servers_[site], nuisances);
   nuisances.push_back({"kill the memory", [this](Dice& dice) {
                          memory_->kill();
                          pause(dice, milliseconds(0), milliseconds(2000));
