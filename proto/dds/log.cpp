@@ -67,13 +67,16 @@ LimitedLog& limited_log() {
   return *log;
 }
 
-void on_line(void* /*argument*/, const dds_log_data_t* data) {
+/// Its callers are C and hold locks, which an exception would leave locked for good: without memory
+/// a line is lost.
+void on_line(void* /*argument*/, const dds_log_data_t* data) noexcept try {
   if (!data)
     return;
   std::string_view line(data->message, data->size);
   while (!line.empty() && line.back() == '\n')
     line.remove_suffix(1);
   limited_log().write(line);
+} catch (...) {
 }
 
 }  // namespace

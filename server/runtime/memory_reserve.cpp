@@ -1,10 +1,13 @@
 #include "server/runtime/memory_reserve.hpp"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstddef>
 #include <new>
+#include <string_view>
 
 namespace kinship::runtime {
 namespace {
@@ -28,11 +31,20 @@ void* take_room(std::size_t bytes) {
   throw std::bad_alloc();
 }
 
+/// A process that aborts says so itself: Cyclone DDS and SQLite are refused memory without a word.
+void tell_end(int /*signal*/) {
+  constexpr std::string_view kWords =
+      "kinshipd: ended by itself (SIGABRT), as when the system refuses it memory that it cannot do "
+      "without; every report with a receipt is in the store; start it again, with more memory\n";
+  static_cast<void>(write(STDERR_FILENO, kWords.data(), kWords.size()));
+}
+
 }  // namespace
 
 void keep_memory_reserve() {
   reserve = take_room(kReserve);
   std::set_new_handler(refuse);
+  std::signal(SIGABRT, tell_end);
 }
 
 void renew_memory_reserve() {

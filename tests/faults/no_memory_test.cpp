@@ -1,9 +1,11 @@
-// A server that the system ends for want of memory loses no receipt.
+// A server that ends for want of memory says so, and loses no receipt.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -83,6 +85,39 @@ TEST(NoMemory, ThatTheSystemEndsTheServerForLosesNothing) {
   EXPECT_TRUE(group.has_killed());
   store.cell().kill();
   store.cell().start();
+  EXPECT_TRUE(store.has_all_receipts());
+  EXPECT_EQ(store.cell().terminate(), 0);
+  EXPECT_EQ(store.missing(store.file()), 0U);
+  EXPECT_EQ(store.offline("check").code, 0);
+}
+
+/// The process gets no more addresses than it has.
+bool leave_no_more(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/statm");
+  rlim_t pages = 0;
+  file >> pages;
+  const rlimit limit{pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)), RLIM_INFINITY};
+  return pages > 0 && prlimit(process, RLIMIT_AS, &limit, nullptr) == 0;
+}
+
+TEST(NoMemory, OfAddressesEndsTheServerInWordsOrPutsOff) {
+  ServedStore store;
+  store.report(30);
+  const test::ServerProcess& server = store.cell().server();
+  ASSERT_TRUE(leave_no_more(server.pid()));
+  bool has_all = false;
+  for (int i = 0; i < 60 && !server.has_ended(); ++i) {
+    store.offer_long();
+    has_all = store.cell().client().flush(std::chrono::milliseconds(500)).pending == 0;
+  }
+  if (server.has_ended()) {
+    EXPECT_EQ(store.cell().terminate(), 128 + SIGABRT);
+    EXPECT_NE(store.cell().log().find("kinshipd: ended by itself"), std::string::npos)
+        << store.cell().log();
+    store.cell().start();
+  } else {
+    EXPECT_TRUE(has_all) << "it lives, and answers nothing\n" << store.cell().log();
+  }
   EXPECT_TRUE(store.has_all_receipts());
   EXPECT_EQ(store.cell().terminate(), 0);
   EXPECT_EQ(store.missing(store.file()), 0U);

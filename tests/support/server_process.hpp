@@ -75,6 +75,7 @@ class ServerProcess {
   const std::string& ready_line() const noexcept { return ready_line_; }
   pid_t pid() const noexcept { return program_.pid(); }
   void signal(int number) const { program_.signal(number); }
+  bool has_ended() const { return program_.has_ended(); }
 
   int terminate();  ///< SIGTERM; \return exit code
   void kill();      ///< SIGKILL; returns when it is gone

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <new>
 #include <set>
 #include <string>
 #include <vector>
@@ -80,6 +81,14 @@ TEST(Log, FloodIsCutAndTheNewestLineIsKnown) {
   set_log_sink([](std::string_view line) {
     std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
   });
+}
+
+TEST(Log, ASinkWithoutMemoryLeavesNothingLocked) {
+  set_log_sink([](std::string_view) { throw std::bad_alloc(); });
+  limit_log();
+  EXPECT_NO_THROW(dds_log(DDS_LC_ERROR, __FILE__, __LINE__, "test", "a line\n"));
+  EXPECT_EQ(last_log_line(), "a line");
+  set_log_sink({});
 }
 
 }  // namespace
