@@ -50,6 +50,7 @@ struct WideAxis {
 /// limit cut a branch off.
 struct WideState {
   WideMask hard, outside;
+  double slack;  ///< of LaneWrist
 };
 
 /// Turns of a cosine; see solve_cosine.
@@ -58,7 +59,7 @@ struct WideTurnPair {
   WideMask valid;
 };
 
-KINSHIP_SIMD_INLINE WideTurnPair solve_cosine(Wide a, Wide b, Wide c, double slack, WideMask alive,
+KINSHIP_SIMD_INLINE WideTurnPair solve_cosine(Wide a, Wide b, Wide c, WideMask alive,
                                               WideState& state) {
   const Wide amplitude = root(a * a + b * b);
   const Wide inverse = 1.0 / amplitude;
@@ -67,7 +68,7 @@ KINSHIP_SIMD_INLINE WideTurnPair solve_cosine(Wide a, Wide b, Wide c, double sla
   const Wide sine_squared = (1.0 - cosine) * (1.0 + cosine);
   const WideMask two = sine_squared > kLaneDouble;
   state.hard |= alive & ((amplitude < kLaneSingular) |
-                         (~two & (absolute(cosine) <= 1 + slack + kLaneDouble)));
+                         (~two & (absolute(cosine) <= 1 + state.slack + kLaneDouble)));
   const WideTurn half{cosine, root(two ? sine_squared : all(1))};
   return {{middle * half, middle * half.back()}, alive & two};
 }
@@ -198,9 +199,13 @@ struct WideMeeting {
   Wide3 first, second, normal;  ///< their directions, and the cross product of them
   Wide cosine, sine_squared;
 
-  KINSHIP_SIMD_INLINE void turn(const Wide3& x, const Wide3& y, double slack, WideMask alive,
-                                WideState& state, WideTurn (&firsts)[2], WideTurn (&seconds)[2],
-                                WideMask& valid) const {
+  struct Turns {
+    WideTurn firsts[2], seconds[2];
+    WideMask valid;
+  };
+
+  KINSHIP_SIMD_INLINE Turns turn(const Wide3& x, const Wide3& y, WideMask alive,
+                                 WideState& state) const {
     const Wide along_first = dot(first, y), along_second = dot(second, x);
     const Wide inverse = 1.0 / sine_squared;
     const Wide3 middle = ((along_first - cosine * along_second) * inverse) * first +
@@ -208,21 +213,23 @@ struct WideMeeting {
     const Wide length = dot(x, x);
     const Wide squared = length - dot(middle, middle);
     const WideMask two = squared > kLaneDouble * length;
-    state.hard |= alive & ~two & (squared >= -slack * length - kLaneDouble);
-    valid = alive & two;
+    state.hard |= alive & ~two & (squared >= -state.slack * length - kLaneDouble);
+    Turns turns;
+    turns.valid = alive & two;
     const Wide3 off = root((two ? squared : all(0)) * inverse) * normal;
     for (int i = 0; i < 2; ++i) {
       const Wide3 z = i == 0 ? middle + off : middle - off;
-      firsts[i] = turn_towards(first, z, y, valid, state);
-      seconds[i] = turn_towards(second, x, z, valid, state);
+      turns.firsts[i] = turn_towards(first, z, y, turns.valid, state);
+      turns.seconds[i] = turn_towards(second, x, z, turns.valid, state);
     }
+    return turns;
   }
 };
 
 /// Turns about three axes, the first two of which meet, that bring x to y.
-KINSHIP_SIMD_INLINE void place(const WideAxis& first, const WideAxis& second, const WideAxis& third,
-                               const Wide3& x, const Wide3& y, double slack, WideState& state,
-                               WidePlacements& placements) {
+KINSHIP_SIMD_INLINE WidePlacements place(const WideAxis& first, const WideAxis& second,
+                                         const WideAxis& third, const Wide3& x, const Wide3& y,
+                                         WideState& state) {
   const Wide3 normal = cross(first.direction, second.direction);
   const Wide sine_squared = dot(normal, normal);
   const WideMask meet = sine_squared > kLaneMeetSquared;
@@ -235,23 +242,23 @@ KINSHIP_SIMD_INLINE void place(const WideAxis& first, const WideAxis& second, co
   const Wide3 arm = x - foot, off = foot - centre, aside = cross(third.direction, arm);
   const WideTurnPair thirds =
       solve_cosine(2.0 * dot(off, arm), 2.0 * dot(off, aside),
-                   dot(to_y, to_y) - dot(off, off) - dot(arm, arm), slack, meet, state);
+                   dot(to_y, to_y) - dot(off, off) - dot(arm, arm), meet, state);
   const WideMeeting meeting{first.direction, second.direction, normal,
                             dot(first.direction, second.direction), sine_squared};
+  WidePlacements placements;
   for (int i = 0; i < 2; ++i) {
     const WideTurn& turn = thirds.turns[i];
-    WideTurn firsts[2], seconds[2];
-    WideMask valid;
-    meeting.turn(off + turn.cosine * arm + turn.sine * aside, to_y, slack, thirds.valid, state,
-                 firsts, seconds, valid);
+    const WideMeeting::Turns met =
+        meeting.turn(off + turn.cosine * arm + turn.sine * aside, to_y, thirds.valid, state);
     for (int k = 0; k < 2; ++k) {
       WideTurn(&turns)[3] = placements.turns[2 * i + k];
-      turns[0] = firsts[k];
-      turns[1] = seconds[k];
+      turns[0] = met.firsts[k];
+      turns[1] = met.seconds[k];
       turns[2] = turn;
-      placements.valid[2 * i + k] = valid;
+      placements.valid[2 * i + k] = met.valid;
     }
   }
+  return placements;
 }
 
 /// The branches of some lanes before their angles: cosines and sines by joint, branch and lane.
@@ -266,10 +273,20 @@ struct alignas(64) LaneTurns {
   }
 };
 
+/// The lanes from `lane` on.
+struct WideTask {
+  const LaneWrist& arm;
+  const WideWrist& wrist;
+  int lane;
+};
+
 /// The last three joints, whose axes meet, after a placement of the wrist.
-KINSHIP_SIMD_INLINE void turn_wrist(const LaneWrist& arm, const WideWrist& wrist,
-                                    const WideTurn (&turns)[3], WideMask alive, int placement,
-                                    int lane, WideState& state, LaneTurns& found) {
+KINSHIP_SIMD_INLINE void turn_wrist(const WideTask& task, const WideTurn (&turns)[3],
+                                    WideMask alive, int placement, WideState& state,
+                                    LaneTurns& found) {
+  const LaneWrist& arm = task.arm;
+  const WideWrist& wrist = task.wrist;
+  const int lane = task.lane;
   const Wide3 &h4 = wrist.axes[3].direction, &h5 = wrist.axes[4].direction,
               &h6 = wrist.axes[5].direction;
   Wide3 axis_wanted = wrist.axis_turned, side_wanted = wrist.side_turned;
@@ -279,7 +296,7 @@ KINSHIP_SIMD_INLINE void turn_wrist(const LaneWrist& arm, const WideWrist& wrist
   }
   const Wide along = dot(h5, h6) * dot(h4, h5);
   const WideTurnPair fifths = solve_cosine(dot(h4, h6) - along, dot(h4, cross(h5, h6)),
-                                           dot(h4, axis_wanted) - along, arm.slack, alive, state);
+                                           dot(h4, axis_wanted) - along, alive, state);
   for (int i = 0; i < 2; ++i) {
     const int slot = 2 * placement + i;
     const WideTurn& fifth = fifths.turns[i];
@@ -300,16 +317,15 @@ KINSHIP_SIMD_INLINE void turn_wrist(const LaneWrist& arm, const WideWrist& wrist
   }
 }
 
-/// All branches of the lanes from `lane` on.
-KINSHIP_SIMD_INLINE void solve_wrist(const LaneWrist& arm, const WideWrist& wrist, int lane,
-                                     WideState& state, LaneTurns& found) {
+/// All branches.
+KINSHIP_SIMD_INLINE void solve_wrist(const WideTask& task, WideState& state, LaneTurns& found) {
+  const LaneWrist& arm = task.arm;
+  const WideWrist& wrist = task.wrist;
   const WideAxis* axes = wrist.axes;
-  WidePlacements placements;
   const Wide3& point = axes[5].point;
-  if (arm.last_meet)
-    place(axes[2], axes[1], axes[0], wrist.wrist_moved, point, arm.slack, state, placements);
-  else
-    place(axes[0], axes[1], axes[2], point, wrist.wrist_moved, arm.slack, state, placements);
+  const WidePlacements placements =
+      arm.last_meet ? place(axes[2], axes[1], axes[0], wrist.wrist_moved, point, state)
+                    : place(axes[0], axes[1], axes[2], point, wrist.wrist_moved, state);
   for (int i = 0; i < 4; ++i) {
     WideTurn turns[3];
     for (int j = 0; j < 3; ++j)
@@ -318,7 +334,7 @@ KINSHIP_SIMD_INLINE void solve_wrist(const LaneWrist& arm, const WideWrist& wris
     for (int j = 0; j < 3; ++j)
       alive = allowed(arm.windows[j], turns[j], alive, state);
     if (bits(alive) != 0)
-      turn_wrist(arm, wrist, turns, alive, i, lane, state, found);
+      turn_wrist(task, turns, alive, i, state, found);
   }
 }
 
@@ -360,8 +376,8 @@ void wrist(const LaneWrist& arm, const double (&wanted)[12],
   for (int count = 0; done < kLanes && count < most; done += KINSHIP_SIMD_WIDTH) {
     WideWrist wide{};
     lock(arm, wanted, locked, done, wide);
-    WideState state{};
-    solve_wrist(arm, wide, done, state, found);
+    WideState state{{}, {}, arm.slack};
+    solve_wrist({arm, wide, done}, state, found);
     hard |= bits(state.hard) << done;
     outside |= bits(state.outside) << done;
     count = 0;
