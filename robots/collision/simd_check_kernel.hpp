@@ -3,6 +3,7 @@
 
 #include "robots/collision/lanes.hpp"
 #include "robots/collision/simd_floats.hpp"
+#include "robots/collision/simd_reach.hpp"
 #include "robots/collision/simd_separation.hpp"
 
 namespace kinship::collision {
@@ -31,13 +32,19 @@ class Group {
   }
 
   Verdict check() {
-    try_likely();
-    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i) {
+    for (int i = 0; i < scene_.links; ++i) {
       const LaneLink& link = scene_.link[i];
       link_centers_[i] = moved(frames_[link.joint], link.center);
+      if (question_.moves)
+        bound_motion(i);
+    }
+    try_likely();
+    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i)
       check_link(i);
+    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i) {
+      const LaneLink& link = scene_.link[i];
       for (int k = link.first_pair; k < link.first_pair + link.pairs; ++k)
-        check_link_pair(i, scene_.link_pairs[k], question_.pair_growth[k]);
+        check_link_pair(i, scene_.link_pairs[k]);
     }
     return verdict_;
   }
@@ -75,22 +82,52 @@ class Group {
     if (question_.likely_body < 0)
       return;
     const LaneBody& body = scene_.body[question_.likely_body];
-    const float growth = question_.growth[question_.likely_link];
-    check_obstacle({question_.likely_link, question_.likely_body, growth},
-                   question_.likely_obstacle, moved(frames_[body.joint], body.form.center),
-                   kAllOfAGroup);
+    check_obstacle(
+        {question_.likely_link, question_.likely_body, standing_growth(question_.likely_link)},
+        question_.likely_obstacle, moved(frames_[body.joint], body.form.center), kAllOfAGroup);
+  }
+
+  /// Growth of a link's bodies towards standing ones.
+  Wide standing_growth(int link) const {
+    const Wide room = all(question_.standing_room);
+    return question_.moves ? room + motions_[link][0] : room;
+  }
+
+  /// Bounds the way of a link's points while the joints change, as the frame of each joint before
+  /// it sees it ([k]: of the k-th joint, counted from 1), and in the scene's ([0]): joint by joint,
+  /// a point is never farther from a joint's axis than it is here, and what it moved. Source: as
+  /// MotionBounds.
+  void bound_motion(int index) {
+    constexpr float kRounding = 1 + 1e-5F;
+    const LaneLink& link = scene_.link[index];
+    const float radius = link.radius + 4 * scene_.slack;
+    Wide motion = {};
+    for (int k = link.joint; k >= 0; k = scene_.joints[k].before) {
+      motions_[index][k + 1] = motion;
+      const Wide change = load(question_.change[k] + first_);
+      if (scene_.joints[k].slides) {
+        motion += change;
+        continue;
+      }
+      const WideFrame& frame = frames_[k];
+      const WidePoint across =
+          cross(minus(link_centers_[index], {frame.p[0], frame.p[1], frame.p[2]}, all(1)),
+                {frame.R[2], frame.R[5], frame.R[8]});
+      motion += change * (root(dot(across, across)) * kRounding + radius + motion) * kRounding;
+    }
+    motions_[index][0] = motion;
   }
 
   /// A body, its link, and how much it has grown.
   struct Grown {
     int link, body;
-    float growth;
+    Wide growth;
   };
 
   /// The bodies of a link and the obstacles that its sphere reaches in some lane.
   void check_link(int index) {
     const LaneLink& link = scene_.link[index];
-    const float growth = question_.growth[index], radius = link.radius + growth;
+    const Wide growth = standing_growth(index), radius = link.radius + growth;
     const WidePoint& center = link_centers_[index];
     for (int block = 0; block < scene_.blocks; ++block) {
       unsigned open = 0;
@@ -112,21 +149,32 @@ class Group {
   }
 
   /// The bodies of two links that come near each other in some lane.
-  void check_link_pair(int index, const LaneLinkPair& pair, float growth) {
-    const float limit = pair.reach + growth;
-    if ((below(distance2(link_centers_[index], link_centers_[pair.other]), all(limit * limit)) &
+  void check_link_pair(int index, const LaneLinkPair& pair) {
+    Wide growth = all(question_.moving_room);
+    if (question_.moves)
+      growth += motions_[index][pair.both + 1] + motions_[pair.other][pair.both + 1];
+    const Wide limit = pair.reach + growth;
+    if ((below(distance2(link_centers_[index], link_centers_[pair.other]), limit * limit) &
          ~verdict_.surely) == 0)
       return;
     place_bodies(index);
     place_bodies(pair.other);
-    for (int i = pair.first; i < pair.first + pair.count; ++i) {
-      const LaneOther& other = scene_.others[i];
-      const float its = other.reach + growth;
-      const unsigned near =
-          below(distance2(centers_[other.body], centers_[other.other]), all(its * its)) &
-          ~verdict_.surely;
-      if (near != 0)
-        compare_bodies(other.body, other.other, near, growth);
+    for (int i = pair.first; i < pair.first + pair.count;) {
+      const LaneOther& first = scene_.others[i];
+      const WidePoint center = centers_[first.body];
+      const Wide link_limit = first.link_reach + growth;
+      if (below(distance2(center, link_centers_[pair.other]), link_limit * link_limit) == 0) {
+        i = first.next;
+        continue;
+      }
+      for (const int end = first.next; i < end; ++i) {
+        const LaneOther& other = scene_.others[i];
+        const Wide its = other.reach + growth;
+        const unsigned near =
+            below(distance2(center, centers_[other.other]), its * its) & ~verdict_.surely;
+        if (near != 0)
+          compare_bodies(other.body, other.other, near, growth);
+      }
     }
   }
 
@@ -142,13 +190,13 @@ class Group {
   /// Obstacles of a block whose boxes overlap the box around spheres in all lanes.
   /// \param open  those that matter
   KINSHIP_SIMD_INLINE unsigned near_of_block(int block, unsigned open, const WidePoint& center,
-                                             float radius) const {
+                                             Wide radius) const {
     if (open == 0)
       return 0;
-    const WidePoint low = {all(least(center.x) - radius), all(least(center.y) - radius),
-                           all(least(center.z) - radius)};
-    const WidePoint high = {all(largest(center.x) + radius), all(largest(center.y) + radius),
-                            all(largest(center.z) + radius)};
+    const WidePoint low = {all(least(center.x - radius)), all(least(center.y - radius)),
+                           all(least(center.z - radius))};
+    const WidePoint high = {all(largest(center.x + radius)), all(largest(center.y + radius)),
+                            all(largest(center.z + radius))};
     unsigned near = 0;
     for (int part = 0; part < kLanes; part += KINSHIP_SIMD_WIDTH) {
       const float* const bounds = scene_.bounds + block * 6 * kLanes + part;
@@ -179,12 +227,12 @@ class Group {
   }
 
   /// Half extents of a grown body along the scene's axes, in each lane.
-  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body, float growth) const {
+  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body, Wide growth) const {
     const LaneForm& form = body.form;
     const WideFrame& frame = frames_[body.joint];
     const float(&A)[9] = form.axes;
     const WidePoint z = turned(frame, A[2], A[5], A[8]);
-    const float more = 4 * scene_.slack + growth + (is_box(form) ? 0.0F : form.radius);
+    const Wide more = 4 * scene_.slack + growth + (is_box(form) ? 0.0F : form.radius);
     WidePoint half = {absolute(z.x) * form.half[2] + more, absolute(z.y) * form.half[2] + more,
                       absolute(z.z) * form.half[2] + more};
     if (!is_box(form))
@@ -225,48 +273,6 @@ class Group {
     }
   }
 
-  static Wide distance2(const WidePoint& a, const WidePoint& b) {
-    const Wide x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-    return x * x + y * y + z * z;
-  }
-
-  /// Squared distance of a point to a box along the axes.
-  static KINSHIP_SIMD_INLINE Wide distance2_of_box(const float (&center)[3], const float (&half)[3],
-                                                   const WidePoint& at) {
-    const Wide u = positive(absolute(at.x - center[0]) - half[0]);
-    const Wide v = positive(absolute(at.y - center[1]) - half[1]);
-    const Wide w = positive(absolute(at.z - center[2]) - half[2]);
-    return u * u + v * v + w * w;
-  }
-
-  /// Squared distance of a point to a box or cylinder, or to the axis of a capsule.
-  static KINSHIP_SIMD_INLINE Wide distance2(const LaneForm& form, const WidePoint& at) {
-    const float(&A)[9] = form.axes;
-    if (form.shape == LaneShape::AlignedBox)
-      return distance2_of_box(form.center, form.half, at);
-    const Wide dx = at.x - form.center[0], dy = at.y - form.center[1], dz = at.z - form.center[2];
-    const Wide x = dx * A[0] + dy * A[3] + dz * A[6];
-    const Wide y = dx * A[1] + dy * A[4] + dz * A[7];
-    const Wide z = positive(absolute(dx * A[2] + dy * A[5] + dz * A[8]) - form.half[2]);
-    if (form.shape == LaneShape::Box) {
-      const Wide u = positive(absolute(x) - form.half[0]);
-      const Wide v = positive(absolute(y) - form.half[1]);
-      return u * u + v * v + z * z;
-    }
-    const Wide across2 = x * x + y * y;
-    if (form.shape == LaneShape::Capsule)
-      return across2 + z * z;
-    const Wide across = positive(root(across2) - form.radius);
-    return across * across + z * z;
-  }
-
-  /// Lanes in which a sphere reaches a form.
-  static KINSHIP_SIMD_INLINE unsigned reach(const LaneForm& form, const WidePoint& center,
-                                            float radius) {
-    const float limit = form.shape == LaneShape::Capsule ? radius + form.radius : radius;
-    return below(distance2(form, center), all(limit * limit));
-  }
-
   WidePoint sphere(int index) const {
     const float* const place = places_ + 3 * KINSHIP_SIMD_WIDTH * index;
     return {load(place), load(place + KINSHIP_SIMD_WIDTH), load(place + 2 * KINSHIP_SIMD_WIDTH)};
@@ -287,13 +293,13 @@ class Group {
   }
 
   /// Lanes in which a sphere reaches the spheres that cover a surface.
-  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, float radius) const {
+  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, Wide radius) const {
     unsigned reached = 0;
     for (int i = obstacle.first; i < obstacle.first + obstacle.count; ++i) {
       const LaneSphere& its = scene_.spheres[i];
-      const float limit = radius + its.outer;
+      const Wide limit = radius + its.outer;
       const WidePoint center = {all(its.center[0]), all(its.center[1]), all(its.center[2])};
-      reached |= below(distance2(at, center), all(limit * limit));
+      reached |= below(distance2(at, center), limit * limit);
     }
     return reached;
   }
@@ -301,7 +307,7 @@ class Group {
   /// A body and an obstacle, closely. \param near  lanes that matter
   void compare_closely(const Grown& grown, int which, unsigned near) {
     const int index = grown.body;
-    const float growth = grown.growth;
+    const Wide growth = grown.growth;
     const LaneObstacle& obstacle = scene_.obstacle[which];
     const LaneBody& body = scene_.body[index];
     const bool few = __builtin_popcount(near) * (body.room / KINSHIP_SIMD_WIDTH) < body.count;
@@ -319,7 +325,7 @@ class Group {
   }
 
   /// One lane after the other, many spheres at once.
-  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, float growth,
+  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, Wide growth,
                         unsigned near) const {
     const float extra = form.shape == LaneShape::Capsule ? form.radius : 0.0F;
     Verdict found;
@@ -335,7 +341,7 @@ class Group {
       for (int i = 0; i < body.room; i += KINSHIP_SIMD_WIDTH) {
         const float* const row = scene_.cover + body.first_cover + i;
         const Wide x = load(row), y = load(row + body.room), z = load(row + 2 * body.room);
-        const Wide outer = load(row + 3 * body.room) + (extra + growth);
+        const Wide outer = load(row + 3 * body.room) + (extra + growth[lane]);
         const Wide inner = load(row + 4 * body.room);
         const WidePoint at = {frame.R[0] * x + frame.R[1] * y + frame.R[2] * z + frame.p[0],
                               frame.R[3] * x + frame.R[4] * y + frame.R[5] * z + frame.p[1],
@@ -352,7 +358,7 @@ class Group {
   }
 
   /// One sphere after the other, all lanes at once.
-  Verdict compare_spheres(int index, const LaneObstacle& obstacle, float growth, unsigned near) {
+  Verdict compare_spheres(int index, const LaneObstacle& obstacle, Wide growth, unsigned near) {
     const LaneBody& body = scene_.body[index];
     place_spheres(index);
     const float extra = obstacle.form.shape == LaneShape::Capsule ? obstacle.form.radius : 0.0F;
@@ -361,8 +367,9 @@ class Group {
       const LaneSphere& its = scene_.spheres[i];
       const WidePoint at = sphere(i);
       const Wide squared = distance2(obstacle.form, at);
-      const float outer = its.outer + extra + growth, inner = its.inner + extra;
-      unsigned touched = below(squared, all(outer * outer)) & near;
+      const Wide outer = its.outer + extra + growth;
+      const float inner = its.inner + extra;
+      unsigned touched = below(squared, outer * outer) & near;
       if (touched == 0)
         continue;
       if (!obstacle.is_solid)
@@ -378,7 +385,7 @@ class Group {
   }
 
   /// Two bodies, closely.
-  void compare_bodies(int first, int second, unsigned near, float growth) {
+  void compare_bodies(int first, int second, unsigned near, Wide growth) {
     place_spheres(first);
     place_spheres(second);
     const LaneBody &a = scene_.body[first], &b = scene_.body[second];
@@ -386,14 +393,15 @@ class Group {
     for (int i = a.first; i < a.first + a.count; ++i) {
       const WidePoint at = sphere(i);
       const LaneSphere& its = scene_.spheres[i];
-      const float around = its.outer + b.radius + growth;
-      if ((below(distance2(at, centers_[second]), all(around * around)) & near) == 0)
+      const Wide around = its.outer + b.radius + growth;
+      if ((below(distance2(at, centers_[second]), around * around) & near) == 0)
         continue;
       for (int j = b.first; j < b.first + b.count; ++j) {
         const LaneSphere& others = scene_.spheres[j];
         const Wide squared = distance2(at, sphere(j));
-        const float outer = its.outer + others.outer + growth, inner = its.inner + others.inner;
-        found.maybe |= below(squared, all(outer * outer)) & near;
+        const Wide outer = its.outer + others.outer + growth;
+        const float inner = its.inner + others.inner;
+        found.maybe |= below(squared, outer * outer) & near;
         if (its.inner > 0 && others.inner > 0)
           found.surely |= below(squared, all(inner * inner)) & near;
       }
@@ -428,9 +436,11 @@ class Group {
       ++question_.doubts;
     }
     // Bits from the first one on, if those behind it do not matter.
-    const unsigned surely = question_.is_ahead
-                                ? (0U - (found.surely & (0U - found.surely))) & kAllOfAGroup
-                                : found.surely;
+    unsigned surely = found.surely;
+    if (surely != 0 && question_.scope == LaneScope::All)
+      surely = kAllOfAGroup;
+    else if (question_.scope == LaneScope::Ahead)
+      surely = (0U - (surely & (0U - surely))) & kAllOfAGroup;
     verdict_.maybe |= found.maybe | surely;
     verdict_.surely |= surely;
   }
@@ -442,6 +452,7 @@ class Group {
   Verdict verdict_;
   WideFrame frames_[kLaneJoints];
   WidePoint link_centers_[kLaneJoints], centers_[kLaneBodies];
+  Wide motions_[kLaneJoints][kLaneJoints + 1];  // of each link, as bound_motion() says
   bool is_at_[kLaneJoints];
   bool is_placed_[kLaneBodies];
 };
@@ -453,7 +464,7 @@ void check_lanes(const LaneScene& scene, LaneQuestion& question, float* places) 
     const Verdict verdict = Group(scene, question, first, places).check();
     question.maybe |= verdict.maybe << first;
     question.surely |= verdict.surely << first;
-    if (question.is_ahead && verdict.surely != 0)
+    if (question.scope != LaneScope::Each && verdict.surely != 0)
       break;  // what comes behind is not looked at
   }
 }
