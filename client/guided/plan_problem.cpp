@@ -23,6 +23,7 @@
 #include "robots/planning/proven_path.hpp"
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/repetition_roadmap.hpp"
+#include "robots/planning/rrt_connect.hpp"
 #include "robots/planning/shortcut.hpp"
 #include "robots/recall/recall.hpp"
 
@@ -260,6 +261,8 @@ class Planning {
                                                  ompl, generator_)
                  : ompl_planners::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
     }
+    if (planner.kind == PlannerKind::RrtConnect)
+      return planning::plan_rrt_connect(start, goals, is_free_, sampler, options, generator_);
     return planning::plan_trees(start, goals, {is_free_, constraint_or_null()}, sampler, options,
                                 generator_);
   }

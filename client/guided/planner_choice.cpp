@@ -26,10 +26,12 @@ Result<PlannerChoice> parse_planner(std::string_view text) {
     return PlannerChoice{PlannerKind::Cbirrt2};
   if (text == "roadmap")
     return PlannerChoice{PlannerKind::Roadmap};
+  if (text == "rrtconnect")
+    return PlannerChoice{PlannerKind::RrtConnect};
   if (!text.starts_with(kOmpl))
-    return Error{
-        ErrorCode::InvalidInput,
-        "'" + std::string(text) + "' is no planner: give birrt, cbirrt2, roadmap or ompl:NAME"};
+    return Error{ErrorCode::InvalidInput,
+                 "'" + std::string(text) +
+                     "' is no planner: give birrt, cbirrt2, roadmap, rrtconnect or ompl:NAME"};
   const std::string name(text.substr(kOmpl.size()));
   const std::vector<std::string> names = ompl_planners::ompl_planner_names();
   if (std::ranges::find(names, name) == names.end())
@@ -43,11 +45,13 @@ Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrain
   if (wanted.kind == PlannerKind::Ompl || wanted.kind == PlannerKind::Roadmap)
     return wanted;
   if (!is_constrained)
-    return PlannerChoice{PlannerKind::Birrt};
-  if (wanted.kind == PlannerKind::Birrt)
+    return PlannerChoice{wanted.kind == PlannerKind::RrtConnect ? wanted.kind : PlannerKind::Birrt};
+  if (wanted.kind == PlannerKind::Birrt || wanted.kind == PlannerKind::RrtConnect)
     return Error{ErrorCode::InvalidInput,
-                 "--planner birrt does not keep to a constraint: use --planner cbirrt2 or "
-                 "ompl:RRTConnect"};
+                 std::string("--planner ") +
+                     (wanted.kind == PlannerKind::Birrt ? "birrt" : "rrtconnect") +
+                     " does not keep to a constraint: use --planner cbirrt2 or "
+                     "ompl:RRTConnect"};
   return PlannerChoice{PlannerKind::Cbirrt2};
 }
 
@@ -59,6 +63,8 @@ std::string name_of(const PlannerChoice& planner) {
       return "CBiRRT2";
     case PlannerKind::Roadmap:
       return "Repetition Roadmap";
+    case PlannerKind::RrtConnect:
+      return "RRT-Connect";
     case PlannerKind::Ompl:
       return "OMPL " + planner.ompl_planner;
     case PlannerKind::ByProblem:

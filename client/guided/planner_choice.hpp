@@ -12,6 +12,7 @@ enum class PlannerKind {
   Birrt,
   Cbirrt2,
   Roadmap,
+  RrtConnect,  ///< whole lines at once; not under a constraint
   Ompl
 };
 
@@ -21,7 +22,7 @@ struct PlannerChoice {
   std::string ompl_planner = {};  ///< of ompl_planners::ompl_planner_names(); with Ompl only
 };
 
-/// "birrt", "cbirrt2", "roadmap" or "ompl:NAME".
+/// "birrt", "cbirrt2", "roadmap", "rrtconnect" or "ompl:NAME".
 /// \return InvalidInput that shows the text and the valid names.
 Result<PlannerChoice> parse_planner(std::string_view text);
 
@@ -29,7 +30,8 @@ Result<PlannerChoice> parse_planner(std::string_view text);
 /// \return InvalidInput that names the planners able to plan the problem, if this one is not.
 Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained);
 
-/// Its name in results and reports: "BiRRT", "CBiRRT2", "Repetition Roadmap", "OMPL RRTConnect".
+/// Its name in results and reports: "BiRRT", "CBiRRT2", "Repetition Roadmap",
+/// "RRT-Connect", "OMPL RRTConnect".
 std::string name_of(const PlannerChoice& planner);
 
 }  // namespace kinship::guided

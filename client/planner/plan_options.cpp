@@ -82,7 +82,8 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   guided::PlanSettings& settings = options.settings;
   app.add_option(
          "--planner", raw.planner,
-         "birrt, cbirrt2, roadmap, or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
+         "birrt, cbirrt2, roadmap, rrtconnect (whole lines at once: the fastest without guidance, "
+         "and without a constraint), or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
          "LazyPRM ...; default: birrt, and cbirrt2 for problems with a constraint)")
       ->check([](const std::string& text) {
         const Result<guided::PlannerChoice> planner = guided::parse_planner(text);

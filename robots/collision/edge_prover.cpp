@@ -16,7 +16,7 @@ namespace {
 constexpr double kMotionRounding_m = 1e-9;
 // The lanes' first parts are so long that a body moves by so much in half of one, m, and are cut
 // into so many, so often, where they tell nothing.
-constexpr double kFirstGrowth_m = 0.04;
+constexpr double kFirstGrowth_m = 0.02;
 constexpr int kCuts = 4, kLevels = 3;
 constexpr double kFarthest_m = 1e4;  // on one edge: no robot moves farther
 
@@ -34,6 +34,7 @@ EdgeProver::EdgeProver(CollisionWorld& world)
       pairs_(world.pairs_),
       bounds_(world.robot_.parts().chain, world.bodies_),
       middles_(world.robot_.parts().chain.dof(), kLanes),
+      changes_(middles_),
       body_stamps_(world.bodies_.size(), 0) {
   const kinematics::Chain& chain = world.robot_.parts().chain;
   for (std::size_t body = 0; body < world.bodies_.size(); ++body) {
@@ -43,7 +44,6 @@ EdgeProver::EdgeProver(CollisionWorld& world)
       moving_.push_back(body);
   }
   motion_m_.setZero(chain.moving_joints() + 1, static_cast<Eigen::Index>(world.bodies_.size()));
-  grown_m_.setZero(chain.moving_joints() + 1, chain.moving_joints());
   for (auto& [first, second] : pairs_)
     if (world.bodies_[first].joint > world.bodies_[second].joint)
       std::swap(first, second);
@@ -112,13 +112,11 @@ const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen
 }
 
 void EdgeProver::ask_lanes() {
-  edge_motions_m_.resize(std::max(edge_motions_m_.size(), proofs_.size()), grown_m_);
   parts_.clear();
   for (std::size_t edge = 0; edge < proofs_.size(); ++edge) {
     const auto column = static_cast<Eigen::Index>(edge);
-    Eigen::MatrixXd& motion_m = edge_motions_m_[edge];
-    bounds_.bound_all(from_.col(column), from_.col(column) + change_.col(column), motion_m);
-    const double farthest_m = motion_m.row(0).maxCoeff();
+    const double farthest_m =
+        bounds_.farthest_m(from_.col(column), from_.col(column) + change_.col(column));
     if (!(farthest_m <= kFarthest_m))
       throw Failure(invalid_input("on an edge a body may move by " + number_text(farthest_m) +
                                   " m, of which at most " + number_text(kFarthest_m) +
@@ -144,17 +142,10 @@ void EdgeProver::ask_parts(std::span<const Part> parts, bool is_last) {
     const auto column = static_cast<Eigen::Index>(part.edge);
     middles_.col(i) = from_.col(column) + (part.from + part.to) / 2 * change_.col(column);
     ++proofs_[part.edge].configurations;
-    // One growth for all lanes: the largest motion of any part's edge in half of its part.
-    const Eigen::MatrixXd& motion_m = edge_motions_m_[part.edge];
-    const double half = (part.to - part.from) / 2;
-    if (i == 0)
-      grown_m_ = half * motion_m;
-    else if (const Part& before = parts[static_cast<std::size_t>(i - 1)];
-             before.edge != part.edge || before.to - before.from < part.to - part.from)
-      grown_m_ = grown_m_.cwiseMax(half * motion_m);
+    changes_.col(i) = (part.to - part.from) / 2 * change_.col(column);
   }
-  const LaneAnswer answer =
-      world_.lanes_.ask_grown(middles_.leftCols(count), grown_m_, clearances_, /*is_ahead=*/false);
+  const LaneAnswer answer = world_.lanes_.ask_grown(
+      middles_.leftCols(count), changes_.leftCols(count), clearances_, LaneScope::Each);
   for (int lane = 0; lane < static_cast<int>(count); ++lane)
     if (const Part& part = parts[static_cast<std::size_t>(lane)];
         (answer.maybe >> lane & 1U) != 0 && !proofs_[part.edge].refutation)
@@ -354,14 +345,32 @@ Eigen::Index EdgeProver::near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
   return alike_ahead(qs, false);
 }
 
+bool EdgeProver::are_clear(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                           const EdgeProofOptions& options) {
+  begin(qs, options);
+  if (!world_.standing_contacts_.empty())
+    return false;
+  for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
+    const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
+    const LaneAnswer answer = world_.lanes_.ask_grown(
+        qs.middleCols(first, count), changes_.leftCols(0), clearances_, LaneScope::All);
+    if (answer.surely != 0)
+      return false;
+    for (Eigen::Index i = 0; i < count; ++i)
+      if ((answer.maybe >> i & 1U) != 0 && !is_clear(static_cast<int>(i), qs.col(first + i)))
+        return false;
+  }
+  return true;
+}
+
 Eigen::Index EdgeProver::alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool clear) {
   if (!world_.standing_contacts_.empty())
     return clear ? 0 : qs.cols();
-  grown_m_.setZero();
   for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
     const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
-    const LaneAnswer answer = world_.lanes_.ask_grown(qs.middleCols(first, count), grown_m_,
-                                                      clearances_, /*is_ahead=*/clear);
+    const LaneAnswer answer =
+        world_.lanes_.ask_grown(qs.middleCols(first, count), changes_.leftCols(0), clearances_,
+                                clear ? LaneScope::Ahead : LaneScope::Each);
     for (Eigen::Index i = 0; i < count; ++i) {
       const bool is_near =
           (answer.surely >> i & 1U) != 0 ||
@@ -401,12 +410,11 @@ double EdgeProver::placed_distance_m(const BodyPair& pair) const {
 
 double EdgeProver::least_clearance_m(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
   begin(qs, {.clearance_m = kLargestRoom_m});
-  grown_m_.setZero();
   double& least_m = clearances_.standing_m;  // what is farther is not looked at
   for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
     const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
-    const LaneAnswer answer = world_.lanes_.ask_grown(qs.middleCols(first, count), grown_m_,
-                                                      clearances_, /*is_ahead=*/false);
+    const LaneAnswer answer = world_.lanes_.ask_grown(
+        qs.middleCols(first, count), changes_.leftCols(0), clearances_, LaneScope::Each);
     for (int lane = 0; lane < static_cast<int>(count); ++lane) {
       if ((answer.maybe >> lane & 1U) == 0)
         continue;

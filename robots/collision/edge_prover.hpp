@@ -103,6 +103,10 @@ class EdgeProver {
   Eigen::Index near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                           const EdgeProofOptions& options = {});
 
+  /// Whether all of some configurations keep the clearance: sooner than clear_ahead() where one
+  /// does not, whichever it is.
+  bool are_clear(const Eigen::Ref<const Eigen::MatrixXd>& qs, const EdgeProofOptions& options = {});
+
   /// All pairs that are too near at one configuration, for each pair of names the nearest, for
   /// messages; those of the last joints come first.
   /// \throws as above.
@@ -194,12 +198,10 @@ class EdgeProver {
   std::deque<Place> places_;
   std::size_t used_places_ = 0;
   std::vector<Piece> pieces_;
-  std::vector<std::size_t> open_;                // pairs
-  std::vector<Part> parts_, rest_;               // checked by the lanes, now and next
-  std::vector<Eigen::MatrixXd> edge_motions_m_;  // of each whole edge, by MotionBounds::bound_all
-  Eigen::MatrixXd motion_m_;                     // moving joints + 1 x bodies: of a piece
-  Eigen::MatrixXd grown_m_;                      // moving joints + 1 x moving joints: of a part
-  Eigen::MatrixXd middles_;                      // dof x kLanes
+  std::vector<std::size_t> open_;      // pairs
+  std::vector<Part> parts_, rest_;     // checked by the lanes, now and next
+  Eigen::MatrixXd motion_m_;           // moving joints + 1 x bodies: of a piece
+  Eigen::MatrixXd middles_, changes_;  // dof x kLanes: of parts; from there to their ends
   std::vector<BodyPair> doubtful_;
   std::vector<std::uint64_t> body_stamps_;
   std::uint64_t stamp_ = 0;

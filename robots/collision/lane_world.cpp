@@ -13,7 +13,8 @@ namespace kinship::collision {
 namespace {
 
 constexpr double kAlike = 1e-12;
-constexpr std::size_t kTried = 4;  // axes of so many boxes
+constexpr double kOfFloats = 1 + 1e-6;  // rounded, no number is less
+constexpr std::size_t kTried = 4;       // axes of so many boxes
 
 }  // namespace
 
@@ -79,36 +80,44 @@ bool LaneWorld::doubtful_pairs(int lane, std::vector<BodyPair>& pairs) const {
 }
 
 LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set) {
-  return answer(qs, set, false);
+  return answer(qs, set, LaneScope::Each);
 }
 
 LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-  return answer(qs, fastest(qs.cols()), false);
+  return answer(qs, fastest(qs.cols()), LaneScope::Each);
 }
 
-LaneAnswer LaneWorld::ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-  return answer(qs, fastest(qs.cols()), true);
+LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, LaneScope scope) {
+  return answer(qs, fastest(qs.cols()), scope);
 }
 
 LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
-                                const Eigen::Ref<const Eigen::MatrixXd>& motion_m,
-                                const LaneRoom& room, bool is_ahead) {
-  constexpr double kOfFloats = 1 + 1e-6;
-  const auto moves = [&](int joint, const LaneLink& link) {  // as the joint's bodies see it
-    return motion_m(joint + 1, link.joint);
+                                const Eigen::Ref<const Eigen::MatrixXd>& changes,
+                                const LaneRoom& room, LaneScope scope) {
+  question_.standing_room = static_cast<float>(room.standing_m * kOfFloats);
+  question_.moving_room = static_cast<float>(room.moving_m * kOfFloats);
+  question_.moves = changes.cols() > 0;
+  if (question_.moves)
+    write_changes(changes);
+  const LaneAnswer said = answer(qs, fastest(qs.cols()), scope);
+  question_.standing_room = question_.moving_room = 0;
+  question_.moves = false;
+  return said;
+}
+
+void LaneWorld::write_changes(const Eigen::Ref<const Eigen::MatrixXd>& changes) {
+  const std::size_t dof = joints_.size() - mimics_.size();
+  const auto written = [](double change) {
+    return static_cast<float>(std::abs(change) * kOfFloats);
   };
-  const auto grown = [](double by_m) { return static_cast<float>(by_m * kOfFloats); };
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const LaneLink& link = links_[i];
-    growth_[i] = grown(moves(-1, link) + room.standing_m);
-    for (int k = 0; k < link.pairs; ++k) {
-      const auto at = static_cast<std::size_t>(link.first_pair + k);
-      const int both = joints_before_both_[at];
-      const LaneLink& other = links_[static_cast<std::size_t>(link_pairs_[at].other)];
-      growth_[links_.size() + at] = grown(moves(both, link) + moves(both, other) + room.moving_m);
-    }
+  for (Eigen::Index i = 0; i < changes.cols(); ++i) {
+    const auto lane = static_cast<std::size_t>(i);
+    for (std::size_t j = 0; j < dof; ++j)
+      question_.change[j][lane] = written(changes(static_cast<Eigen::Index>(j), i));
+    for (std::size_t k = 0; k < mimics_.size(); ++k)
+      question_.change[dof + k][lane] =
+          written(mimics_[k].multiplier * changes(static_cast<Eigen::Index>(mimics_[k].source), i));
   }
-  return answer(qs, fastest(qs.cols()), is_ahead, true);
 }
 
 bool LaneWorld::write_lane(const double* q, int lane) {
@@ -155,15 +164,13 @@ std::uint32_t LaneWorld::write_question(const Eigen::Ref<const Eigen::MatrixXd>&
 }
 
 LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set,
-                             bool is_ahead, bool is_grown) {
+                             LaneScope scope) {
   const std::uint32_t asked = (1U << qs.cols()) - 1U;
   if (!has_room_)
     return {asked, 0};
   const std::uint32_t beyond = beyond_ = write_question(qs);
-  const float* const growth = (is_grown ? growth_ : ungrown_).data();
-  question_.growth = growth;
-  question_.pair_growth = growth + links_.size();
-  question_.is_ahead = is_ahead && beyond == 0;  // else an unknown one might hide later ones
+  // One that is not known might hide later ones.
+  question_.scope = beyond == 0 ? scope : LaneScope::Each;
   const LaneScene scene{static_cast<int>(joints_.size()),
                         static_cast<int>(links_.size()),
                         slack_,

@@ -44,19 +44,19 @@ class LaneWorld {
   /// The same with the fastest set.
   LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
-  /// The same, but the answer is undefined behind the first that surely collides.
-  LaneAnswer ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+  /// The same, but the answer is undefined in lanes outside the scope.
+  LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, LaneScope scope);
 
-  /// The same for grown bodies: those that may not collide have so much room. Bodies that surely
-  /// collide do so without growth.
-  /// \param motion_m  moving joints + 1 x moving joints, as in MotionBounds: growth of the bodies
-  /// of
-  ///                  each towards standing bodies ([0]) and bodies that the k-th joint moves ([k])
-  /// \param room      additional growth of pairs
-  /// \param is_ahead  the answer is undefined behind the first that surely collides
+  /// The same for grown bodies, that may also move: those that may not collide have so much room in
+  /// every configuration of which no joint differs by more. Bodies that surely collide do so
+  /// without either. \param changes  dof x n, of each configuration's joints, joint units, of
+  /// either sign; or empty:
+  ///                 none
+  /// \param room     growth of pairs
+  /// \param scope     in other lanes the answer is undefined
   LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
-                       const Eigen::Ref<const Eigen::MatrixXd>& motion_m, const LaneRoom& room,
-                       bool is_ahead);
+                       const Eigen::Ref<const Eigen::MatrixXd>& changes, const LaneRoom& room,
+                       LaneScope scope);
 
   /// Whether it has room for the robot; else everything may collide.
   bool has_room() const noexcept { return has_room_; }
@@ -92,8 +92,9 @@ class LaneWorld {
   /// Writes configurations into the question, idle lanes as the last one.
   /// \return the configurations with values beyond the bounds of Writing.
   std::uint32_t write_question(const Eigen::Ref<const Eigen::MatrixXd>& qs);
-  LaneAnswer answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set, bool is_ahead,
-                    bool is_grown = false);
+  void write_changes(const Eigen::Ref<const Eigen::MatrixXd>& changes);
+  LaneAnswer answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set,
+                    LaneScope scope);
 
   float slack_ = 0;
   Writing writing_{};
@@ -111,8 +112,6 @@ class LaneWorld {
   std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
   DistanceGrid grid_;                                           // of a point cloud
   std::vector<Place> places_;                                   // kPlaceRows a sphere
-  std::vector<int> joints_before_both_;                         // of each of link_pairs_
-  std::vector<float> growth_, ungrown_;                         // one a link, then one a pair
   LaneQuestion question_;     // kept, so that asking needs no heap
   std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
   bool has_room_ = true;      // for all joints and bodies; else everything may collide

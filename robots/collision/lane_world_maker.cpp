@@ -369,7 +369,12 @@ class LaneWorldMaker {
     for (const auto& [first, second] : pairs_) {
       const auto [before, after] = std::minmax(in_lanes_[first], in_lanes_[second]);
       if (bodies_[first].joint >= 0 && bodies_[second].joint >= 0)
-        others.push_back({after, before, body_at(after).radius + body_at(before).radius});
+        others.push_back(
+            {.body = after,
+             .other = before,
+             .reach = body_at(after).radius + body_at(before).radius,
+             .link_reach = body_at(after).radius + world_.links_[link_of(before)].radius,
+             .next = 0});
       else if (bodies_[first].joint < 0)
         add_obstacle_of(in_lanes_[second], in_lanes_[first]);
       else
@@ -406,8 +411,11 @@ class LaneWorldMaker {
         if (its == 0)
           continue;
         const LaneLink& other = world_.links_[k];
-        world_.link_pairs_.push_back({static_cast<int>(k), link.radius + other.radius, first, its});
-        world_.joints_before_both_.push_back(chain_.joint_before_both(link.joint, other.joint));
+        world_.link_pairs_.push_back({.other = static_cast<int>(k),
+                                      .both = chain_.joint_before_both(link.joint, other.joint),
+                                      .reach = link.radius + other.radius,
+                                      .first = first,
+                                      .count = its});
         next[i * links + k] = first;
         first += its;
       }
@@ -416,6 +424,16 @@ class LaneWorldMaker {
     world_.others_.resize(others.size());
     for (const LaneOther& pair : others)
       world_.others_[static_cast<std::size_t>(next[cell(pair)]++)] = pair;
+    for (const LaneLinkPair& pair : world_.link_pairs_) {
+      int end = pair.first + pair.count;
+      for (int i = end; i-- > pair.first;) {
+        LaneOther& its = world_.others_[static_cast<std::size_t>(i)];
+        if (i + 1 < pair.first + pair.count &&
+            world_.others_[static_cast<std::size_t>(i) + 1].body != its.body)
+          end = i + 1;
+        its.next = end;
+      }
+    }
   }
 
   LaneWorld& world_;
@@ -442,8 +460,6 @@ LaneWorld::LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bo
     : question_() {
   question_.likely_body = -1;
   LaneWorldMaker(*this, chain, bodies, pairs).make();
-  ungrown_.assign(links_.size() + link_pairs_.size(), 0);
-  growth_ = ungrown_;
 }
 
 }  // namespace kinship::collision

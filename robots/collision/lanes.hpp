@@ -65,7 +65,9 @@ struct LaneBody {
 /// Two bodies that may not touch each other.
 struct LaneOther {
   int body, other;
-  float reach;  ///< bodies with centres farther apart do not touch, m
+  float reach;       ///< bodies with centres farther apart do not touch, m
+  float link_reach;  ///< the same of `body` and the other one's link
+  int next;          ///< index of the next one of another `body`
 };
 
 /// The bodies that one joint moves, and one sphere around all of them.
@@ -82,6 +84,7 @@ struct LaneLink {
 /// An earlier link, and the pairs of its bodies and the link's.
 struct LaneLinkPair {
   int other;
+  int both;          ///< the last joint that moves both, -1: none
   float reach;       ///< links with centres farther apart do not touch, m
   int first, count;  ///< of LaneScene::others
 };
@@ -130,16 +133,26 @@ struct LaneDoubt {
   int obstacle, other;  ///< one of them, the other one is -1
 };
 
+/// Which lanes need an answer; the others are set in `surely`.
+enum class LaneScope {
+  Each,
+  Ahead,  ///< those up to the first sure collision
+  All     ///< any, if one surely collides: whether all are free
+};
+
 /// Sixteen configurations and the result for each. Index of lanes last; bit i: lane i.
 struct alignas(64) LaneQuestion {
   float q[kLaneJoints]
          [kLanes];  ///< the joint's value plus the turn of its frame, rad in [-pi, pi], or m
   int count;        ///< lanes in use, from 0 on
-  /// Growth of the bodies of each link, and of each of LaneScene::link_pairs, m: bodies that may
+  /// Growth, m, of pairs of a moving and a standing body, and of two moving ones: bodies that may
   /// not collide have so much room. Bodies that surely collide do so without growth.
-  const float *growth, *pair_growth;
-  /// Whether lanes behind the first sure collision need no answer; they are then set in `surely`.
-  bool is_ahead;
+  float standing_room, moving_room;
+  /// Whether each joint may be farther from its value, by at most `change`, rad or m: bodies that
+  /// may not collide do not in any of these configurations either.
+  bool moves;
+  float change[kLaneJoints][kLanes];
+  LaneScope scope;
   int likely_link, likely_body,
       likely_obstacle;   ///< tried first; out: the last that surely collided
   std::uint32_t maybe;   ///< out: may collide; the others are free for sure

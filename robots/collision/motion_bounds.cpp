@@ -76,16 +76,15 @@ MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Bod
   }
 }
 
-void MotionBounds::bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
-                             const Eigen::Ref<const Eigen::VectorXd>& to,
-                             Eigen::Ref<Eigen::MatrixXd> motion_m) const {
+double MotionBounds::farthest_m(const Eigen::Ref<const Eigen::VectorXd>& from,
+                                const Eigen::Ref<const Eigen::VectorXd>& to) const {
+  double farthest = 0;
   for (int joint = 0; joint < static_cast<int>(steps_.size()); ++joint) {
     const Step& own = steps_[static_cast<std::size_t>(joint)];
     // Of the bodies' points, from the axis and from the origin of the joint that is looked at.
     double across = own.across_m, reach = own.reach_m, motion = 0;
     for (int k = joint; k >= 0;) {
       const Step& step = steps_[static_cast<std::size_t>(k)];
-      motion_m(k + 1, joint) = motion;
       const double change = std::abs(step.multiplier * (to[step.source] - from[step.source]));
       motion += change * (step.slides ? 1 : across) * (1 + kReachRounding);
       // One joint on: by how far it slides, and by where its origin is.
@@ -96,8 +95,10 @@ void MotionBounds::bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
       reach += step.origin_reach_m + slide + kReachRounding;
       k = step.before;
     }
-    motion_m(0, joint) = motion;
+    if (!(motion <= farthest))
+      farthest = motion;
   }
+  return farthest;
 }
 
 void MotionBounds::measure(std::size_t body, const std::vector<Eigen::Isometry3d>& T_base_joints,

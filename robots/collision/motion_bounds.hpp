@@ -12,7 +12,7 @@ namespace kinship::collision {
 ///
 /// Joint by joint: a prismatic joint moves a point by its displacement, a revolute one by at most
 /// its turn times the point's distance from the joint's axis. That distance is bounded by the
-/// lengths of the links between (bound_all), or closer by its values at both ends of the line and
+/// lengths of the links between (farthest_m), or closer by its values at both ends of the line and
 /// the body's motion by the joints between axis and body (bound). Neither needs limits.
 /// Source: Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
 /// Articulated Robots in Complex Environments, IEEE Transactions on Robotics 21 (2005), section IV;
@@ -21,14 +21,11 @@ class MotionBounds {
  public:
   MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies);
 
-  /// Bounds of the way of all bodies' points on a line, in the frame of every joint before each, m,
-  /// for all bodies of a joint alike: coarser than bound(), without forward kinematics. They scale
-  /// with parts of the line.
+  /// A bound of the way of any body's points on a line, m: coarser than bound(), without forward
+  /// kinematics.
   /// \param from, to  dof, joint units: the ends of the line
-  /// \param motion_m  out: moving joints + 1 x moving joints, as in bound()
-  void bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
-                 const Eigen::Ref<const Eigen::VectorXd>& to,
-                 Eigen::Ref<Eigen::MatrixXd> motion_m) const;
+  double farthest_m(const Eigen::Ref<const Eigen::VectorXd>& from,
+                    const Eigen::Ref<const Eigen::VectorXd>& to) const;
 
   /// Largest distances of a body's points from the axes of the joints that move it, at one
   /// configuration, m; 0 for prismatic joints.

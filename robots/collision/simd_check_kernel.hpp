@@ -32,13 +32,19 @@ class Group {
   }
 
   Verdict check() {
-    try_likely();
-    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i) {
+    for (int i = 0; i < scene_.links; ++i) {
       const LaneLink& link = scene_.link[i];
       link_centers_[i] = moved(frames_[link.joint], link.center);
+      if (question_.moves)
+        bound_motion(i);
+    }
+    try_likely();
+    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i)
       check_link(i);
+    for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i) {
+      const LaneLink& link = scene_.link[i];
       for (int k = link.first_pair; k < link.first_pair + link.pairs; ++k)
-        check_link_pair(i, scene_.link_pairs[k], question_.pair_growth[k]);
+        check_link_pair(i, scene_.link_pairs[k]);
     }
     return verdict_;
   }
@@ -76,22 +82,52 @@ class Group {
     if (question_.likely_body < 0)
       return;
     const LaneBody& body = scene_.body[question_.likely_body];
-    const float growth = question_.growth[question_.likely_link];
-    check_obstacle({question_.likely_link, question_.likely_body, growth},
-                   question_.likely_obstacle, moved(frames_[body.joint], body.form.center),
-                   kAllOfAGroup);
+    check_obstacle(
+        {question_.likely_link, question_.likely_body, standing_growth(question_.likely_link)},
+        question_.likely_obstacle, moved(frames_[body.joint], body.form.center), kAllOfAGroup);
+  }
+
+  /// Growth of a link's bodies towards standing ones.
+  Wide standing_growth(int link) const {
+    const Wide room = all(question_.standing_room);
+    return question_.moves ? room + motions_[link][0] : room;
+  }
+
+  /// Bounds the way of a link's points while the joints change, as the frame of each joint before
+  /// it sees it ([k]: of the k-th joint, counted from 1), and in the scene's ([0]): joint by joint,
+  /// a point is never farther from a joint's axis than it is here, and what it moved. Source: as
+  /// MotionBounds.
+  void bound_motion(int index) {
+    constexpr float kRounding = 1 + 1e-5F;
+    const LaneLink& link = scene_.link[index];
+    const float radius = link.radius + 4 * scene_.slack;
+    Wide motion = {};
+    for (int k = link.joint; k >= 0; k = scene_.joints[k].before) {
+      motions_[index][k + 1] = motion;
+      const Wide change = load(question_.change[k] + first_);
+      if (scene_.joints[k].slides) {
+        motion += change;
+        continue;
+      }
+      const WideFrame& frame = frames_[k];
+      const WidePoint across =
+          cross(minus(link_centers_[index], {frame.p[0], frame.p[1], frame.p[2]}, all(1)),
+                {frame.R[2], frame.R[5], frame.R[8]});
+      motion += change * (root(dot(across, across)) * kRounding + radius + motion) * kRounding;
+    }
+    motions_[index][0] = motion;
   }
 
   /// A body, its link, and how much it has grown.
   struct Grown {
     int link, body;
-    float growth;
+    Wide growth;
   };
 
   /// The bodies of a link and the obstacles that its sphere reaches in some lane.
   void check_link(int index) {
     const LaneLink& link = scene_.link[index];
-    const float growth = question_.growth[index], radius = link.radius + growth;
+    const Wide growth = standing_growth(index), radius = link.radius + growth;
     const WidePoint& center = link_centers_[index];
     for (int block = 0; block < scene_.blocks; ++block) {
       unsigned open = 0;
@@ -113,21 +149,32 @@ class Group {
   }
 
   /// The bodies of two links that come near each other in some lane.
-  void check_link_pair(int index, const LaneLinkPair& pair, float growth) {
-    const float limit = pair.reach + growth;
-    if ((below(distance2(link_centers_[index], link_centers_[pair.other]), all(limit * limit)) &
+  void check_link_pair(int index, const LaneLinkPair& pair) {
+    Wide growth = all(question_.moving_room);
+    if (question_.moves)
+      growth += motions_[index][pair.both + 1] + motions_[pair.other][pair.both + 1];
+    const Wide limit = pair.reach + growth;
+    if ((below(distance2(link_centers_[index], link_centers_[pair.other]), limit * limit) &
          ~verdict_.surely) == 0)
       return;
     place_bodies(index);
     place_bodies(pair.other);
-    for (int i = pair.first; i < pair.first + pair.count; ++i) {
-      const LaneOther& other = scene_.others[i];
-      const float its = other.reach + growth;
-      const unsigned near =
-          below(distance2(centers_[other.body], centers_[other.other]), all(its * its)) &
-          ~verdict_.surely;
-      if (near != 0)
-        compare_bodies(other.body, other.other, near, growth);
+    for (int i = pair.first; i < pair.first + pair.count;) {
+      const LaneOther& first = scene_.others[i];
+      const WidePoint center = centers_[first.body];
+      const Wide link_limit = first.link_reach + growth;
+      if (below(distance2(center, link_centers_[pair.other]), link_limit * link_limit) == 0) {
+        i = first.next;
+        continue;
+      }
+      for (const int end = first.next; i < end; ++i) {
+        const LaneOther& other = scene_.others[i];
+        const Wide its = other.reach + growth;
+        const unsigned near =
+            below(distance2(center, centers_[other.other]), its * its) & ~verdict_.surely;
+        if (near != 0)
+          compare_bodies(other.body, other.other, near, growth);
+      }
     }
   }
 
@@ -143,13 +190,13 @@ class Group {
   /// Obstacles of a block whose boxes overlap the box around spheres in all lanes.
   /// \param open  those that matter
   KINSHIP_SIMD_INLINE unsigned near_of_block(int block, unsigned open, const WidePoint& center,
-                                             float radius) const {
+                                             Wide radius) const {
     if (open == 0)
       return 0;
-    const WidePoint low = {all(least(center.x) - radius), all(least(center.y) - radius),
-                           all(least(center.z) - radius)};
-    const WidePoint high = {all(largest(center.x) + radius), all(largest(center.y) + radius),
-                            all(largest(center.z) + radius)};
+    const WidePoint low = {all(least(center.x - radius)), all(least(center.y - radius)),
+                           all(least(center.z - radius))};
+    const WidePoint high = {all(largest(center.x + radius)), all(largest(center.y + radius)),
+                            all(largest(center.z + radius))};
     unsigned near = 0;
     for (int part = 0; part < kLanes; part += KINSHIP_SIMD_WIDTH) {
       const float* const bounds = scene_.bounds + block * 6 * kLanes + part;
@@ -180,12 +227,12 @@ class Group {
   }
 
   /// Half extents of a grown body along the scene's axes, in each lane.
-  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body, float growth) const {
+  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body, Wide growth) const {
     const LaneForm& form = body.form;
     const WideFrame& frame = frames_[body.joint];
     const float(&A)[9] = form.axes;
     const WidePoint z = turned(frame, A[2], A[5], A[8]);
-    const float more = 4 * scene_.slack + growth + (is_box(form) ? 0.0F : form.radius);
+    const Wide more = 4 * scene_.slack + growth + (is_box(form) ? 0.0F : form.radius);
     WidePoint half = {absolute(z.x) * form.half[2] + more, absolute(z.y) * form.half[2] + more,
                       absolute(z.z) * form.half[2] + more};
     if (!is_box(form))
@@ -195,18 +242,6 @@ class Group {
     half.y += absolute(x.y) * form.half[0] + absolute(y.y) * form.half[1];
     half.z += absolute(x.z) * form.half[0] + absolute(y.z) * form.half[1];
     return half;
-  }
-
-  /// Lanes in which a box along the axes overlaps an obstacle's box. \param bounds  of the
-  /// obstacle.
-  static KINSHIP_SIMD_INLINE unsigned overlap(const float* bounds, const WidePoint& center,
-                                              const WidePoint& half) {
-    return below(all(bounds[0]), center.x + half.x) &
-           below(all(bounds[kLanes]), center.y + half.y) &
-           below(all(bounds[2 * kLanes]), center.z + half.z) &
-           below(center.x - half.x, all(bounds[3 * kLanes])) &
-           below(center.y - half.y, all(bounds[4 * kLanes])) &
-           below(center.z - half.z, all(bounds[5 * kLanes]));
   }
 
   /// \param open  lanes that matter
@@ -275,15 +310,15 @@ class Group {
   }
 
   /// Lanes in which a sphere reaches the spheres that cover a surface. \param open  that matter
-  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, float radius,
+  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, Wide radius,
                          unsigned open) const {
     unsigned reached = 0;
     for (int i = obstacle.first; i < obstacle.first + obstacle.count && (open & ~reached) != 0;
          ++i) {
       const LaneSphere& its = scene_.spheres[i];
-      const float limit = radius + its.outer;
+      const Wide limit = radius + its.outer;
       const WidePoint center = {all(its.center[0]), all(its.center[1]), all(its.center[2])};
-      reached |= below(distance2(at, center), all(limit * limit));
+      reached |= below(distance2(at, center), limit * limit);
     }
     return open & reached;
   }
@@ -291,7 +326,7 @@ class Group {
   /// A body and an obstacle, closely. \param near  lanes that matter
   void compare_closely(const Grown& grown, int which, unsigned near) {
     const int index = grown.body;
-    const float growth = grown.growth;
+    const Wide growth = grown.growth;
     const LaneObstacle& obstacle = scene_.obstacle[which];
     const LaneBody& body = scene_.body[index];
     const Verdict cloud = obstacle.is_in_grid ? near_cloud(grown) : Verdict{near, 0};
@@ -312,7 +347,7 @@ class Group {
   }
 
   /// One lane after the other, many spheres at once.
-  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, float growth,
+  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, Wide growth,
                         unsigned near) const {
     const float extra = form.shape == LaneShape::Capsule ? form.radius : 0.0F;
     Verdict found;
@@ -328,7 +363,7 @@ class Group {
       for (int i = 0; i < body.room; i += KINSHIP_SIMD_WIDTH) {
         const float* const row = scene_.cover + body.first_cover + i;
         const Wide x = load(row), y = load(row + body.room), z = load(row + 2 * body.room);
-        const Wide outer = load(row + 3 * body.room) + (extra + growth);
+        const Wide outer = load(row + 3 * body.room) + (extra + growth[lane]);
         const Wide inner = load(row + 4 * body.room);
         const WidePoint at = {frame.R[0] * x + frame.R[1] * y + frame.R[2] * z + frame.p[0],
                               frame.R[3] * x + frame.R[4] * y + frame.R[5] * z + frame.p[1],
@@ -345,7 +380,7 @@ class Group {
   }
 
   /// One sphere after the other, all lanes at once.
-  Verdict compare_spheres(int index, const LaneObstacle& obstacle, float growth, unsigned near) {
+  Verdict compare_spheres(int index, const LaneObstacle& obstacle, Wide growth, unsigned near) {
     const LaneBody& body = scene_.body[index];
     place_spheres(index);
     const float extra = obstacle.form.shape == LaneShape::Capsule ? obstacle.form.radius : 0.0F;
@@ -355,8 +390,9 @@ class Group {
       const LaneSphere& its = scene_.spheres[i];
       const WidePoint at = sphere(i);
       const Wide squared = distance2(obstacle.form, at);
-      const float outer = its.outer + extra + growth, inner = its.inner + extra;
-      unsigned touched = below(squared, all(outer * outer)) & near;
+      const Wide outer = its.outer + extra + growth;
+      const float inner = its.inner + extra;
+      unsigned touched = below(squared, outer * outer) & near;
       if (touched == 0)
         continue;
       if (obstacle.is_in_grid)
@@ -374,7 +410,7 @@ class Group {
   }
 
   /// Two bodies, closely.
-  void compare_bodies(int first, int second, unsigned near, float growth) {
+  void compare_bodies(int first, int second, unsigned near, Wide growth) {
     place_spheres(first);
     place_spheres(second);
     const LaneBody &a = scene_.body[first], &b = scene_.body[second];
@@ -382,14 +418,15 @@ class Group {
     for (int i = a.first; i < a.first + a.count; ++i) {
       const WidePoint at = sphere(i);
       const LaneSphere& its = scene_.spheres[i];
-      const float around = its.outer + b.radius + growth;
-      if ((below(distance2(at, centers_[second]), all(around * around)) & near) == 0)
+      const Wide around = its.outer + b.radius + growth;
+      if ((below(distance2(at, centers_[second]), around * around) & near) == 0)
         continue;
       for (int j = b.first; j < b.first + b.count; ++j) {
         const LaneSphere& others = scene_.spheres[j];
         const Wide squared = distance2(at, sphere(j));
-        const float outer = its.outer + others.outer + growth, inner = its.inner + others.inner;
-        found.maybe |= below(squared, all(outer * outer)) & near;
+        const Wide outer = its.outer + others.outer + growth;
+        const float inner = its.inner + others.inner;
+        found.maybe |= below(squared, outer * outer) & near;
         if (its.inner > 0 && others.inner > 0)
           found.surely |= below(squared, all(inner * inner)) & near;
       }
@@ -424,9 +461,11 @@ class Group {
       ++question_.doubts;
     }
     // Bits from the first one on, if those behind it do not matter.
-    const unsigned surely = question_.is_ahead
-                                ? (0U - (found.surely & (0U - found.surely))) & kAllOfAGroup
-                                : found.surely;
+    unsigned surely = found.surely;
+    if (surely != 0 && question_.scope == LaneScope::All)
+      surely = kAllOfAGroup;
+    else if (question_.scope == LaneScope::Ahead)
+      surely = (0U - (surely & (0U - surely))) & kAllOfAGroup;
     verdict_.maybe |= found.maybe | surely;
     verdict_.surely |= surely;
   }
@@ -438,6 +477,7 @@ class Group {
   Verdict verdict_;
   WideFrame frames_[kLaneJoints];
   WidePoint link_centers_[kLaneJoints], centers_[kLaneBodies];
+  Wide motions_[kLaneJoints][kLaneJoints + 1];  // of each link, as bound_motion() says
   bool is_at_[kLaneJoints];
   bool is_placed_[kLaneBodies], is_near_known_[kLaneBodies];
   Verdict near_cloud_[kLaneBodies];
@@ -450,7 +490,7 @@ void check_lanes(const LaneScene& scene, LaneQuestion& question, float* places) 
     const Verdict verdict = Group(scene, question, first, places).check();
     question.maybe |= verdict.maybe << first;
     question.surely |= verdict.surely << first;
-    if (question.is_ahead && verdict.surely != 0)
+    if (question.scope != LaneScope::Each && verdict.surely != 0)
       break;  // what comes behind is not looked at
   }
 }

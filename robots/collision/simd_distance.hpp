@@ -45,9 +45,19 @@ KINSHIP_SIMD_INLINE Wide distance2(const LaneForm& form, const WidePoint& at) {
 }
 
 /// Lanes in which a sphere reaches a form.
-KINSHIP_SIMD_INLINE unsigned reach(const LaneForm& form, const WidePoint& center, float radius) {
-  const float limit = form.shape == LaneShape::Capsule ? radius + form.radius : radius;
-  return below(distance2(form, center), all(limit * limit));
+KINSHIP_SIMD_INLINE unsigned reach(const LaneForm& form, const WidePoint& center, Wide radius) {
+  const Wide limit = form.shape == LaneShape::Capsule ? radius + form.radius : radius;
+  return below(distance2(form, center), limit * limit);
+}
+
+/// Lanes in which a box along the axes overlaps an obstacle's box. \param bounds  of the obstacle
+KINSHIP_SIMD_INLINE unsigned overlap(const float* bounds, const WidePoint& center,
+                                     const WidePoint& half) {
+  return below(all(bounds[0]), center.x + half.x) & below(all(bounds[kLanes]), center.y + half.y) &
+         below(all(bounds[2 * kLanes]), center.z + half.z) &
+         below(center.x - half.x, all(bounds[3 * kLanes])) &
+         below(center.y - half.y, all(bounds[4 * kLanes])) &
+         below(center.z - half.z, all(bounds[5 * kLanes]));
 }
 
 /// Where points are in the grid, and the lower bound for the middle of their cell.

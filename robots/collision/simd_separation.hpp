@@ -68,7 +68,8 @@ KINSHIP_SIMD_INLINE Wide extent(const LaneForm& form, const WideForm& at, const 
 
 /// Largest rounding error of a distance, and the gap required between separate forms besides, m.
 struct Margin {
-  float slack, growth;
+  float slack;
+  Wide growth;
 };
 
 /// The result of planes between two forms for some lanes.
@@ -131,7 +132,7 @@ class Separation {
   const LaneForm &a_form_, &b_form_;
   WidePoint between_;
   float slack_;
-  float room_;      // between what is apart, m
+  Wide room_;       // between what is apart, m
   float rounding_;  // of extents and distances where shapes overlap: it grows with them, m
   unsigned apart_ = 0, overlapping_ = ~0U;
   Wide depth_ = all(1e9F);  // least overlap so far

@@ -50,6 +50,10 @@ IsFree proven_in(collision::EdgeProver& prover, const collision::EdgeProofOption
             for (const collision::EdgeProof& proof : prover.prove_all(from, to, options))
               lines.push_back(proof.is_free());
             return lines;
+          },
+          [&prover, options, prepare](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+            prepare();
+            return prover.are_clear(qs, options);
           }};
 }
 

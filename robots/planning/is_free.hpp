@@ -21,6 +21,8 @@ class IsFree {
   /// \param qs  dof x n. \return how many, from the first on, have the same answer (free or
   ///            blocked) before one differs; later ones are not checked, or without effect.
   using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
+  /// \param qs  dof x n. \return whether all are free.
+  using All = std::function<bool(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
   /// Whether each of some straight lines is free.
   using Lines = std::vector<bool>;
   /// \param from, to  dof x n: the ends of the lines, a column each
@@ -36,17 +38,24 @@ class IsFree {
   /// \param free     returns how many are free before one is not.
   /// \param blocked  returns how many are not before one is; none: checked one by one.
   /// \param edges    proves lines; none: the configurations checked along a line suffice.
-  IsFree(One one, Ahead free, Ahead blocked = {}, Edges edges = {})
+  /// \param all      none: as free
+  IsFree(One one, Ahead free, Ahead blocked = {}, Edges edges = {}, All all = {})
       : one_(std::move(one)),
         free_(std::move(free)),
         blocked_(std::move(blocked)),
-        edges_(std::move(edges)) {}
+        edges_(std::move(edges)),
+        all_(std::move(all)) {}
 
   bool operator()(const Eigen::VectorXd& q) const { return one_(q); }
 
   /// How many are free, from the first on, before one is not.
   Eigen::Index ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) const {
     return free_ ? free_(qs) : alike(qs, true);
+  }
+
+  /// Whether all are free.
+  bool all(const Eigen::Ref<const Eigen::MatrixXd>& qs) const {
+    return all_ ? all_(qs) : ahead(qs) == qs.cols();
   }
 
   /// Whether lines are proven, and edges() decides.
@@ -67,7 +76,7 @@ class IsFree {
   }
 
   /// The same with another proof of lines.
-  IsFree with_edges(Edges edges) const { return {one_, free_, blocked_, std::move(edges)}; }
+  IsFree with_edges(Edges edges) const { return {one_, free_, blocked_, std::move(edges), all_}; }
 
   /// How many are not free, from the first on, before one is.
   Eigen::Index blocked_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) const {
@@ -85,6 +94,7 @@ class IsFree {
   One one_;
   Ahead free_, blocked_;
   Edges edges_;
+  All all_;
 };
 
 /// Configurations checked together at most, and the fewest that cost less together.

@@ -41,6 +41,16 @@ class PlanningBudget {
   /// \param qs  dof x n, some kTogether
   std::optional<Eigen::Index> first_free(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
+  /// Whether all of some configurations are free. Counts them, or one that is not. False also if
+  /// the budget is used up before.
+  bool all_free(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+    if (exhausted())
+      return false;
+    const bool all = is_free_.all(qs);
+    checks_ += all ? static_cast<std::uint64_t>(qs.cols()) : 1;
+    return all;
+  }
+
   bool exhausted();
 
   double thread_time_s() const { return planning::thread_time_s() - thread_begin_s_; }
@@ -62,7 +72,7 @@ class PlanningBudget {
   Clock::time_point begin_;
   std::chrono::duration<double> time_limit_;
   double thread_begin_s_;
-  std::uint64_t checks_ = 0;
+  std::uint64_t checks_ = 0, asked_ = 0;
   NoPath reason_ = NoPath::None;
 };
 

@@ -87,6 +87,13 @@ BENCHES = [
 ]
 
 
+def public_sets(options):
+    """Plans in problem files of the user's; with `planning` only, as nobody else has them."""
+    vamp = ["--vamp", str(options.vamp)] if options.vamp and not options.no_references else []
+    return bench("planning-mbm", "public_sets_bench", f"Uniform plans with proven edges in the problems of {options.mbm.name}, processor time",
+                 [str(options.mbm), *vamp], repeats=1)
+
+
 def parse_arguments():
     parser = argparse.ArgumentParser(prog="deploy/bench")
     parser.add_argument("names", nargs="*", metavar="NAME")
@@ -95,6 +102,8 @@ def parse_arguments():
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--no-references", action="store_true")
     parser.add_argument("--eaik", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--mbm", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--vamp", type=pathlib.Path, metavar="PROGRAM")
     parser.add_argument("--write-results", action="store_true")
     parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
@@ -108,6 +117,10 @@ def parse_arguments():
         parser.error(f"--eaik {options.eaik}: no absolute path of a folder")
     if options.names and (options.all or options.write_results):
         parser.error(f"{' '.join(options.names)}: --all and --write-results are of all benchmarks, so no names")
+    if options.mbm and not (options.mbm.is_absolute() and options.mbm.is_dir()):
+        parser.error(f"--mbm {options.mbm}: no absolute path of a folder")
+    if options.vamp and not (options.mbm and options.vamp.is_absolute() and os.access(options.vamp, os.X_OK)):
+        parser.error(f"--vamp {options.vamp}: no absolute path of a program, or no --mbm")
     return options
 
 
@@ -178,7 +191,7 @@ def end_group(process):
 
 def run_once(wanted, has_references, scratch):
     """The figures of one run, in order."""
-    more = [] if has_references or wanted.program == "kinship-experiments" else ["--no-references"]
+    more = [] if has_references or wanted.program in ("kinship-experiments", "public_sets_bench") else ["--no-references"]
     command = [BUILD / "bin" / wanted.program, *wanted.arguments, *more]
     log = BUILD / f"{wanted.name}.log"
     with open(log, "w") as errors:
@@ -253,6 +266,8 @@ def main():
             print(f"{b.name:18}{b.title} ({b.repeats} run{'s' if b.repeats > 1 else ''}{', --long' if b.is_long else ''})")
         return 0
     benches = [b for b in BENCHES if (b.name in options.names if options.names else options.long or not b.is_long)]
+    if options.mbm and any(b.name == "planning" for b in benches):
+        benches.append(public_sets(options))
     build(benches, options.eaik)
     scratch = BUILD / "scratch"
     shutil.rmtree(scratch, ignore_errors=True)

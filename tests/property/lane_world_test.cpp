@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -46,6 +47,9 @@ void compare(LaneWorld& lanes, CollisionWorld& world, const Eigen::MatrixXd& qs,
     ASSERT_EQ(collide ? world.colliding_ahead(rest) : world.free_ahead(rest), end - i);
     i = end;
   }
+  const LaneAnswer all = lanes.ask(qs, LaneScope::All);
+  ASSERT_TRUE(all.surely == 0 || collides != 0) << "says collision where FCL says none";
+  ASSERT_TRUE(all.surely != 0 || (collides & ~all.maybe) == 0) << "says free where FCL says not";
   for (const LaneSet& set : lane_sets()) {
     const LaneAnswer answer = lanes.ask(qs, set);
     ASSERT_EQ(collides & ~answer.maybe, 0U) << set.name << " says free where FCL says collision";
@@ -89,6 +93,57 @@ TEST(LaneWorld, NeverSaysFreeWhereFclSaysCollision) {
   const int batches = test::is_long_run() ? 3000 : 650;  // 1 000 000 configurations
   for (const Robot& robot : robots(random))
     try_in_scenes(robot, batches, random);
+}
+
+/// A configuration of which no joint differs from q by more than its change: mostly at a corner.
+Eigen::VectorXd one_near(const kinematics::Chain& chain, const Eigen::VectorXd& q,
+                         const Eigen::VectorXd& change, Random& random) {
+  Eigen::VectorXd other = q;
+  for (Eigen::Index j = 0; j < q.size(); ++j)
+    other[j] += std::clamp(random.number(-3, 3), -1.0, 1.0) * change[j];
+  for (Eigen::Index j = 0; j < q.size(); ++j)  // what slides keeps within its limits
+    if (chain.joints()[static_cast<std::size_t>(j)].type == kinematics::JointType::Prismatic)
+      other[j] = std::clamp(other[j], chain.lower()[j], chain.upper()[j]);
+  return other;
+}
+
+TEST(LaneWorld, WhereItSaysFreeOfAllThatIsNearNothingNearTouches) {
+  constexpr int kBatches = 40, kNear = 12;
+  Random random;
+  for (const Robot& robot : robots(random)) {
+    int free = 0;
+    for (int scene = 0; scene < kScenes; ++scene) {
+      const RobotSolids solids(robot.chain, robot.shapes);
+      Surroundings around = random_surroundings(robot.chain, random);
+      std::vector<Body> bodies = solids.parts().bodies;
+      add_surroundings(robot.chain, around, bodies);
+      allow_standing_contacts(bodies, around);
+      CollisionWorld world(solids, around);
+      LaneWorld lanes(robot.chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
+      Eigen::MatrixXd qs(robot.chain.dof(), kLanes), changes = qs;
+      for (int batch = 0; batch < kBatches; ++batch) {
+        const double most = std::pow(10, random.number(-2.5, -0.5));
+        for (int i = 0; i < kLanes; ++i) {
+          qs.col(i) = test::random_configuration(robot.chain, random.generator());
+          for (Eigen::Index j = 0; j < qs.rows(); ++j)
+            changes(j, i) = random.number(0, 1) < 0.5 ? 0 : random.number(-most, most);
+        }
+        const LaneAnswer answer = lanes.ask_grown(qs, changes, {}, LaneScope::Each);
+        for (int i = 0; i < kLanes; ++i) {
+          if ((answer.maybe >> i & 1U) != 0)
+            continue;
+          ++free;
+          for (int k = 0; k < kNear; ++k) {
+            const Eigen::VectorXd near =
+                one_near(robot.chain, qs.col(i), changes.col(i).cwiseAbs(), random);
+            ASSERT_FALSE(world.find_contact(near)) << robot.name << ", scene " << scene;
+          }
+        }
+      }
+    }
+    std::printf("%-12s free with all that is near %5d\n", robot.name.c_str(), free);
+    EXPECT_GT(free, 20) << robot.name;
+  }
 }
 
 /// A bar that is tilted a little over the rim of a round table and reaches into it: directions

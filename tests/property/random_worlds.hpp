@@ -114,6 +114,13 @@ inline std::vector<Robot> robots(Random& random) {
   Random own;  // so that nothing else changes
   for (const double sliding_share : {0.0, 0.4})
     all.push_back(followed_robot(5, sliding_share, own));
+  all.push_back(random_robot(6, 0.2, own));
+  all.back().name = "spheres";
+  geometry::RobotShapes& spheres = all.back().shapes;
+  spheres.shapes.clear();
+  for (int link = 0; link <= 6; ++link)
+    for (int i = 0; i < 8; ++i)
+      spheres.shapes.push_back({link, SphereShape{own.number(0.02, 0.06)}, own.pose(0.15)});
   return all;
 }
 

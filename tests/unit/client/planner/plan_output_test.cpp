@@ -142,6 +142,7 @@ TEST(PlannerChoice, ReadsWhatItCanBeTold) {
   EXPECT_EQ(parse_planner("birrt").value().kind, PlannerKind::Birrt);
   EXPECT_EQ(parse_planner("cbirrt2").value().kind, PlannerKind::Cbirrt2);
   EXPECT_EQ(parse_planner("roadmap").value().kind, PlannerKind::Roadmap);
+  EXPECT_EQ(parse_planner("rrtconnect").value().kind, PlannerKind::RrtConnect);
   const PlannerChoice ompl = parse_planner("ompl:LazyPRM").value();
   EXPECT_EQ(ompl.kind, PlannerKind::Ompl);
   EXPECT_EQ(ompl.ompl_planner, "LazyPRM");
@@ -161,15 +162,18 @@ TEST(PlannerChoice, TheProblemDecidesUnlessSaid) {
   EXPECT_EQ(kind_for(PlannerKind::ByProblem, false), PlannerKind::Birrt);
   EXPECT_EQ(kind_for(PlannerKind::ByProblem, true), PlannerKind::Cbirrt2);
   EXPECT_EQ(kind_for(PlannerKind::Cbirrt2, false), PlannerKind::Birrt);
+  EXPECT_EQ(kind_for(PlannerKind::RrtConnect, false), PlannerKind::RrtConnect);
   EXPECT_EQ(kind_for(PlannerKind::Roadmap, false), PlannerKind::Roadmap);
   EXPECT_EQ(kind_for(PlannerKind::Roadmap, true), PlannerKind::Roadmap);
   EXPECT_EQ(planner_for(parse_planner("ompl:RRT").value(), true).value().ompl_planner, "RRT");
 }
 
 TEST(PlannerChoice, WhatAPlannerCannotDoIsRefusedWithWhatCan) {
-  const Result<PlannerChoice> planner = planner_for({PlannerKind::Birrt}, true);
-  ASSERT_FALSE(planner);
-  EXPECT_NE(planner.error().message.find("--planner cbirrt2"), std::string::npos);
+  for (const PlannerKind kind : {PlannerKind::Birrt, PlannerKind::RrtConnect}) {
+    const Result<PlannerChoice> planner = planner_for({kind}, true);
+    ASSERT_FALSE(planner);
+    EXPECT_NE(planner.error().message.find("--planner cbirrt2"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -80,6 +80,21 @@ TEST(PlanProblem, APlannerOfOmplAnswersWithAndWithoutAConstraint) {
   }
 }
 
+TEST(PlanProblem, RrtConnectAnswersWithProvenLinesAndWithChecksAlone) {
+  PlanSettings settings;
+  settings.planner.kind = PlannerKind::RrtConnect;
+  for (const double clearance_m : {1e-3, 0.0}) {
+    settings.clearance_m = clearance_m;
+    const ProblemResult free = planned(wall_problem(), settings).result;
+    ASSERT_TRUE(free.solved) << free.reason;
+    EXPECT_EQ(free.planner, "RRT-Connect");
+    EXPECT_EQ(free.proven, clearance_m > 0);
+    EXPECT_GT(free.collision_checks, 0U);
+    EXPECT_EQ(collisions_along(*free.waypoints, wall_problem()), 0);
+    EXPECT_EQ(planned(wall_problem(), settings).result.waypoints, free.waypoints);
+  }
+}
+
 TEST(PlanProblem, TheRoadmapAnswersWithAndWithoutGuidanceAndConstraint) {
   PlanSettings settings;
   settings.planner.kind = PlannerKind::Roadmap;

@@ -29,7 +29,7 @@ TEST(EdgeProver, FarFromEverythingTheLanesAreEnough) {
   EdgeProver prover(world);
   const EdgeProof proof = prover.prove(angles({-0.5, 0}), angles({0.5, 0}));
   EXPECT_TRUE(proof.is_free());
-  EXPECT_LE(proof.configurations, 16U);
+  EXPECT_LE(proof.configurations, 32U);
   EXPECT_EQ(proof.distances, 0U);
   EXPECT_EQ(proof.least_clearance_m, std::numeric_limits<double>::infinity());
 }
@@ -79,6 +79,9 @@ TEST(EdgeProver, TellsHowManyAreClear) {
     qs.col(i) << 0.01 * (static_cast<double>(i) - 18), 0;
   EXPECT_EQ(prover.clear_ahead(qs, {.clearance_m = 0.9 * gap_m}), 19);
   EXPECT_EQ(prover.clear_ahead(qs.rightCols(2), {.clearance_m = 1.1 * gap_m}), 0);
+  EXPECT_TRUE(prover.are_clear(qs.leftCols(19), {.clearance_m = 0.9 * gap_m}));
+  EXPECT_FALSE(prover.are_clear(qs, {.clearance_m = 0.9 * gap_m}));
+  EXPECT_FALSE(prover.are_clear(qs.rightCols(2), {.clearance_m = 1.1 * gap_m}));
   EXPECT_EQ(world.checks(), 0U);
 }
 
