@@ -74,7 +74,8 @@ dds_security_timed_dispatcher_add(dds_security_timed_dispatcher* dispatcher,
   static const auto kBehind = reinterpret_cast<decltype(&dds_security_timed_dispatcher_add)>(
       dlsym(RTLD_NEXT, "dds_security_timed_dispatcher_add"));  // NOLINT: what dlsym is for
   const dds_time_t behind = kinship::dds::steady_now() - kinship::dds::wall_now();
-  return kBehind(dispatcher, callback, when == DDS_NEVER ? when : when + behind, argument);
+  const bool is_never = when >= DDS_NEVER - std::max<dds_time_t>(behind, 0);
+  return kBehind(dispatcher, callback, is_never ? DDS_NEVER : when + behind, argument);
 }
 
 bool kinship::dds::are_waits_steady() {
