@@ -72,7 +72,7 @@ class PlanningBudget {
   Clock::time_point begin_;
   std::chrono::duration<double> time_limit_;
   double thread_begin_s_;
-  std::uint64_t checks_ = 0, asked_ = 0;
+  std::uint64_t checks_ = 0;
   NoPath reason_ = NoPath::None;
 };
 
