@@ -15,14 +15,13 @@ using planning::NoPath;
 using planning::PlanSummary;
 using planning::RegionConstraint;
 using planning::test_support::at;
+using planning::test_support::kGoal;
+using planning::test_support::kStart;
+using planning::test_support::kStep;
 using planning::test_support::largest_excess;
 using planning::test_support::LineArm;
 using planning::test_support::square_bounds;
 using planning::test_support::WallWorld;
-
-const Eigen::VectorXd kStart = at(-0.8, -0.5);
-const Eigen::VectorXd kGoal = at(0.8, -0.5);
-constexpr double kStep = 0.05;
 
 OmplOptions options(const std::string& planner) {
   OmplOptions options;
