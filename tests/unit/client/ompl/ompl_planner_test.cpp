@@ -14,14 +14,7 @@ using planning::IsFree;
 using planning::NoPath;
 using planning::PlanSummary;
 using planning::RegionConstraint;
-using planning::test_support::at;
-using planning::test_support::kGoal;
-using planning::test_support::kStart;
-using planning::test_support::kStep;
-using planning::test_support::largest_excess;
-using planning::test_support::LineArm;
-using planning::test_support::square_bounds;
-using planning::test_support::WallWorld;
+using namespace planning::test_support;
 
 OmplOptions options(const std::string& planner) {
   OmplOptions options;

@@ -11,13 +11,7 @@
 namespace kinship::planning::birrt_test {
 namespace {
 
-using test_support::at;
-using test_support::kGoal;
-using test_support::kStart;
-using test_support::kStep;
-using test_support::square_bounds;
-using test_support::stepped;
-using test_support::WallWorld;
+using namespace test_support;
 
 PlanSummary plan(WallWorld& world, const Eigen::MatrixXd& goals, std::uint64_t seed,
                  const BirrtOptions& with = stepped(),

@@ -11,15 +11,7 @@
 namespace kinship::planning::repetition_roadmap_test {
 namespace {
 
-using test_support::at;
-using test_support::kGoal;
-using test_support::kStart;
-using test_support::kStep;
-using test_support::largest_excess;
-using test_support::LineArm;
-using test_support::make_carrying;
-using test_support::square_bounds;
-using test_support::WallWorld;
+using namespace test_support;
 
 RoadmapOptions options() {
   RoadmapOptions options;

@@ -8,13 +8,7 @@
 namespace kinship::planning::rrt_connect_test {
 namespace {
 
-using test_support::at;
-using test_support::kGoal;
-using test_support::kStart;
-using test_support::kStep;
-using test_support::square_bounds;
-using test_support::stepped;
-using test_support::WallWorld;
+using namespace test_support;
 
 PlanSummary plan(const IsFree& is_free, const Eigen::MatrixXd& goals, std::uint64_t seed,
                  const BirrtOptions& with = stepped()) {

@@ -14,13 +14,7 @@
 namespace kinship::planning::search_in_order_test {
 namespace {
 
-using test_support::at;
-using test_support::kGoal;
-using test_support::kStart;
-using test_support::kStep;
-using test_support::square_bounds;
-using test_support::stepped;
-using test_support::WallWorld;
+using namespace test_support;
 
 constexpr double kOvershoot = 1.5;
 
