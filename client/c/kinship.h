@@ -45,7 +45,7 @@ typedef enum kinship_code {
   KINSHIP_PENDING = 8,     /**< the distribution is still being made: ask again later */
   KINSHIP_NO_EXPERIENCE = 9,  /**< nobody has done the task yet */
   KINSHIP_UNKNOWN_ROBOT = 10, /**< register it first */
-  KINSHIP_REFUSED = 11,       /**< the server refuses it, for good */
+  KINSHIP_REFUSED = 11,       /**< a rule is against it; the same again is refused again */
   KINSHIP_CODE_WIDTH =
       0x7fffffff /**< no code: enumerations are as wide as int, whatever the compiler is told */
 } kinship_code;
