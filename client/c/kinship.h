@@ -45,7 +45,7 @@ typedef enum kinship_code {
   KINSHIP_PENDING = 8,     /**< the distribution is still being made: ask again later */
   KINSHIP_NO_EXPERIENCE = 9,  /**< nobody has done the task yet */
   KINSHIP_UNKNOWN_ROBOT = 10, /**< register it first */
-  KINSHIP_REFUSED = 11,       /**< the server refuses it, for good */
+  KINSHIP_REFUSED = 11,       /**< a rule is against it; the same again is refused again */
   KINSHIP_CODE_WIDTH =
       0x7fffffff /**< no code: enumerations are as wide as int, whatever the compiler is told */
 } kinship_code;
@@ -116,8 +116,8 @@ typedef struct kinship_robot_description {
 
 /** Waits up to the client's timeout.
  * \param robot  its identity; set also with KINSHIP_UNAVAILABLE: the description is kept in the
- * outbox, and reports of the robot can be handed over. \param dof    number of joints; may be NULL.
- */
+ * outbox, and reports of the robot can be handed over.
+ * \param dof    number of joints; may be NULL. */
 KINSHIP_API kinship_code kinship_register(kinship_client* client,
                                           const kinship_robot_description* description,
                                           kinship_robot* robot, size_t* dof);
@@ -255,8 +255,9 @@ typedef struct kinship_request {
   const double* start;
   size_t start_dof; /**< of start */
   int with_recall;  /**< not 0: the follower holds what kinship_follower_recall() gives, too */
-  /** Where the transfer frame is to go in the next query, in the task frame: where nobody went
-   * there, the server plans that goal in recorded scenes for kinship_recall. NULL: not told. */
+  /** Where the transfer frame is to go in the next query, in the task frame: for kinship_recall
+   * the server plans for that goal in recorded scenes if no report reached it, or in the place of
+   * recorded goals that the robot cannot plan to. NULL: not told. */
   const double* T_task_goal;
   int to_configuration; /**< not 0: queries ask for one configuration, not for any at a pose */
 } kinship_request;
@@ -295,10 +296,11 @@ KINSHIP_API kinship_code kinship_follower_open(kinship_client* client,
                                                const kinship_request* request,
                                                kinship_follower** follower);
 KINSHIP_API void kinship_follower_close(kinship_follower* follower);
-/** The newest one, a handle of its own. With a timeout of 0 it never blocks, otherwise it waits for
- * another than `held`. \param held  the one that the caller has; NULL: any will do. \return
- * KINSHIP_OK with one that differs from `held`, KINSHIP_PENDING without: `held` is the newest
- * still, or the codes of kinship_fetch() while there is none. */
+/** The newest distribution, a handle of its own. With a timeout of 0 the call never blocks,
+ * otherwise it waits for another distribution than `held`.
+ * \param held  the distribution that the caller has; NULL: any will do.
+ * \return KINSHIP_OK with one that differs from `held`, KINSHIP_PENDING without: `held` is the
+ * newest still, or the codes of kinship_fetch() while there is none. */
 KINSHIP_API kinship_code kinship_follower_newer(kinship_follower* follower,
                                                 const kinship_distribution* held,
                                                 uint32_t timeout_ms,
@@ -412,8 +414,8 @@ KINSHIP_API kinship_code kinship_world_path_free(kinship_world* world, const dou
 /* ----------------------------------------------------------------------------------------------
  * recall */
 
-/** Whole paths of a robot for a task, to be moved onto a query and tried before any search. It
- * learns from its tries how far to trust them, else it never changes. */
+/** Whole paths of a robot for a task, to be moved onto a query and tried before any search. The
+ * handle learns from tries how far to trust its paths, else it never changes. */
 typedef struct kinship_recall kinship_recall;
 
 /** Waits until the server has planned the recorded queries again, up to the request's deadline.
@@ -425,10 +427,11 @@ KINSHIP_API kinship_code kinship_fetch_recall(kinship_client* client,
                                               const kinship_request* request,
                                               kinship_recall** recall);
 /** The newest paths of a follower whose request said `with_recall`, a handle of its own. Never
- * waits. \param held  those that the caller has; NULL: any will do. \return KINSHIP_OK with paths
- * that differ from `held`, KINSHIP_PENDING without: `held` are the newest still, or none have come
- * yet; KINSHIP_NO_EXPERIENCE if the server took back what the follower had, e.g. as paths were
- * retired: free `held`. */
+ * waits.
+ * \param held  the paths that the caller has; NULL: any will do.
+ * \return KINSHIP_OK with paths that differ from `held`, KINSHIP_PENDING without: `held` are the
+ * newest still, or none have come yet; KINSHIP_NO_EXPERIENCE if the server took back what the
+ * follower had, e.g. as paths were retired: free `held`. */
 KINSHIP_API kinship_code kinship_follower_recall(kinship_follower* follower,
                                                  const kinship_recall* held,
                                                  kinship_recall** recall);
@@ -474,9 +477,9 @@ typedef struct kinship_recalled {
 
 /** Tries paths on a query, the most promising first, as long as that is cheaper in the mean than a
  * search. A path begins in the start, ends in a goal or at T_task_goal, and is straight between its
- * waypoints; the callbacks said of each of its configurations or lines that they are free. It is
- * not projected onto a constraint, though it may come from a query with one: only the callbacks can
- * refuse what leaves the constraint.
+ * waypoints; the callbacks said of each of its configurations or lines that they are free. Paths
+ * are not projected onto a constraint, though they may come from a query with one: only the
+ * callbacks can refuse what leaves the constraint.
  * \param waypoints  the path, dof numbers each, start first; untouched without one.
  * \param room       configurations that fit there, at least KINSHIP_RECALL_WAYPOINTS.
  * \param recalled   set with KINSHIP_OK, whether there is a path or not. */

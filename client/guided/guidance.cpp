@@ -230,36 +230,34 @@ GuidanceCache::Key GuidanceCache::key_of(const std::optional<Eigen::Isometry3d>&
 }
 
 std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(
-    const std::optional<Eigen::Isometry3d>& T_task_base) {
+    const std::optional<Eigen::Isometry3d>& T_task_base, const GuidanceOptions& wanted) {
   const Key key = key_of(T_task_base);
   if (const auto known = answers_.find(key); known != answers_.end())
     return {known->second, false};
   GuidanceAnswer answer = server_missing_
                               ? refusal(NoGuidance::NoServer, "no server answered before")
-                              : fetch_guidance(fetch_, wanted_, T_task_base, known_);
+                              : fetch_guidance(fetch_, wanted, T_task_base, known_);
   if (answer.why_not == NoGuidance::NoServer)
     server_missing_ = true;
   if (answer.guidance)
     known_ = {answer.guidance->experience, answer.guidance->recall};
   // The answer's is of the same task and robot as those before, and newer; without a server it
   // knows nothing.
-  if (answer.sampling && (needs_server(wanted_) || !sampling_))
+  if (answer.sampling && (needs_server(wanted) || !sampling_))
     sampling_ = answer.sampling;
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }
 
 std::pair<const GuidanceAnswer&, bool> GuidanceCache::ask(const Problem& problem) {
-  wanted_.T_task_goal = problem.T_task_goal;
-  wanted_.to_configuration = problem.goal_configurations.cols() == 1;
-  if (!problem.T_task_goal && wanted_.chain && problem.goal_configurations.cols() > 0 &&
-      problem.goal_configurations.rows() == wanted_.dof)
-    wanted_.T_task_goal =
+  GuidanceOptions wanted = wanted_;
+  wanted.T_task_goal = problem.T_task_goal;
+  wanted.to_configuration = problem.goal_configurations.cols() == 1;
+  if (!problem.T_task_goal && wanted.chain && problem.goal_configurations.cols() > 0 &&
+      problem.goal_configurations.rows() == wanted.dof)
+    wanted.T_task_goal =
         problem.T_task_base.value_or(Eigen::Isometry3d::Identity()) *
-        kinematics::T_base_transfer(*wanted_.chain, problem.goal_configurations.col(0));
-  const auto answer = ask(problem.T_task_base);
-  wanted_.T_task_goal.reset();
-  wanted_.to_configuration = false;
-  return answer;
+        kinematics::T_base_transfer(*wanted.chain, problem.goal_configurations.col(0));
+  return ask(problem.T_task_base, wanted);
 }
 
 QueryGuidance GuidanceCache::choose(const Problem& problem) const {

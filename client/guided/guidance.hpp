@@ -75,8 +75,11 @@ class GuidanceCache {
   GuidanceCache(Fetch fetch, GuidanceOptions wanted)
       : fetch_(std::move(fetch)), wanted_(std::move(wanted)) {}
 
-  /// Fetches unless the placement is known. \return the answer, and whether it is new.
-  std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base);
+  /// Fetches unless the placement is known.
+  /// \return the answer, kept as long as the cache, and whether it is new.
+  std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base) {
+    return ask(T_task_base, wanted_);
+  }
   /// The same for a problem, whose goal the server is told.
   std::pair<const GuidanceAnswer&, bool> ask(const Problem& problem);
 
@@ -90,9 +93,11 @@ class GuidanceCache {
  private:
   using Key = std::optional<PoseArray>;
   static Key key_of(const std::optional<Eigen::Isometry3d>& T_task_base);
+  std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base,
+                                             const GuidanceOptions& wanted);
 
   Fetch fetch_;
-  GuidanceOptions wanted_;
+  const GuidanceOptions wanted_;
   std::map<Key, GuidanceAnswer> answers_;
   KnownExperience known_;                        // of all placements
   std::optional<SamplingModeChooser> sampling_;  // of all placements: same task, same robot

@@ -376,16 +376,17 @@ void bind_guidance(ClientClass& client) {
       py::arg("to_configuration") = false,
       R"(What kinship-plan would guide the robot with: distribution, stored ways, advice.
 
-As fetch() for what it shares with it; plan() takes what it returns. Raises as fetch().
+Parameters that fetch() has mean the same here; plan() takes the result. Raises as fetch().
 
 robot          a Robot: its chain follows the stored ways
-guide          what of them is used, e.g. 'retreat+ways'; empty: what the server found best
+guide          parts of the guidance that are used, e.g. 'retreat+ways'; empty: what the server found best
 share          of guided samples, 0 to 1; by default what the server advises
 control_share  of queries planned uniformly to compare; by default as the evidence says
 rehearsed      True: waits until the server knows which guide is best
-start          where the robot's queries usually begin: what others recorded is planned from there
-T_task_goal    (4, 4) or (7,), where the transfer frame is to go in the next query: where nobody went there,
-               the server plans that goal in the scenes that others recorded
+start          where the robot's queries usually begin: the server plans what others recorded from there
+T_task_goal    (4, 4) or (7,), where the transfer frame is to go in the next query: the server plans for that
+               goal in recorded scenes if no report reached it, or in the place of recorded goals that the
+               robot cannot plan to
 to_configuration  True: queries ask for one configuration, not for any at a pose)");
 }
 

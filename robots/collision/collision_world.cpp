@@ -59,8 +59,7 @@ Eigen::Index CollisionWorld::alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>
   for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
     const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
     const auto together = qs.middleCols(first, count);
-    const LaneAnswer answer =
-        colliding ? lanes_.ask(together) : lanes_.ask(together, LaneScope::Ahead);
+    const LaneAnswer answer = lanes_.ask(together, colliding ? LaneScope::Each : LaneScope::Ahead);
     for (Eigen::Index i = 0; i < count; ++i) {
       ++checks_;
       const bool collides = !standing_contacts_.empty() || (answer.surely >> i & 1U) != 0 ||

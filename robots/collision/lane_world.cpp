@@ -83,10 +83,6 @@ LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, const Lan
   return answer(qs, set, LaneScope::Each);
 }
 
-LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-  return answer(qs, fastest(qs.cols()), LaneScope::Each);
-}
-
 LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, LaneScope scope) {
   return answer(qs, fastest(qs.cols()), scope);
 }

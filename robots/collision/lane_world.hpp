@@ -29,36 +29,33 @@ struct LaneRoom {
 };
 
 /// The moving bodies of a world as spheres, and the standing ones as boxes, capsules and cylinders;
-/// checks several configurations at once. It never reports touching solids as free. Not shared
-/// between threads.
+/// checks several configurations at once. Never reports touching solids as free. Not shared between
+/// threads.
 class LaneWorld {
  public:
   /// \param pairs  that are checked, one of each moves.
   LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bodies,
             const std::vector<BodyPair>& pairs);
 
-  /// \param qs   dof x n, 1 <= n <= kLanes, finite; limits are not checked.
-  /// \param set  one of lane_sets()
+  /// Asks with the fastest set.
+  /// \param qs     dof x n, 1 <= n <= kLanes, finite; limits are not checked.
+  /// \param scope  in other lanes the answer is undefined.
+  LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, LaneScope scope = LaneScope::Each);
+
+  /// The same of all lanes, with one of lane_sets().
   LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set);
 
-  /// The same with the fastest set.
-  LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs);
-
-  /// The same, but the answer is undefined in lanes outside the scope.
-  LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, LaneScope scope);
-
-  /// The same for grown bodies, that may also move: those that may not collide have so much room in
-  /// every configuration of which no joint differs by more. Bodies that surely collide do so
-  /// without either. \param changes  dof x n, of each configuration's joints, joint units, of
-  /// either sign; or empty:
-  ///                 none
-  /// \param room     growth of pairs
-  /// \param scope     in other lanes the answer is undefined
+  /// The same as the first for grown bodies that may also move: bodies that may not collide have so
+  /// much room in every configuration of which no joint differs by more. Bodies that surely collide
+  /// do so without either.
+  /// \param changes  dof x n, of each configuration's joints, joint units, of either sign; or
+  ///                 empty: none.
+  /// \param room     growth of pairs.
   LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                        const Eigen::Ref<const Eigen::MatrixXd>& changes, const LaneRoom& room,
                        LaneScope scope);
 
-  /// Whether it has room for the robot; else everything may collide.
+  /// Whether the lanes have room for the robot; else everything may collide.
   bool has_room() const noexcept { return has_room_; }
 
   /// Pairs that may touch at one configuration of the last call, if that does not surely collide.
@@ -85,9 +82,9 @@ class LaneWorld {
 
   friend class LaneWorldMaker;
 
-  /// Writes a configuration into a lane of the question. \return whether its values are within the
-  /// bounds of Writing.
+  /// Writes a configuration into a lane of the question.
   /// \param q  dof, finite.
+  /// \return whether its values are within the bounds of Writing.
   bool write_lane(const double* q, int lane);
   /// Writes configurations into the question, idle lanes as the last one.
   /// \return the configurations with values beyond the bounds of Writing.

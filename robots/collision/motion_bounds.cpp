@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace kinship::collision {
@@ -95,8 +96,10 @@ double MotionBounds::farthest_m(const Eigen::Ref<const Eigen::VectorXd>& from,
       reach += step.origin_reach_m + slide + kReachRounding;
       k = step.before;
     }
-    if (!(motion <= farthest))
-      farthest = motion;
+    // Beyond all numbers, or not a number after that: no bound is known, whatever other joints do.
+    if (!std::isfinite(motion))
+      return std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, motion);
   }
   return farthest;
 }

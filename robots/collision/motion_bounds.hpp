@@ -24,6 +24,7 @@ class MotionBounds {
   /// A bound of the way of any body's points on a line, m: coarser than bound(), without forward
   /// kinematics.
   /// \param from, to  dof, joint units: the ends of the line
+  /// \return infinity where the numbers are too large for a bound
   double farthest_m(const Eigen::Ref<const Eigen::VectorXd>& from,
                     const Eigen::Ref<const Eigen::VectorXd>& to) const;
 

@@ -33,6 +33,10 @@ void check_arguments(const char* planner, const Eigen::VectorXd& start,
                      const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
                      const BirrtOptions& options);
 
+/// The summary of a search so far, but for what it counts itself.
+PlanSummary summary_of(const PlanningBudget& budget, std::optional<Eigen::MatrixXd> path,
+                       NoPath reason, FoundBy found_by);
+
 /// The goals that hold a constraint.
 /// \return empty, with a reason as in plan_cbirrt2, if the start or all goals do not.
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
@@ -65,7 +69,7 @@ class BidirectionalSearch {
         steering_(steering),
         budget_(budget),
         samples_(sampler, generator) {
-    record_trees();
+    trees_.record(options.recorder, budget);
   }
 
   /// Plants both trees and extends them until they meet or the budget is used up.
@@ -82,12 +86,12 @@ class BidirectionalSearch {
   std::optional<PlanSummary> answer_at_once(const Eigen::VectorXd& start,
                                             const Eigen::MatrixXd& goals,
                                             Eigen::MatrixXd& free_goals) {
-    const NoPath reason = plant(start, goals);
+    const NoPath reason = trees_.plant(start, goals, budget_);
     if (reason != NoPath::None)
       return summary(std::nullopt, reason);
-    free_goals.resize(goals.rows(), goal_tree_.size());
-    for (Eigen::Index i = 0; i < goal_tree_.size(); ++i)
-      free_goals.col(i) = goal_tree_.node(i);
+    free_goals.resize(goals.rows(), trees_.goal.size());
+    for (Eigen::Index i = 0; i < trees_.goal.size(); ++i)
+      free_goals.col(i) = trees_.goal.node(i);
     if (auto path = standstill())
       return summary(std::move(path), NoPath::None, FoundBy::StraightLine);
     return std::nullopt;
@@ -96,35 +100,22 @@ class BidirectionalSearch {
   /// The same from started trees: the start or the free goals, and the configurations reached from
   /// them; all were checked.
   PlanSummary run_from(Tree start_tree, Tree goal_tree) {
-    start_tree_ = std::move(start_tree);
-    goal_tree_ = std::move(goal_tree);
-    record_trees();
+    trees_.start = std::move(start_tree);
+    trees_.goal = std::move(goal_tree);
+    trees_.record(options_.recorder, budget_);
     return search();
   }
 
   /// The summary so far.
   PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason,
                       FoundBy found_by = FoundBy::Search) {
-    PlanSummary summary;
-    summary.found_by = path ? found_by : FoundBy::Nothing;
+    PlanSummary summary = summary_of(budget_, std::move(path), reason, found_by);
     summary.tracks_followed = next_track_;
-    summary.waypoints = std::move(path);
-    summary.reason = reason;
     summary.iterations = iterations_;
-    summary.collision_checks = budget_.checks();
-    summary.planning_time_s = budget_.thread_time_s();
     return summary;
   }
 
  private:
-  void record_trees() {
-    if (options_.recorder == nullptr)
-      return;
-    options_.recorder->begin(budget_);
-    start_tree_.record(*options_.recorder, SearchRecorder::Side::Start);
-    goal_tree_.record(*options_.recorder, SearchRecorder::Side::Goal);
-  }
-
   PlanSummary search() {
     PlanSummary found = search_on();
     samples_.give_back();
@@ -144,29 +135,10 @@ class BidirectionalSearch {
     return summary(std::nullopt, budget_.reason());
   }
 
-  /// \return why no search is possible; None if it is.
-  NoPath plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
-    if (goals.cols() == 0)
-      return NoPath::NoGoal;
-    if (!budget_.is_free(start))
-      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
-    start_tree_.add(start, -1);
-    for (Eigen::Index first = 0; first < goals.cols() && !budget_.exhausted();) {
-      const Eigen::Index together = std::min(kTogether, goals.cols() - first);
-      const Eigen::Index free = budget_.free_ahead(goals.middleCols(first, together));
-      for (Eigen::Index i = first; i < first + free; ++i)
-        goal_tree_.add(goals.col(i), -1);
-      first += std::min(free + 1, together);
-    }
-    if (budget_.exhausted())
-      return budget_.reason();
-    return goal_tree_.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
-  }
-
   /// The path of a start that is a goal already.
   std::optional<Eigen::MatrixXd> standstill() const {
-    const Eigen::VectorXd start = start_tree_.node(0);
-    const Eigen::VectorXd goal = goal_tree_.node(goal_tree_.nearest(start));
+    const Eigen::VectorXd start = trees_.start.node(0);
+    const Eigen::VectorXd goal = trees_.goal.node(trees_.goal.nearest(start));
     if (goal != start)
       return std::nullopt;
     Eigen::MatrixXd path(start.size(), 2);
@@ -177,7 +149,7 @@ class BidirectionalSearch {
   /// Extends the start tree from its root towards one goal after the other, the nearest first. A
   /// free straight line is better than any sample. \return the path to the first goal reached.
   std::optional<Eigen::MatrixXd> go_straight(const Eigen::MatrixXd& goals) {
-    const Eigen::VectorXd start = start_tree_.node(0);
+    const Eigen::VectorXd start = trees_.start.node(0);
     const Eigen::VectorXd distances = (goals.colwise() - start).colwise().norm();
     std::vector<Eigen::Index> order(static_cast<std::size_t>(goals.cols()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -187,9 +159,10 @@ class BidirectionalSearch {
     for (const Eigen::Index goal : order) {
       if (budget_.checks() >= end || budget_.exhausted())
         return std::nullopt;
-      const Extension there = steering_.extend(start_tree_, 0, goals.col(goal), Aim::Node, budget_);
+      const Extension there =
+          steering_.extend(trees_.start, 0, goals.col(goal), Aim::Node, budget_);
       if (there.reached)
-        return join(there.node, goal);
+        return trees_.join(there.node, goal);
     }
     return std::nullopt;
   }
@@ -223,28 +196,28 @@ class BidirectionalSearch {
   std::optional<Eigen::MatrixXd> follow(const Track& track) {
     const std::uint64_t before = budget_.checks();
     const Eigen::VectorXd root = track.configurations.col(0);
-    Extension there{goal_tree_.nearest(root), true};
-    if (goal_tree_.node(there.node) != root) {
+    Extension there{trees_.goal.nearest(root), true};
+    if (trees_.goal.node(there.node) != root) {
       if (!track.is_goal_free)  // it collides
         return std::nullopt;
-      there.node = goal_tree_.add(root, -1);
+      there.node = trees_.goal.add(root, -1);
     }
     for (Eigen::Index i = 1; i < track.configurations.cols() && there.reached; ++i)
-      there = steering_.extend(goal_tree_, there.node, track.configurations.col(i), Aim::Sample,
+      there = steering_.extend(trees_.goal, there.node, track.configurations.col(i), Aim::Sample,
                                budget_);
-    const Eigen::VectorXd tip = goal_tree_.node(there.node);
+    const Eigen::VectorXd tip = trees_.goal.node(there.node);
     const Extension met =
-        steering_.extend(start_tree_, start_tree_.nearest(tip), tip, Aim::Node, budget_);
+        steering_.extend(trees_.start, trees_.start.nearest(tip), tip, Aim::Node, budget_);
     track_checks_ += budget_.checks() - before;
-    return met.reached ? std::optional(join(met.node, there.node)) : std::nullopt;
+    return met.reached ? std::optional(trees_.join(met.node, there.node)) : std::nullopt;
   }
 
   /// Extends the smaller tree towards samples until it grows, then the other towards its new end.
   /// \param ahead  maximum number of samples. \return the path if they met.
   std::optional<Eigen::MatrixXd> iterate(Eigen::Index ahead) {
-    const bool start_grows = start_tree_.size() <= goal_tree_.size();
-    Tree& grown = start_grows ? start_tree_ : goal_tree_;
-    Tree& other = start_grows ? goal_tree_ : start_tree_;
+    const bool start_grows = trees_.start.size() <= trees_.goal.size();
+    Tree& grown = start_grows ? trees_.start : trees_.goal;
+    Tree& other = start_grows ? trees_.goal : trees_.start;
     const std::optional<Extension> there = grow(grown, start_grows ? 0 : 1, ahead);
     if (!there)  // nothing new to go to
       return std::nullopt;
@@ -252,7 +225,7 @@ class BidirectionalSearch {
     const Extension met = steering_.extend(other, other.nearest(tip_), tip_, Aim::Node, budget_);
     if (!met.reached)
       return std::nullopt;
-    return join(start_grows ? there->node : met.node, start_grows ? met.node : there->node);
+    return trees_.join(start_grows ? there->node : met.node, start_grows ? met.node : there->node);
   }
 
   /// Extends a tree towards samples until it grows. Until then each sample's extension begins as if
@@ -312,25 +285,13 @@ class BidirectionalSearch {
     return beginning;
   }
 
-  /// The path over two nodes that hold the same configuration.
-  Eigen::MatrixXd join(Eigen::Index start_node, Eigen::Index goal_node) const {
-    if (options_.recorder != nullptr)
-      options_.recorder->join(start_node, goal_node);
-    const Eigen::MatrixXd from_start = start_tree_.branch(start_node).rowwise().reverse();
-    const Eigen::MatrixXd to_goal = goal_tree_.branch(goal_node);
-    Eigen::MatrixXd path(from_start.rows(), from_start.cols() + to_goal.cols() - 1);
-    path << from_start, to_goal.rightCols(to_goal.cols() - 1);
-    return path;
-  }
-
   const ConfigurationSampler& sampler_;
   const BirrtOptions& options_;
   Steering& steering_;
   PlanningBudget& budget_;
   SamplesAhead samples_;
   const Eigen::VectorXd lower_ = sampler_.bounds().row(0), upper_ = sampler_.bounds().row(1);
-  Tree start_tree_{sampler_.bounds().cols()};
-  Tree goal_tree_{sampler_.bounds().cols()};
+  TreePair trees_{sampler_.bounds().cols()};
   bool has_tracks_ = sampler_.tracks() != nullptr && options_.track_check_fraction > 0;
   std::uint64_t iterations_ = 0;
   std::size_t next_track_ = 0;

@@ -22,6 +22,17 @@ void check_arguments(const char* planner, const Eigen::VectorXd& start,
     refuse("step must be positive, overshoot at least 1");
 }
 
+PlanSummary summary_of(const PlanningBudget& budget, std::optional<Eigen::MatrixXd> path,
+                       NoPath reason, FoundBy found_by) {
+  PlanSummary summary;
+  summary.found_by = path ? found_by : FoundBy::Nothing;
+  summary.waypoints = std::move(path);
+  summary.reason = reason;
+  summary.collision_checks = budget.checks();
+  summary.planning_time_s = budget.thread_time_s();
+  return summary;
+}
+
 PlanSummary plan_birrt(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                        const IsFree& is_free, const ConfigurationSampler& sampler,
                        const BirrtOptions& options, std::mt19937_64& generator) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <vector>
 
 #include "robots/planning/bidirectional_search.hpp"
@@ -21,18 +20,15 @@ constexpr double kFirstRadius = 4, kLeastRadius = 1, kChange = 1e-4;
 constexpr std::uint64_t kMostRefused = 64;
 constexpr Eigen::Index kRake = 8;  // configurations asked for together
 
-/// A tree and how far from each node samples are taken.
+/// A tree and how far from each node samples are taken: without end until a line was refused there.
 struct Domain {
-  explicit Domain(Eigen::Index dof) : tree(dof) {}
-
-  Eigen::Index add(const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Index parent) {
-    radii.push_back(std::numeric_limits<double>::infinity());
-    return tree.add(q, parent);
+  double& radius(Eigen::Index node) {
+    radii.resize(static_cast<std::size_t>(tree.size()), std::numeric_limits<double>::infinity());
+    return radii[static_cast<std::size_t>(node)];
   }
-  double& radius(Eigen::Index node) { return radii[static_cast<std::size_t>(node)]; }
 
-  Tree tree;
-  std::vector<double> radii;
+  Tree& tree;
+  std::vector<double> radii = {};
 };
 
 class Connecting {
@@ -43,21 +39,15 @@ class Connecting {
         step_(options.step),
         budget_(budget),
         generator_(generator),
-        recorder_(options.recorder),
-        start_(sampler.bounds().cols()),
-        goal_(sampler.bounds().cols()),
+        trees_(sampler.bounds().cols()),
         sample_(sampler.bounds().cols()),
         asked_(sampler.bounds().cols(), kRake) {
-    if (recorder_ == nullptr)
-      return;
-    recorder_->begin(budget);
-    start_.tree.record(*recorder_, SearchRecorder::Side::Start);
-    goal_.tree.record(*recorder_, SearchRecorder::Side::Goal);
+    trees_.record(options.recorder, budget);
   }
 
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
-    if (const NoPath reason = plant(start, goals); reason != NoPath::None)
-      return summary(std::nullopt, reason, FoundBy::Nothing);
+    if (const NoPath reason = trees_.plant(start, goals, budget_); reason != NoPath::None)
+      return summary(std::nullopt, reason);
     if (auto path = go_straight())
       return summary(std::move(path), NoPath::None, FoundBy::StraightLine);
     bool from_start = false;
@@ -67,35 +57,17 @@ class Connecting {
           static_cast<double>(near.tree.size()))
         from_start = !from_start;
       if (auto path = from_start ? iterate(start_, goal_) : iterate(goal_, start_))
-        return summary(std::move(path), NoPath::None, FoundBy::Search);
+        return summary(std::move(path), NoPath::None);
     }
-    return summary(std::nullopt, budget_.reason(), FoundBy::Nothing);
+    return summary(std::nullopt, budget_.reason());
   }
 
  private:
-  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason, FoundBy found_by) const {
-    PlanSummary summary;
-    summary.waypoints = std::move(path);
-    summary.collision_checks = budget_.checks();
+  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason,
+                      FoundBy found_by = FoundBy::Search) const {
+    PlanSummary summary = summary_of(budget_, std::move(path), reason, found_by);
     summary.iterations = iterations_;
-    summary.found_by = found_by;
-    summary.planning_time_s = budget_.thread_time_s();
-    summary.reason = reason;
     return summary;
-  }
-
-  NoPath plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
-    if (goals.cols() == 0)
-      return NoPath::NoGoal;
-    if (!budget_.is_free(start))
-      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
-    start_.add(start, -1);
-    for (const auto& goal : goals.colwise())
-      if (budget_.is_free(goal))
-        goal_.add(goal, -1);
-    if (budget_.exhausted())
-      return budget_.reason();
-    return goal_.tree.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
   }
 
   /// Asks for configurations that are spread over the line, then for those between them.
@@ -116,10 +88,10 @@ class Connecting {
 
   std::optional<Eigen::MatrixXd> go_straight() {
     constexpr Eigen::Index kMostGoals = 8;
-    for (Eigen::Index i = 0; i < std::min(kMostGoals, goal_.tree.size()); ++i)
-      if (is_free(start_.tree.node(0), goal_.tree.node(i))) {
-        const Eigen::VectorXd goal = goal_.tree.node(i);
-        return join(start_.add(goal, 0), i);
+    for (Eigen::Index i = 0; i < std::min(kMostGoals, trees_.goal.size()); ++i)
+      if (is_free(trees_.start.node(0), trees_.goal.node(i))) {
+        const Eigen::VectorXd goal = trees_.goal.node(i);
+        return trees_.join(trees_.start.add(goal, 0), i);
       }
     return std::nullopt;
   }
@@ -143,7 +115,7 @@ class Connecting {
     }
     if (!std::isinf(radius))
       radius *= 1 + kChange;
-    return connect(grown, grown.add(sample_, near), other);
+    return connect(grown, grown.tree.add(sample_, near), other);
   }
 
   std::optional<Eigen::MatrixXd> connect(Domain& grown, Eigen::Index node, Domain& other) {
@@ -158,28 +130,17 @@ class Connecting {
         sample_ = other.tree.node(target);
       if (!is_free(grown.tree.node(node), sample_))
         return std::nullopt;
-      node = grown.add(sample_, node);
+      node = grown.tree.add(sample_, node);
     }
-    return &grown == &start_ ? join(node, target) : join(target, node);
-  }
-
-  /// The path over two nodes that hold the same configuration.
-  Eigen::MatrixXd join(Eigen::Index start_node, Eigen::Index goal_node) const {
-    if (recorder_ != nullptr)
-      recorder_->join(start_node, goal_node);
-    const Eigen::MatrixXd from_start = start_.tree.branch(start_node).rowwise().reverse();
-    const Eigen::MatrixXd to_goal = goal_.tree.branch(goal_node);
-    Eigen::MatrixXd path(from_start.rows(), from_start.cols() + to_goal.cols() - 1);
-    path << from_start, to_goal.rightCols(to_goal.cols() - 1);
-    return path;
+    return &grown == &start_ ? trees_.join(node, target) : trees_.join(target, node);
   }
 
   const ConfigurationSampler& sampler_;
   double step_;
   PlanningBudget& budget_;
   std::mt19937_64& generator_;
-  SearchRecorder* recorder_;
-  Domain start_, goal_;
+  TreePair trees_;
+  Domain start_{trees_.start}, goal_{trees_.goal};
   std::uint64_t iterations_ = 0, refused_ = 0;
   // Kept, so that an iteration allocates little.
   Eigen::VectorXd sample_, from_, way_, direction_;

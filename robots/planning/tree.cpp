@@ -97,4 +97,42 @@ Eigen::MatrixXd Tree::branch(Eigen::Index index) const {
   return branch;
 }
 
+void TreePair::record(SearchRecorder* recorder, const PlanningBudget& budget) {
+  recorder_ = recorder;
+  if (recorder_ == nullptr)
+    return;
+  recorder_->begin(budget);
+  start.record(*recorder_, SearchRecorder::Side::Start);
+  goal.record(*recorder_, SearchRecorder::Side::Goal);
+}
+
+NoPath TreePair::plant(const Eigen::VectorXd& from, const Eigen::MatrixXd& goals,
+                       PlanningBudget& budget) {
+  if (goals.cols() == 0)
+    return NoPath::NoGoal;
+  if (!budget.is_free(from))
+    return budget.exhausted() ? budget.reason() : NoPath::StartCollides;
+  start.add(from, -1);
+  for (Eigen::Index first = 0; first < goals.cols() && !budget.exhausted();) {
+    const Eigen::Index together = std::min(kTogether, goals.cols() - first);
+    const Eigen::Index free = budget.free_ahead(goals.middleCols(first, together));
+    for (Eigen::Index i = first; i < first + free; ++i)
+      goal.add(goals.col(i), -1);
+    first += std::min(free + 1, together);
+  }
+  if (budget.exhausted())
+    return budget.reason();
+  return goal.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
+}
+
+Eigen::MatrixXd TreePair::join(Eigen::Index start_node, Eigen::Index goal_node) const {
+  if (recorder_ != nullptr)
+    recorder_->join(start_node, goal_node);
+  const Eigen::MatrixXd from_start = start.branch(start_node).rowwise().reverse();
+  const Eigen::MatrixXd to_goal = goal.branch(goal_node);
+  Eigen::MatrixXd path(from_start.rows(), from_start.cols() + to_goal.cols() - 1);
+  path << from_start, to_goal.rightCols(to_goal.cols() - 1);
+  return path;
+}
+
 }  // namespace kinship::planning

@@ -83,4 +83,24 @@ class Tree {
   SearchRecorder::Side side_ = SearchRecorder::Side::Start;
 };
 
+/// The trees of a search: one from the start, one with every free goal as a root.
+class TreePair {
+ public:
+  explicit TreePair(Eigen::Index dof) : start(dof), goal(dof) {}
+
+  /// Records both trees, present nodes too. \param recorder  borrowed; null: records nothing.
+  void record(SearchRecorder* recorder, const PlanningBudget& budget);
+
+  /// Adds the roots. \return why no search is possible; None if it is.
+  NoPath plant(const Eigen::VectorXd& from, const Eigen::MatrixXd& goals, PlanningBudget& budget);
+
+  /// The path over two nodes that hold the same configuration.
+  Eigen::MatrixXd join(Eigen::Index start_node, Eigen::Index goal_node) const;
+
+  Tree start, goal;
+
+ private:
+  SearchRecorder* recorder_ = nullptr;
+};
+
 }  // namespace kinship::planning

@@ -44,9 +44,9 @@ Starts find_starts(const kinematics::Chain& chain, const Eigen::Isometry3d& T_ta
 /// Start and goals in the recorded scene. The robot of the recorded path stands and starts as it
 /// did. Another robot starts as `starts` says; where its usual start is not free, with the hand at
 /// the recorded start. Goals are all free configurations with the transfer frame at the recorded
-/// goal, up to 20. Pairs that always touch, such as a base and its table, may
-/// touch. \param T_task_base  of the robot's base in the task frame, for what another robot
-/// recorded. \return nothing if it has no start or no goal.
+/// goal, up to 20. Pairs that always touch, such as a base and its table, may touch.
+/// \param T_task_base  of the robot's base in the task frame, for what another robot recorded.
+/// \return nothing if the robot has no start or no goal.
 std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
                                      const Eigen::Isometry3d& T_task_base,
                                      const RecordedQuery& recorded, const Starts& starts = {},

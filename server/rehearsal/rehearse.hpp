@@ -40,7 +40,8 @@ struct Subject {
 
 /// The guide with the least mean time. Of guides that take up to 3 % more: those whose search
 /// alone, where nothing is recalled, takes least, or up to 3 % more; of these the one with the
-/// least preparation. Where no time is known, by checks. \param costs  at least one.
+/// least preparation. Where no time is known, by checks.
+/// \param costs  at least one.
 Guide cheapest(std::span<const GuideCost> costs);
 
 /// "; mean time none 4.12 ms (1552 checks), ways 1.05 ms (361 checks)".
@@ -61,7 +62,9 @@ class Rehearsing {
  public:
   explicit Rehearsing(Subject subject, const RehearsalOptions& options = {});
 
-  /// Plans the next query. \return false if there was none. \throws Stopped.
+  /// Plans the next query.
+  /// \return false if there was none.
+  /// \throws Stopped.
   bool step();
 
   std::size_t rounds() const noexcept { return round_; }  ///< completed

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "tests/faults/served_store.hpp"
@@ -178,25 +179,34 @@ TEST_F(LostStoreFile, WithAnotherWalGoesOnWhenThatIsAway) {
   expect_all_when_it_goes_on();
 }
 
-TEST(LostStoreFileBelowAMount, GoesOnWhenTheMountIsGone) {
-  const test::TemporaryDirectory apart;
-  const test::SmallFileSystem own_namespace(apart.path(), "1m");
-  if (!own_namespace.is_mounted())
-    GTEST_SKIP() << "nothing can be mounted here: " << own_namespace.why();
-  ServedStore store;
-  store.report(kReports);
-  ASSERT_EQ(mount("tmpfs", store.folder().c_str(), "tmpfs", 0, "size=1m"), 0);
-  EXPECT_TRUE(store.status_becomes([](const ServerStatus& status) {
+/// In a namespace of its own, with the server.
+class StoreAmongMounts : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!own_namespace_.is_mounted())
+      GTEST_SKIP() << "nothing can be mounted here: " << own_namespace_.why();
+    store_ = std::make_unique<ServedStore>();
+    store_->report(kReports);
+  }
+
+  const test::TemporaryDirectory apart_;
+  const test::SmallFileSystem own_namespace_{apart_.path(), "1m"};
+  std::unique_ptr<ServedStore> store_;
+};
+
+TEST_F(StoreAmongMounts, BelowOneGoesOnWhenThatIsGone) {
+  ASSERT_EQ(mount("tmpfs", store_->folder().c_str(), "tmpfs", 0, "size=1m"), 0);
+  EXPECT_TRUE(store_->status_becomes([](const ServerStatus& status) {
     return !status.writable &&
            status.storage_message.find(
                "another file system is mounted over its folder, it is whole below that") !=
                std::string::npos;
   }));
-  EXPECT_FALSE(store.offer());
-  ASSERT_EQ(umount(store.folder().c_str()), 0);
-  EXPECT_TRUE(store.has_all_receipts());
-  EXPECT_EQ(store.cell().terminate(), 0);
-  EXPECT_EQ(store.missing(store.file()), 0U);
+  EXPECT_FALSE(store_->offer());
+  ASSERT_EQ(umount(store_->folder().c_str()), 0);
+  EXPECT_TRUE(store_->has_all_receipts());
+  EXPECT_EQ(store_->cell().terminate(), 0);
+  EXPECT_EQ(store_->missing(store_->file()), 0U);
 }
 
 // --- at the start ---
@@ -260,24 +270,18 @@ TEST_F(LostStoreFile, IsLockedAlsoWhenTheLockFileIsRemoved) {
   expect_all_in_the_end();
 }
 
-TEST(StoreThatIsAMount, IsRefusedWithTheFolderToMount) {
-  const test::TemporaryDirectory apart;
-  const test::SmallFileSystem own_namespace(apart.path(), "1m");
-  if (!own_namespace.is_mounted())
-    GTEST_SKIP() << "nothing can be mounted here: " << own_namespace.why();
-  ServedStore store;
-  store.report(kReports);
+TEST_F(StoreAmongMounts, ThatIsOneIsRefusedWithTheFolderToMount) {
   const test::TemporaryDirectory container;
   const fs::path mounted = container / "fleet.db";
   make_empty(mounted);
-  ASSERT_EQ(mount(store.file().c_str(), mounted.c_str(), nullptr, MS_BIND, nullptr), 0);
-  const Answer second = store.start_in_vain(mounted);
+  ASSERT_EQ(mount(store_->file().c_str(), mounted.c_str(), nullptr, MS_BIND, nullptr), 0);
+  const Answer second = store_->start_in_vain(mounted);
   EXPECT_NE(second.code, 0);
   EXPECT_TRUE(second.says("is mounted by itself")) << second.err;
   EXPECT_TRUE(second.says("mount the folder '" + container.path().string())) << second.err;
   const Answer check = ServedStore::offline_of(mounted, "check");
   EXPECT_TRUE(check.says("is open in another server, process " +
-                         std::to_string(store.cell().server().pid())))
+                         std::to_string(store_->cell().server().pid())))
       << check.err;
   umount(mounted.c_str());
 }

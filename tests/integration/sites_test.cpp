@@ -55,13 +55,23 @@ class Site {
   Digest panda_, ur10e_;
 };
 
-TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
-  if (const std::string missing = test::missing_postgres(); !missing.empty())
-    GTEST_SKIP() << missing;
-  test::PostgresCluster memory;
-  const std::string url = memory.create_database("kinship");
-  const test::TemporaryDirectory folder;
-  Site ulm(folder.path() / "ulm", url), bern(folder.path() / "bern", url);
+class Sites : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = test::missing_postgres(); !missing.empty())
+      GTEST_SKIP() << missing;
+    memory_ = std::make_unique<test::PostgresCluster>();
+    url_ = memory_->create_database("kinship");
+  }
+  Site site(const std::string& name) const { return {folder_.path() / name, url_}; }
+
+  std::unique_ptr<test::PostgresCluster> memory_;
+  std::string url_;
+  const test::TemporaryDirectory folder_;
+};
+
+TEST_F(Sites, ShareOneMemoryThroughCutLinesAndKills) {
+  Site ulm = site("ulm"), bern = site("bern");
 
   const std::vector<Uuid> first = ulm.report(1, 8);
   EXPECT_EQ(bern.fetch().status, FetchStatus::NoExperience) << "it asks for it from now on";
@@ -70,7 +80,7 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
   EXPECT_EQ(reply.distribution->sources.at(0).paths, 8U);
 
-  memory.kill();
+  memory_->kill();
   ASSERT_TRUE(ulm.comes_true(
       [](const ServerStatus& status) { return !status.upstream.value().connected; }));
   ulm.fetch();  // wants the task from now on
@@ -82,27 +92,22 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   EXPECT_EQ(bern.cell().ask(AdminVerb::RetirePath, first.at(2).text()).status, AdminStatus::Ok);
   ulm.cell().kill();
   ulm.cell().start();
-  memory.start();
+  memory_->start();
   bern.cell().kill();
   bern.cell().start();
   for (Site* const site : {&ulm, &bern})
     ASSERT_TRUE(site->comes_true([](const ServerStatus& status) {
       return status.attempts == 17 && status.paths == 16 && status.upstream->waiting == 0;
-    })) << memory.query("SELECT count(*) FROM attempt", "kinship");
+    })) << memory_->query("SELECT count(*) FROM attempt", "kinship");
   EXPECT_EQ(ulm.cell().status().upstream->refused, 0U);
-  EXPECT_EQ(memory.query("SELECT count(*), count(DISTINCT report_uuid) FROM attempt", "kinship"),
+  EXPECT_EQ(memory_->query("SELECT count(*), count(DISTINCT report_uuid) FROM attempt", "kinship"),
             "17\t17");
   EXPECT_EQ(ulm.cell().terminate(), 0);
   EXPECT_EQ(bern.cell().terminate(), 0);
 }
 
-TEST(Sites, NameOneUuidWithTwoContentsAndTryWhatIsRefusedAgainWhileTheLineHolds) {
-  if (const std::string missing = test::missing_postgres(); !missing.empty())
-    GTEST_SKIP() << missing;
-  test::PostgresCluster memory;
-  const std::string url = memory.create_database("kinship");
-  const test::TemporaryDirectory folder;
-  Site ulm(folder.path() / "ulm", url), bern(folder.path() / "bern", url);
+TEST_F(Sites, NameOneUuidWithTwoContentsAndTryWhatIsRefusedAgainWhileTheLineHolds) {
+  Site ulm = site("ulm"), bern = site("bern");
   const Uuid both = Uuid::random();
   ulm.report_as(both, 1);
   ASSERT_TRUE(
@@ -115,41 +120,36 @@ TEST(Sites, NameOneUuidWithTwoContentsAndTryWhatIsRefusedAgainWhileTheLineHolds)
   EXPECT_NE(refused.find("was used for another report"), std::string::npos) << refused;
 
   const std::int64_t since_ms = ulm.cell().status().upstream->since_ms;
-  memory.query("ALTER TABLE attempt ADD CONSTRAINT hand CHECK (collision_checks < 0) NOT VALID",
-               "kinship");
+  memory_->query("ALTER TABLE attempt ADD CONSTRAINT hand CHECK (collision_checks < 0) NOT VALID",
+                 "kinship");
   ulm.report(101, 3);
   ASSERT_TRUE(ulm.comes_true([](const ServerStatus& status) {
     return status.upstream->refused == 3 && status.upstream->waiting == 0;
   }));
   EXPECT_NE(ulm.cell().status().upstream->first_refused.find("[23514]"), std::string::npos);
-  memory.query("ALTER TABLE attempt DROP CONSTRAINT hand", "kinship");
+  memory_->query("ALTER TABLE attempt DROP CONSTRAINT hand", "kinship");
   ASSERT_TRUE(
       ulm.comes_true([](const ServerStatus& status) { return status.upstream->refused == 0; }));
   EXPECT_EQ(ulm.cell().status().upstream->since_ms, since_ms) << "over the same line";
-  EXPECT_EQ(memory.query("SELECT count(*) FROM attempt", "kinship"), "4");
+  EXPECT_EQ(memory_->query("SELECT count(*) FROM attempt", "kinship"), "4");
 }
 
-TEST(Sites, StopAtOnceAlsoWhileTheMemoryDoesNotAnswer) {
-  if (const std::string missing = test::missing_postgres(); !missing.empty())
-    GTEST_SKIP() << missing;
-  test::PostgresCluster memory;
-  const std::string url = memory.create_database("kinship");
-  const test::TemporaryDirectory folder;
-  Site ulm(folder.path() / "ulm", url);
+TEST_F(Sites, StopAtOnceAlsoWhileTheMemoryDoesNotAnswer) {
+  Site ulm = site("ulm");
   ulm.report(1, 1);
   ASSERT_TRUE(
       ulm.comes_true([](const ServerStatus& status) { return status.upstream->sent == 1; }));
-  memory.freeze();
+  memory_->freeze();
   ulm.report(2, 1);
   const auto began = std::chrono::steady_clock::now();
   EXPECT_EQ(ulm.cell().terminate(), 0);
   // Whoever waits for it gives up after 10 s, and tries once more.
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(8));
-  memory.thaw();
+  memory_->thaw();
   ulm.cell().start();
   ASSERT_TRUE(
       ulm.comes_true([](const ServerStatus& status) { return status.upstream->waiting == 0; }));
-  EXPECT_EQ(memory.query("SELECT count(*) FROM attempt", "kinship"), "2");
+  EXPECT_EQ(memory_->query("SELECT count(*) FROM attempt", "kinship"), "2");
   EXPECT_EQ(ulm.cell().terminate(), 0);
 }
 

@@ -190,12 +190,9 @@ void try_in_scenes(const Robot& robot, int edges, Random& random, Counts& counts
       around.scene.clouds.clear();
     }
     // What stands within the room would make every configuration collide.
-    const Surroundings roomy_around = grown(around, kRoom_m);
-    std::vector<Body> bodies = roomy_solids.parts().bodies;
-    add_surroundings(robot.chain, roomy_around, bodies);
-    test::allow_standing_contacts(bodies, around);
-    Surroundings roomy = grown(around, kRoom_m);
-    CollisionWorld world(solids, around), roomy_world(roomy_solids, roomy);
+    const std::vector<Body> bodies = bodies_among(roomy_solids, grown(around, kRoom_m));
+    around = test::allowing_standing_contacts(bodies, std::move(around));
+    CollisionWorld world(solids, around), roomy_world(roomy_solids, grown(around, kRoom_m));
     EdgeProver prover(world);
     for (int edge = 0, tries = 0; edge < edges && tries < 100 * edges; ++tries) {
       const Eigen::VectorXd from = test::random_configuration(robot.chain, random.generator());

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robots/collision/collision_world.hpp"
@@ -20,7 +21,7 @@
 namespace kinship::collision::lane_world_test {
 namespace {
 
-using test::allow_standing_contacts;
+using test::allowing_standing_contacts;
 using test::Random;
 using test::random_surroundings;
 using test::Robot;
@@ -32,11 +33,25 @@ struct Counts {
   int free = 0, colliding = 0, undecided = 0;
 };
 
+/// A robot among its surroundings as the lanes and as FCL see it; what stands may touch.
+struct Worlds {
+  Worlds(const RobotSolids& solids, Surroundings surroundings)
+      : bodies(bodies_among(solids, surroundings)),
+        around(allowing_standing_contacts(bodies, std::move(surroundings))),
+        fcl(solids, around),
+        lanes(solids.parts().chain, bodies, moving_pairs(bodies, solids.parts().checked, around)) {}
+
+  std::vector<Body> bodies;
+  Surroundings around;
+  CollisionWorld fcl;
+  LaneWorld lanes;
+};
+
 /// Compares sixteen configurations with what FCL says of each, for each instruction set.
-void compare(LaneWorld& lanes, CollisionWorld& world, const Eigen::MatrixXd& qs, Counts& counts) {
+void compare(Worlds& worlds, const Eigen::MatrixXd& qs, Counts& counts) {
   std::uint32_t collides = 0;
   for (int i = 0; i < kLanes; ++i)
-    collides |= world.find_contact(qs.col(i)) ? 1U << i : 0U;
+    collides |= worlds.fcl.find_contact(qs.col(i)) ? 1U << i : 0U;
   // The world answers as FCL does, which it asks only for the pairs that the lanes leave open.
   for (Eigen::Index i = 0; i < kLanes;) {
     const bool collide = (collides >> i & 1U) != 0;
@@ -44,14 +59,14 @@ void compare(LaneWorld& lanes, CollisionWorld& world, const Eigen::MatrixXd& qs,
     while (end < kLanes && ((collides >> end & 1U) != 0) == collide)
       ++end;
     const auto rest = qs.rightCols(kLanes - i);
-    ASSERT_EQ(collide ? world.colliding_ahead(rest) : world.free_ahead(rest), end - i);
+    ASSERT_EQ(collide ? worlds.fcl.colliding_ahead(rest) : worlds.fcl.free_ahead(rest), end - i);
     i = end;
   }
-  const LaneAnswer all = lanes.ask(qs, LaneScope::All);
+  const LaneAnswer all = worlds.lanes.ask(qs, LaneScope::All);
   ASSERT_TRUE(all.surely == 0 || collides != 0) << "says collision where FCL says none";
   ASSERT_TRUE(all.surely != 0 || (collides & ~all.maybe) == 0) << "says free where FCL says not";
   for (const LaneSet& set : lane_sets()) {
-    const LaneAnswer answer = lanes.ask(qs, set);
+    const LaneAnswer answer = worlds.lanes.ask(qs, set);
     ASSERT_EQ(collides & ~answer.maybe, 0U) << set.name << " says free where FCL says collision";
     ASSERT_EQ(answer.surely & ~collides, 0U) << set.name << " says collision where FCL says free";
     ASSERT_EQ(answer.surely & ~answer.maybe, 0U);
@@ -67,19 +82,14 @@ void try_in_scenes(const Robot& robot, int batches, Random& random) {
   const RobotSolids solids(robot.chain, robot.shapes);
   Counts counts;
   for (int scene = 0; scene < kScenes; ++scene) {
-    Surroundings around = random_surroundings(robot.chain, random);
-    std::vector<Body> bodies = solids.parts().bodies;
-    add_surroundings(robot.chain, around, bodies);
-    allow_standing_contacts(bodies, around);
-    CollisionWorld world(solids, around);
-    LaneWorld lanes(robot.chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
+    Worlds worlds(solids, random_surroundings(robot.chain, random));
     Eigen::MatrixXd qs(robot.chain.dof(), kLanes);
     for (int batch = 0; batch < batches; ++batch) {
       // Beyond the limits too, and far round.
       const double spread = batch % 16 == 0 ? 5 : 1;
       for (int i = 0; i < kLanes; ++i)
         qs.col(i) = spread * test::random_configuration(robot.chain, random.generator());
-      compare(lanes, world, qs, counts);
+      compare(worlds, qs, counts);
       ASSERT_FALSE(testing::Test::HasFatalFailure()) << robot.name << ", scene " << scene;
     }
   }
@@ -111,15 +121,10 @@ TEST(LaneWorld, WhereItSaysFreeOfAllThatIsNearNothingNearTouches) {
   constexpr int kBatches = 40, kNear = 12;
   Random random;
   for (const Robot& robot : robots(random)) {
+    const RobotSolids solids(robot.chain, robot.shapes);
     int free = 0;
     for (int scene = 0; scene < kScenes; ++scene) {
-      const RobotSolids solids(robot.chain, robot.shapes);
-      Surroundings around = random_surroundings(robot.chain, random);
-      std::vector<Body> bodies = solids.parts().bodies;
-      add_surroundings(robot.chain, around, bodies);
-      allow_standing_contacts(bodies, around);
-      CollisionWorld world(solids, around);
-      LaneWorld lanes(robot.chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
+      Worlds worlds(solids, random_surroundings(robot.chain, random));
       Eigen::MatrixXd qs(robot.chain.dof(), kLanes), changes = qs;
       for (int batch = 0; batch < kBatches; ++batch) {
         const double most = std::pow(10, random.number(-2.5, -0.5));
@@ -128,7 +133,7 @@ TEST(LaneWorld, WhereItSaysFreeOfAllThatIsNearNothingNearTouches) {
           for (Eigen::Index j = 0; j < qs.rows(); ++j)
             changes(j, i) = random.number(0, 1) < 0.5 ? 0 : random.number(-most, most);
         }
-        const LaneAnswer answer = lanes.ask_grown(qs, changes, {}, LaneScope::Each);
+        const LaneAnswer answer = worlds.lanes.ask_grown(qs, changes, {}, LaneScope::Each);
         for (int i = 0; i < kLanes; ++i) {
           if ((answer.maybe >> i & 1U) != 0)
             continue;
@@ -136,7 +141,7 @@ TEST(LaneWorld, WhereItSaysFreeOfAllThatIsNearNothingNearTouches) {
           for (int k = 0; k < kNear; ++k) {
             const Eigen::VectorXd near =
                 one_near(robot.chain, qs.col(i), changes.col(i).cwiseAbs(), random);
-            ASSERT_FALSE(world.find_contact(near)) << robot.name << ", scene " << scene;
+            ASSERT_FALSE(worlds.fcl.find_contact(near)) << robot.name << ", scene " << scene;
           }
         }
       }
@@ -172,20 +177,16 @@ TEST(LaneWorld, ABarIsNotFreeOfTheRimThatItTouches) {
   const Eigen::Vector3d table(0.6, 0, -half_height - half_bar);
   around.scene.objects.push_back({"table", CylinderShape{radius, 2 * half_height},
                                   Eigen::Isometry3d(Eigen::Translation3d(table))});
-  const RobotSolids solids(chain, shapes);
-  CollisionWorld world(solids, around);
-  std::vector<Body> bodies = solids.parts().bodies;
-  add_surroundings(chain, around, bodies);
-  LaneWorld lanes(chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
+  Worlds worlds(RobotSolids(chain, shapes), around);
   int touching = 0;
   for (double angle = -4e-4; angle <= 4e-4; angle += 1e-5) {
     Eigen::MatrixXd qs(2, kLanes);
     for (int i = 0; i < kLanes; ++i)
       qs.col(i) << angle, -1e-4 + 1.5e-5 * i;
     for (const LaneSet& set : lane_sets()) {
-      const LaneAnswer answer = lanes.ask(qs, set);
+      const LaneAnswer answer = worlds.lanes.ask(qs, set);
       for (int i = 0; i < kLanes; ++i)
-        if (world.find_contact(qs.col(i))) {
+        if (worlds.fcl.find_contact(qs.col(i))) {
           ++touching;
           ASSERT_NE(answer.maybe >> i & 1U, 0U) << set.name << ", " << qs.col(i).transpose();
         }
@@ -240,11 +241,7 @@ TEST(LaneWorld, NearlyParallelBoxesTouchWhereFclSaysSo) {
       {{1, BoxShape{{0.2, 0.1, 0.5}}, Eigen::Isometry3d::Identity()}}, {}};
   Surroundings around;
   around.scene.objects.push_back({"box", BoxShape{{0.3, 0.4, 0.6}}, Eigen::Isometry3d::Identity()});
-  const RobotSolids solids(chain, shapes);
-  CollisionWorld world(solids, around);
-  std::vector<Body> bodies = solids.parts().bodies;
-  add_surroundings(chain, around, bodies);
-  LaneWorld lanes(chain, bodies, moving_pairs(bodies, solids.parts().checked, around));
+  Worlds worlds(RobotSolids(chain, shapes), around);
   Random random;
   Counts counts;
   for (int batch = 0; batch < 3000; ++batch) {
@@ -254,11 +251,11 @@ TEST(LaneWorld, NearlyParallelBoxesTouchWhereFclSaysSo) {
         random.number(-tilt, tilt), random.number(-tilt, tilt);
     if (batch % 3 == 0)
       q[3] = random.number(-tilt, tilt);
-    const double contact = contact_of(world, q);
+    const double contact = contact_of(worlds.fcl, q);
     Eigen::MatrixXd qs = q.replicate(1, kLanes);
     for (int i = 0; i < kLanes; ++i)
       qs(0, i) = contact + std::pow(10, random.number(-6, -1)) * (i % 2 == 0 ? 1 : -1);
-    compare(lanes, world, qs, counts);
+    compare(worlds, qs, counts);
     ASSERT_FALSE(HasFatalFailure()) << q.transpose();
   }
   EXPECT_GT(counts.colliding, 10'000);

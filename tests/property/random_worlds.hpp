@@ -155,13 +155,14 @@ inline collision::Surroundings random_surroundings(const kinematics::Chain& chai
   return around;
 }
 
-/// What stands in an obstacle would make every configuration collide, which no test of moving
-/// bodies wants.
-inline void allow_standing_contacts(const std::vector<collision::Body>& bodies,
-                                    collision::Surroundings& around) {
+/// Surroundings in which what stands may touch: else every configuration would collide, which no
+/// test of moving bodies wants.
+inline collision::Surroundings allowing_standing_contacts(
+    const std::vector<collision::Body>& bodies, collision::Surroundings around) {
   for (const auto& [a, b] : standing_pairs(bodies, around))
     if (touch(bodies[a].solid, bodies[a].T_joint_body, bodies[b].solid, bodies[b].T_joint_body))
       around.allowed_collisions.emplace_back(bodies[a].name, bodies[b].name);
+  return around;
 }
 
 }  // namespace kinship::test

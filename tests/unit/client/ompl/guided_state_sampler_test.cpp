@@ -23,6 +23,8 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 using planning::ConfigurationSampler;
 using planning::test_support::at;
+using planning::test_support::kGoal;
+using planning::test_support::kStart;
 using planning::test_support::square_bounds;
 using planning::test_support::WallWorld;
 
@@ -50,8 +52,8 @@ struct WallProblem {
         [this](const ob::State* state) { return world.free_at(to_configuration(*state, 2)); });
     simple.getSpaceInformation()->setStateValidityCheckingResolution(0.01);
     ob::ScopedState<> start(space), goal(space);
-    copy_to_state(at(-0.8, -0.5), *start.get());
-    copy_to_state(at(0.8, -0.5), *goal.get());
+    copy_to_state(kStart, *start.get());
+    copy_to_state(kGoal, *goal.get());
     simple.setStartAndGoalStates(start, goal);
   }
 
@@ -67,8 +69,8 @@ struct WallProblem {
 };
 
 void expect_path(const WallProblem& setup, const Eigen::MatrixXd& path) {
-  EXPECT_EQ(path.leftCols(1), at(-0.8, -0.5));
-  EXPECT_EQ(path.rightCols(1), at(0.8, -0.5));
+  EXPECT_EQ(path.leftCols(1), kStart);
+  EXPECT_EQ(path.rightCols(1), kGoal);
   EXPECT_TRUE(setup.world.path_is_free(path, 0.02));
 }
 
@@ -127,7 +129,7 @@ double share_near_gap(const WallProblem& setup, const ob::Planner& planner) {
   int near = 0, drawn = 0;
   for (unsigned int i = 0; i < data.numVertices(); ++i) {
     const Eigen::VectorXd q = to_configuration(*data.getVertex(i).getState(), 2);
-    if (q == at(-0.8, -0.5) || q == at(0.8, -0.5))
+    if (q == kStart || q == kGoal)
       continue;
     ++drawn;
     near += near_gap(q);

@@ -13,10 +13,10 @@ using planning::BirrtOptions;
 using planning::NoPath;
 using planning::PlanSummary;
 using planning::test_support::at;
+using planning::test_support::kStep;
 using planning::test_support::square_bounds;
+using planning::test_support::stepped;
 using planning::test_support::WallWorld;
-
-constexpr double kStep = 0.05;
 
 /// From the left of the wall through its gap to the right.
 Eigen::MatrixXd path_through(double gap) {
@@ -26,8 +26,7 @@ Eigen::MatrixXd path_through(double gap) {
 }
 
 BirrtOptions limits(std::uint64_t max_checks = 50'000) {
-  BirrtOptions limits;
-  limits.step = kStep;
+  BirrtOptions limits = stepped();
   limits.max_checks = max_checks;
   limits.time_limit = std::chrono::seconds(600);
   return limits;

@@ -14,15 +14,7 @@ using planning::IsFree;
 using planning::NoPath;
 using planning::PlanSummary;
 using planning::RegionConstraint;
-using planning::test_support::at;
-using planning::test_support::largest_excess;
-using planning::test_support::LineArm;
-using planning::test_support::square_bounds;
-using planning::test_support::WallWorld;
-
-const Eigen::VectorXd kStart = at(-0.8, -0.5);
-const Eigen::VectorXd kGoal = at(0.8, -0.5);
-constexpr double kStep = 0.05;
+using namespace planning::test_support;
 
 OmplOptions options(const std::string& planner) {
   OmplOptions options;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -98,6 +99,20 @@ TEST(MotionBounds, NoPointMovesFartherInAnyFrame) {
     }
   }
   EXPECT_GT(tightest, 0.9);
+}
+
+/// What turns beyond all numbers has no body: zero times that is not a number. A joint beside it,
+/// looked at later, moves a little.
+TEST(MotionBounds, AWayBeyondAllNumbersIsInfinite) {
+  kinematics::ChainParts parts = test::parts_of(toy_chain(2));
+  parts.mimics.push_back({parts.joints[0], -1, 0});
+  parts.mimics.back().joint.name = "beside";
+  const kinematics::Chain chain(parts);
+  const MotionBounds bounds(
+      chain, {{BodyKind::Link, "link", 2, 2, shift(1), Solid(SphereShape{0.1}), {}}});
+  EXPECT_NEAR(bounds.farthest_m(angles({0, 0}), angles({0.1, 0})), 0.11, 1e-6);
+  EXPECT_EQ(bounds.farthest_m(angles({0, -1e308}), angles({0.1, 1e308})),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

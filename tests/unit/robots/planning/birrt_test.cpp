@@ -11,21 +11,10 @@
 namespace kinship::planning::birrt_test {
 namespace {
 
-using test_support::at;
-using test_support::square_bounds;
-using test_support::WallWorld;
-
-const Eigen::VectorXd kStart = at(-0.8, -0.5);
-const Eigen::VectorXd kGoal = at(0.8, -0.5);
-
-BirrtOptions options() {
-  BirrtOptions options;
-  options.step = 0.05;
-  return options;
-}
+using namespace test_support;
 
 PlanSummary plan(WallWorld& world, const Eigen::MatrixXd& goals, std::uint64_t seed,
-                 const BirrtOptions& with = options(),
+                 const BirrtOptions& with = stepped(),
                  const ConfigurationSampler& sampler = ConfigurationSampler(square_bounds())) {
   std::mt19937_64 generator(seed);
   return plan_birrt(kStart, goals, world.is_free(), sampler, with, generator);
@@ -39,9 +28,9 @@ TEST(Birrt, FindsFreePathsWithTheRightEndsAndStep) {
     const Eigen::MatrixXd& path = *summary.waypoints;
     EXPECT_EQ(path.col(0), kStart);
     EXPECT_EQ(path.rightCols(1), kGoal);
-    EXPECT_TRUE(world.path_is_free(path, options().step));
+    EXPECT_TRUE(world.path_is_free(path, kStep));
     for (Eigen::Index i = 1; i < path.cols(); ++i) {
-      EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), options().step + 1e-9);
+      EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), kStep + 1e-9);
       EXPECT_GT((path.col(i) - path.col(i - 1)).norm(), 0);
     }
     EXPECT_EQ(summary.reason, NoPath::None);
@@ -82,7 +71,7 @@ TEST(Birrt, AMixtureThatCoversNoWayOutDelaysAPathButNeverPreventsIt) {
                                      beside_the_start, 1);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     WallWorld world;
-    const PlanSummary summary = plan(world, kGoal, seed, options(), sampler);
+    const PlanSummary summary = plan(world, kGoal, seed, stepped(), sampler);
     ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
     EXPECT_GT(summary.iterations, 300U);
   }
@@ -109,7 +98,7 @@ TEST(Birrt, SamplesInTheGapMakeItFast) {
     WallWorld world;
     world.gap_upper = 0.66;
     uniform_checks += plan(world, kGoal, seed).collision_checks;
-    guided_checks += plan(world, kGoal, seed, options(), guided).collision_checks;
+    guided_checks += plan(world, kGoal, seed, stepped(), guided).collision_checks;
   }
   EXPECT_LT(2 * guided_checks, uniform_checks);
 }
@@ -129,7 +118,7 @@ TEST(Birrt, StopsAtItsLastCheck) {
   for (const std::uint64_t limit : {0u, 1u, 2u, 3u, 500u}) {
     WallWorld world;
     world.gap_upper = world.gap_lower;  // no gap: never solved
-    BirrtOptions limited = options();
+    BirrtOptions limited = stepped();
     limited.max_checks = limit;
     const PlanSummary summary = plan(world, kGoal, 4, limited);
     EXPECT_EQ(world.asked, limit);
@@ -142,7 +131,7 @@ TEST(Birrt, StopsAtItsLastCheck) {
 TEST(Birrt, StopsInTime) {
   WallWorld world;
   world.gap_upper = world.gap_lower;
-  BirrtOptions limited = options();
+  BirrtOptions limited = stepped();
   limited.max_checks = std::numeric_limits<std::uint64_t>::max();
   limited.time_limit = std::chrono::milliseconds(20);
   const auto begin = std::chrono::steady_clock::now();
@@ -157,7 +146,7 @@ TEST(Birrt, StopsInTime) {
 TEST(Birrt, StaysWithinItsBounds) {
   WallWorld world;
   std::mt19937_64 generator(6);
-  BirrtOptions far = options();
+  BirrtOptions far = stepped();
   far.overshoot = 10;
   const IsFree is_free = [&](const Eigen::VectorXd& q) {
     EXPECT_LE(q.cwiseAbs().maxCoeff(), 1 + 1e-9);
@@ -171,10 +160,10 @@ TEST(Birrt, RefusesWhatDoesNotFit) {
   WallWorld world;
   EXPECT_THROW(plan(world, Eigen::MatrixXd::Zero(3, 1), 0), std::invalid_argument);
   EXPECT_THROW(plan(world, at(0, NAN), 0), std::invalid_argument);
-  BirrtOptions wrong = options();
+  BirrtOptions wrong = stepped();
   wrong.step = 0;
   EXPECT_THROW(plan(world, kGoal, 0, wrong), std::invalid_argument);
-  wrong = options();
+  wrong = stepped();
   wrong.overshoot = 0.5;
   EXPECT_THROW(plan(world, kGoal, 0, wrong), std::invalid_argument);
 }
@@ -192,7 +181,7 @@ TEST(Birrt, PlansTheSameWhetherItAsksForOneOrForSeveralAtOnce) {
     const PlanSummary expected = plan(world, kGoal, seed);
     std::mt19937_64 generator(seed);
     const PlanSummary summary = plan_birrt(
-        kStart, kGoal, together, ConfigurationSampler(square_bounds()), options(), generator);
+        kStart, kGoal, together, ConfigurationSampler(square_bounds()), stepped(), generator);
     ASSERT_TRUE(summary.waypoints && expected.waypoints);
     EXPECT_EQ(*summary.waypoints, *expected.waypoints);
     EXPECT_EQ(summary.collision_checks, expected.collision_checks);

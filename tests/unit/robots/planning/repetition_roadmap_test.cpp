@@ -11,19 +11,11 @@
 namespace kinship::planning::repetition_roadmap_test {
 namespace {
 
-using test_support::at;
-using test_support::largest_excess;
-using test_support::LineArm;
-using test_support::make_carrying;
-using test_support::square_bounds;
-using test_support::WallWorld;
-
-const Eigen::VectorXd kStart = at(-0.8, -0.5);
-const Eigen::VectorXd kGoal = at(0.8, -0.5);
+using namespace test_support;
 
 RoadmapOptions options() {
   RoadmapOptions options;
-  options.tree.step = 0.05;
+  options.tree.step = kStep;
   options.tree.time_limit = std::chrono::minutes(5);  // checks end it, on any machine
   return options;
 }
@@ -75,7 +67,7 @@ void expect_law(const WallWorld& world, const PlanSummary& summary) {
   for (Eigen::Index i = 0; i < path.cols(); ++i) {
     EXPECT_TRUE(world.free_at(path.col(i)));
     if (i > 0) {
-      EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), options().tree.step + 1e-9);
+      EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), kStep + 1e-9);
       EXPECT_GT((path.col(i) - path.col(i - 1)).norm(), 0);
     }
   }

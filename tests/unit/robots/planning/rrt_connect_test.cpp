@@ -8,21 +8,10 @@
 namespace kinship::planning::rrt_connect_test {
 namespace {
 
-using test_support::at;
-using test_support::square_bounds;
-using test_support::WallWorld;
-
-const Eigen::VectorXd kStart = at(-0.8, -0.5);
-const Eigen::VectorXd kGoal = at(0.8, -0.5);
-
-BirrtOptions options() {
-  BirrtOptions options;
-  options.step = 0.05;
-  return options;
-}
+using namespace test_support;
 
 PlanSummary plan(const IsFree& is_free, const Eigen::MatrixXd& goals, std::uint64_t seed,
-                 const BirrtOptions& with = options()) {
+                 const BirrtOptions& with = stepped()) {
   std::mt19937_64 generator(seed);
   return plan_rrt_connect(kStart, goals, is_free, ConfigurationSampler(square_bounds()), with,
                           generator);
@@ -36,7 +25,7 @@ TEST(RrtConnect, FindsFreeLinesBetweenTheRightEnds) {
     const Eigen::MatrixXd& path = *summary.waypoints;
     EXPECT_EQ(path.col(0), kStart);
     EXPECT_EQ(path.rightCols(1), kGoal);
-    EXPECT_TRUE(world.path_is_free(path, options().step));
+    EXPECT_TRUE(world.path_is_free(path, kStep));
     for (Eigen::Index i = 1; i < path.cols(); ++i)
       EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), kConnectRange + 1e-9);
     EXPECT_EQ(summary.found_by, FoundBy::Search);
@@ -63,7 +52,7 @@ TEST(RrtConnect, TellsWhyThereIsNoPath) {
   EXPECT_EQ(plan([](const Eigen::VectorXd&) { return false; }, kGoal, 1).reason,
             NoPath::StartCollides);
   world.gap_upper = world.gap_lower;
-  BirrtOptions few = options();
+  BirrtOptions few = stepped();
   few.max_checks = 500;
   const PlanSummary summary = plan(world.is_free(), kGoal, 1, few);
   EXPECT_EQ(summary.reason, NoPath::MaxChecks);
@@ -91,7 +80,7 @@ TEST(RrtConnect, WhetherAllAreFreeIsAskedOnceForSeveralConfigurations) {
 TEST(RrtConnect, ARecorderSeesThePathGrow) {
   WallWorld world;
   SearchRecorder recorder;
-  BirrtOptions recorded = options();
+  BirrtOptions recorded = stepped();
   recorded.recorder = &recorder;
   const PlanSummary summary = plan(world.is_free(), kGoal, 2, recorded);
   ASSERT_TRUE(summary.waypoints);

@@ -14,11 +14,9 @@
 namespace kinship::planning::search_in_order_test {
 namespace {
 
-using test_support::at;
-using test_support::square_bounds;
-using test_support::WallWorld;
+using namespace test_support;
 
-constexpr double kStep = 0.05, kOvershoot = 1.5;
+constexpr double kOvershoot = 1.5;
 
 /// Two trees in the plane, grown as plan_birrt says and as plainly as can be.
 class PlainSearch {
@@ -120,20 +118,19 @@ class PlainSearch {
 };
 
 TEST(SearchInOrder, FindsWhatAPlainSearchFinds) {
-  const Eigen::VectorXd start = at(-0.8, -0.5), goal = at(0.8, -0.5);
   for (const std::uint64_t max_checks : {3U, 40U, 57U, 300U, 100'000U})
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
       WallWorld world;
       world.gap_lower = 0.7;  // narrow: many extensions come to nothing
       std::mt19937_64 plain_generator(seed), generator(seed);
       PlainSearch plain(world, max_checks, plain_generator);
-      const std::vector<Eigen::VectorXd> expected = plain.plan(start, goal);
-      BirrtOptions options;
-      options.step = kStep;
+      const std::vector<Eigen::VectorXd> expected = plain.plan(kStart, kGoal);
+      BirrtOptions options = stepped();
       options.overshoot = kOvershoot;
       options.max_checks = max_checks;
-      const PlanSummary summary = plan_birrt(
-          start, goal, world.is_free(), ConfigurationSampler(square_bounds()), options, generator);
+      const PlanSummary summary =
+          plan_birrt(kStart, kGoal, world.is_free(), ConfigurationSampler(square_bounds()), options,
+                     generator);
       ASSERT_EQ(summary.collision_checks, plain.checks) << seed;
       EXPECT_EQ(world.asked, plain.checks);
       EXPECT_EQ(summary.iterations, plain.iterations);

@@ -9,11 +9,7 @@
 namespace kinship::planning::search_recorder_test {
 namespace {
 
-using test_support::at;
-using test_support::square_bounds;
-using test_support::WallWorld;
-
-constexpr double kStep = 0.05;
+using namespace test_support;
 
 struct Planned {
   PlanSummary summary;
@@ -22,11 +18,10 @@ struct Planned {
 
 Planned plan(std::uint64_t seed, SearchRecorder* recorder) {
   WallWorld world;
-  BirrtOptions options;
-  options.step = kStep;
+  BirrtOptions options = stepped();
   options.recorder = recorder;
   Planned planned{{}, std::mt19937_64(seed)};
-  planned.summary = plan_birrt(at(-0.8, -0.5), at(0.8, -0.5), world.is_free(),
+  planned.summary = plan_birrt(kStart, kGoal, world.is_free(),
                                ConfigurationSampler(square_bounds()), options, planned.generator);
   return planned;
 }
@@ -71,7 +66,7 @@ TEST(SearchRecorder, TellsTreesInTheOrderInWhichTheyGrew) {
   const RecordedSearch search = recorder.search();
   ASSERT_GT(search.nodes.cols(), 10);
   ASSERT_EQ(search.parents.size(), static_cast<std::size_t>(search.nodes.cols()));
-  EXPECT_EQ(search.nodes.col(0), at(-0.8, -0.5));
+  EXPECT_EQ(search.nodes.col(0), kStart);
   EXPECT_EQ(search.parents[0], -1);
   EXPECT_EQ(search.parents[1], -1) << "the goal";
   for (std::size_t i = 2; i < search.parents.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "robots/planning/birrt.hpp"
 #include "robots/planning/is_free.hpp"
 #include "robots/planning/path_vertices.hpp"
 
@@ -44,5 +45,16 @@ inline Eigen::Matrix2Xd square_bounds() {
 }
 
 inline Eigen::VectorXd at(double x, double y) { return Eigen::Vector2d(x, y); }
+
+// A query through the gap: below it, on either side of the wall.
+inline const Eigen::VectorXd kStart = at(-0.8, -0.5);
+inline const Eigen::VectorXd kGoal = at(0.8, -0.5);
+constexpr double kStep = 0.05;
+
+inline BirrtOptions stepped() {
+  BirrtOptions options;
+  options.step = kStep;
+  return options;
+}
 
 }  // namespace kinship::planning::test_support
