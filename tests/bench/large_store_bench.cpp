@@ -22,6 +22,7 @@
 #include "tests/bench/figure.hpp"
 #include "tests/bench/filled_store.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/processor.hpp"
 #include "tests/bench/store_questions.hpp"
 
 namespace kinship::bench {
@@ -60,7 +61,11 @@ void measure_opening(const StoreFile& file, std::unique_ptr<store::Store>& store
     drop_from_memory(file);
     cold.push_back(open_ms(file, store));
   }
-  print({.name = "open", .value = median(warm), .unit = "ms", .budget = 50});
+  print({.name = "open",
+         .value = median(warm),
+         .unit = "ms",
+         .reference = time_at_best(3.5e9, 1e-3),
+         .ratio_budget = 1});
   print({.name = "open, nothing of it in memory", .value = median(cold), .unit = "ms"});
 }
 
@@ -148,7 +153,7 @@ void measure_backups(store::Store& store, const StoreFile& file, const Fleet& fl
          .unit = "MB/s",
          .better = Better::Higher,
          .reference = Reference{"the file copied and synced", disk},
-         .budget = 50,
+         .ratio_budget = 0.04,
          .note = std::to_string(static_cast<int>(copy.bytes() / kMB)) + " MB"});
   print({.name = "its reports meanwhile, batches of 16",
          .value = beside.reports_per_s(),
