@@ -47,7 +47,7 @@ void run() {
   }
   const bench::Processes processes =
       bench::measure_restart("1000 clients", domain.number(),
-                             std::vector<std::string>(kProcesses, panda.hex()), 3, server, options);
+                             std::vector<std::string>(kProcesses, panda.hex()), server, options);
   bench::print({.name = "resident size of the server",
                 .value = test::figures_of(server->pid()).resident_mb,
                 .unit = "MB",

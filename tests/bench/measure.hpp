@@ -1,10 +1,13 @@
 #pragma once
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <ctime>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 namespace kinship::bench {
@@ -25,6 +28,12 @@ inline double percentile(std::vector<double> values, double share) {
   return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
+/// 0 of none.
+inline double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) /
+         static_cast<double>(std::max<std::size_t>(values.size(), 1));
+}
+
 inline double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
 
 /// The least seconds of several calls: others may use the machine.
@@ -36,6 +45,12 @@ inline double least_s(int calls, double (*now_s)(), const std::function<void()>&
     times_s.push_back(now_s() - start_s);
   }
   return percentile(std::move(times_s), 0);
+}
+
+/// What this process has taken from the heap and not given back, MB.
+inline double heap_mb() {
+  const auto heap = mallinfo2();
+  return 1e-6 * static_cast<double>(heap.uordblks + heap.hblkhd);
 }
 
 }  // namespace kinship::bench

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -10,33 +9,26 @@
 
 #include "client/experiments/studies/study.hpp"
 #include "client/planner/problem_lines.hpp"
+#include "tests/bench/problem_files.hpp"
 
 namespace kinship::bench {
 
-/// Studies out of somebody's problem files: DIR/ROBOT/KIND.problems.jsonl, beside robot.urdf,
-/// chain.toml and, if there is one, robot.srdf. One study a kind, of the robots that have it. The
+/// Studies out of problem files (problem_files.hpp): one a kind, of the robots that have it. The
 /// first half of a file is for learning, the other one is every other set.
 /// \throws std::runtime_error if a file cannot be read.
 inline std::vector<experiments::Study> studies_of(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
-  const std::string ending = ".problems.jsonl";
   std::map<std::string, experiments::Study> studies;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().filename().string().ends_with(ending))
-      files.push_back(entry.path());
-  std::ranges::sort(files);
-  for (const fs::path& file : files) {
-    const std::string name = file.filename().string();
-    const std::string kind = name.substr(0, name.size() - ending.size());
+  for (const fs::path& file : files_below(folder, kProblemsEnding)) {
+    const std::string kind = kind_of(file);
     experiments::Study& study = studies[kind];
     study.name = kind;
     study.settings.overshoot = 1;
     study.settings.max_checks = 1'000'000;
     study.robots.push_back({.model = fs::absolute(file.parent_path())});
-    study.make_instances = [kind, ending](const models::LoadedRobot&,
-                                          const experiments::StudyRobot& robot) {
-      std::ifstream stream(fs::path(robot.model) / (kind + ending));
+    study.make_instances = [kind](const models::LoadedRobot&,
+                                  const experiments::StudyRobot& robot) {
+      std::ifstream stream(fs::path(robot.model) / (kind + kProblemsEnding));
       std::vector<Problem> problems;
       for (planner::ProblemLine& line : planner::read_problem_lines(stream))
         problems.push_back(std::move(line.problem).value_or_throw());

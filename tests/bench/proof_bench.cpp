@@ -7,10 +7,6 @@
 // arms. planning: plans of the studies' furniture and of the quickstart's tasks, with goal
 // configurations and shortcuts, proven and by steps in turn.
 
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/continuous_collision.h>
 
 #include <algorithm>
@@ -19,7 +15,6 @@
 #include <memory>
 #include <random>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "client/experiments/station_problems.hpp"
@@ -28,6 +23,7 @@
 #include "robots/collision/edge_prover.hpp"
 #include "robots/models/loaded_robot.hpp"
 #include "robots/planning/path_vertices.hpp"
+#include "tests/bench/fcl_world.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/shelf_cell.hpp"
@@ -73,24 +69,16 @@ struct Times {
       }
   }
 
-  static double sum(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values)
-      sum += value;
-    return sum;
-  }
-
   void print_as(const std::string& name) const {
     constexpr double kMilliseconds = 1e3;
     constexpr double kMostRatio = 1.3;
     const std::string note = std::to_string(proven_solved) + " solved, " +
                              std::to_string(steps_solved) + " by steps; " +
                              std::to_string(refuted) + " edges refuted";
-    const auto n = static_cast<double>(proven_s.size());
     print({.name = name + ", mean",
-           .value = kMilliseconds * sum(proven_s) / n,
+           .value = kMilliseconds * mean(proven_s),
            .unit = "ms",
-           .reference = Reference{"steps of 0.05", kMilliseconds * sum(steps_s) / n},
+           .reference = Reference{"steps of 0.05", kMilliseconds * mean(steps_s)},
            .ratio_budget = kMostRatio,
            .note = note});
     print({.name = name + ", median",
@@ -131,17 +119,6 @@ void plan_station(experiments::Station station, int instances) {
                            {kSeed, static_cast<std::uint32_t>(i), 0}));
   }
   all.print_as(std::string(to_text(station)));
-}
-
-std::shared_ptr<fcl::CollisionGeometry<double>> fcl_shape(const Shape& shape) {
-  if (const auto* box = std::get_if<BoxShape>(&shape))
-    return std::make_shared<fcl::Box<double>>(box->size);
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
-    return std::make_shared<fcl::Cylinder<double>>(cylinder->radius_m, cylinder->length_m);
-  if (const auto* sphere = std::get_if<SphereShape>(&shape))
-    return std::make_shared<fcl::Sphere<double>>(sphere->radius_m);
-  const auto& capsule = std::get<CapsuleShape>(shape);
-  return std::make_shared<fcl::Capsule<double>>(capsule.radius_m, capsule.length_m);
 }
 
 /// What of a cell moves, and what stands around, for FCL's continuous collision. It knows no arms:

@@ -4,11 +4,9 @@
 //
 //   public_sets_bench DIR [--vamp PROGRAM]
 //
-// DIR/ROBOT/KIND.problems.jsonl, beside robot.urdf, chain.toml and, if there is one, robot.srdf.
-// PROGRAM ROBOT FILE plans the problems of a file, too, and prints a line for each: the ms of its
-// plan and of shortening it, or "-" where it has no path.
+// DIR: problem_files.hpp. PROGRAM ROBOT FILE plans the problems of a file, too, and prints a line
+// for each: the ms of its plan and of shortening it, or "-" where it has no path.
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -23,15 +21,14 @@
 
 #include "client/guided/plan_problem.hpp"
 #include "client/planner/problem_lines.hpp"
-#include "robots/models/loaded_robot.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/problem_files.hpp"
 
 namespace kinship::bench {
 namespace {
 
 namespace fs = std::filesystem;
-const std::string kEnding = ".problems.jsonl";
 
 /// Of the problems that were solved, in their order.
 struct Times {
@@ -44,28 +41,11 @@ struct Times {
   }
 };
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values)
-    sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 std::string spread_text(const std::vector<double>& times_ms) {
   std::array<char, 100> text{};
   std::snprintf(text.data(), text.size(), "mean %.3f, 95 %% %.3f", mean(times_ms),
                 percentile(times_ms, 0.95));
   return text.data();
-}
-
-/// Files of a folder with an ending, in order.
-std::vector<fs::path> files_of(const fs::path& folder, const std::string& ending) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().filename().string().ends_with(ending))
-      files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
 }
 
 Times plan_all(const guided::PlannedRobot& robot, const fs::path& file, std::string& note) {
@@ -134,19 +114,15 @@ void print_as(const std::string& name, const Times& ours, const std::optional<Ti
 }
 
 void run(const fs::path& folder, const std::string& vamp) {
-  const std::vector<fs::path> robots = files_of(folder, "robot.urdf");
+  const std::vector<fs::path> robots = files_below(folder, "robot.urdf");
   if (robots.empty())
     throw std::runtime_error(folder.string() + ": no robot.urdf in it or in its folders");
   for (const fs::path& urdf : robots) {
-    models::RobotArguments arguments;
-    arguments.source = urdf.parent_path();
-    if (fs::exists(urdf.parent_path() / "robot.srdf"))
-      arguments.srdf = urdf.parent_path() / "robot.srdf";
-    models::LoadedRobot loaded = models::load_robot(arguments).value_or_throw();
+    const models::LoadedRobot loaded = load_robot_of(urdf.parent_path());
     const guided::PlannedRobot robot(loaded.chain, loaded.shapes);
     const std::string name = urdf.parent_path().filename();
     Times all, all_theirs;
-    for (const fs::path& file : files_of(urdf.parent_path(), kEnding)) {
+    for (const fs::path& file : files_below(urdf.parent_path(), kProblemsEnding)) {
       std::string note;
       const Times ours = plan_all(robot, file, note);
       std::optional<Times> theirs;
@@ -154,8 +130,7 @@ void run(const fs::path& folder, const std::string& vamp) {
         theirs = times_of(vamp, name, file);
         all_theirs.add(*theirs);
       }
-      const std::string kind = file.filename().string();
-      print_as(name + " " + kind.substr(0, kind.size() - kEnding.size()), ours, theirs, note);
+      print_as(name + " " + kind_of(file), ours, theirs, note);
       all.add(ours);
     }
     print_as(name + ", all kinds", all, vamp.empty() ? std::nullopt : std::optional(all_theirs),

@@ -4,7 +4,7 @@
 //
 //   recall_bench STUDY|DIR [ROBOT...] [--set tuning|test] [--uniform] [--kind KIND]
 //
-// DIR: problem files of one's own (problem_sets.hpp).
+// DIR: problem files of one's own (problem_files.hpp).
 // --uniform: uniform planning alone: how dear a study is.
 //
 // own: the robot's own learning instances, solved uniformly. first day: the learning instances of
@@ -90,13 +90,6 @@ struct Costs {
   std::vector<double> checks, time_s;
   std::vector<ProblemResult> paths;  // measured; without measures if unsolved
   int solved = 0;
-
-  static double mean(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values)
-      sum += value;
-    return sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
-  }
 };
 
 class Queries {
@@ -268,15 +261,15 @@ std::string measure_text(const Costs& one, const Costs& other,
   if (ones.empty())
     return "-";
   char text[80];
-  std::snprintf(text, sizeof text, "%.2f (%.2f) of %.2f (%.2f)", Costs::mean(ones), median(ones),
-                Costs::mean(others), median(others));
+  std::snprintf(text, sizeof text, "%.2f (%.2f) of %.2f (%.2f)", mean(ones), median(ones),
+                mean(others), median(others));
   return text;
 }
 
 void print_as(const std::string& name, const RecallLibrary& library, const Compared& compared) {
   const auto& [uniform, retreat, recalled, hits, tries, hit_s, expected, made_s] = compared;
   const auto ratio = [](const std::vector<double>& a, const std::vector<double>& b, double at) {
-    return at < 0 ? Costs::mean(a) / Costs::mean(b) : percentile(a, at) / percentile(b, at);
+    return at < 0 ? mean(a) / mean(b) : percentile(a, at) / percentile(b, at);
   };
   const double count = static_cast<double>(recalled.checks.size());
   const auto measured = [&](std::optional<double> ProblemResult::*measure, double scale) {
@@ -298,9 +291,9 @@ void print_as(const std::string& name, const RecallLibrary& library, const Compa
       measured(&ProblemResult::least_clearance_m, 1e3).c_str(), recalled.solved, uniform.solved,
       library.paths.size(), library.queries.size(), library.modes.size(), made_s);
   print({.name = name,
-         .value = 1e3 * Costs::mean(recalled.time_s),
+         .value = 1e3 * mean(recalled.time_s),
          .unit = "ms",
-         .reference = Reference{"uniform", 1e3 * Costs::mean(uniform.time_s)},
+         .reference = Reference{"uniform", 1e3 * mean(uniform.time_s)},
          .note = note});
 }
 
@@ -324,12 +317,9 @@ void print_dearness(const Robot& robot, const experiments::Study& study, const s
                 "median %.2f, 95 %% %.2f ms; checks: mean %.0f, median %.0f; solved %d, within 1 s "
                 "%zu of %zu",
                 1e3 * percentile(costs.time_s, 0.5), 1e3 * percentile(costs.time_s, 0.95),
-                Costs::mean(costs.checks), percentile(costs.checks, 0.5), costs.solved, within_1_s,
+                mean(costs.checks), percentile(costs.checks, 0.5), costs.solved, within_1_s,
                 costs.checks.size());
-  print({.name = name + " uniform",
-         .value = 1e3 * Costs::mean(costs.time_s),
-         .unit = "ms",
-         .note = note});
+  print({.name = name + " uniform", .value = 1e3 * mean(costs.time_s), .unit = "ms", .note = note});
 }
 
 std::string name_of(const experiments::StudyRobot& robot) {
@@ -341,12 +331,8 @@ class Fleet {
  public:
   explicit Fleet(const experiments::Study& study) : study_(study) {
     for (const experiments::StudyRobot& placed : study.robots) {
-      models::RobotArguments arguments;
-      arguments.source = test::source_dir() + "/robots/models";
-      arguments.source /= placed.model;
-      if (std::filesystem::exists(arguments.source / "robot.srdf"))
-        arguments.srdf = arguments.source / "robot.srdf";
-      models::LoadedRobot loaded = models::load_robot(arguments).value_or_throw();
+      const std::filesystem::path models = test::source_dir() + "/robots/models";
+      models::LoadedRobot loaded = load_robot_of(models / placed.model);
       guided::PlannedRobot planned(loaded.chain, loaded.shapes);
       auto draw = study.make_instances(loaded, placed);
       robots_.push_back(

@@ -94,13 +94,6 @@ struct Costs {
   int solved = 0;
 };
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values)
-    sum += value;
-  return sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
-}
-
 /// One way to plan, for query after query in one space.
 class Way {
  public:

@@ -75,7 +75,7 @@ INTRODUCTION = ("Medians, and least to greatest where there were several runs; a
 FIRST = [("planning", "panda, CPU time of a plan"),
          ("planning-upright", "panda, CPU time of a plan"),
          ("collision", "panda, near a start, side by side"),
-         ("proof-planning", "panda, CPU time of a plan"),
+         ("proof-planning", "furniture, mean"),
          ("inverse", "panda"),
          ("cold-fetch", "500 paths for panda"),
          ("cached-fetch", "30 KB from memory, p50"),
@@ -84,11 +84,26 @@ FIRST = [("planning", "panda, CPU time of a plan"),
          ("command", "kinship status, p50")]
 
 
+def measured(document):
+    """Title and figure by benchmark and name."""
+    return {(bench["bench"], figure["name"]): (bench["title"], figure)
+            for bench in document["benches"] for figure in bench["figures"]}
+
+
 def first(document):
     """Title and figure of each of FIRST that was measured."""
-    found = {(bench["bench"], figure["name"]): (bench["title"], figure)
-             for bench in document["benches"] for figure in bench["figures"]}
+    found = measured(document)
     return [found[each] for each in FIRST if each in found]
+
+
+def faults(document):
+    """What a report with references must not have: names of FIRST that were not measured by a benchmark which ran, and
+    rows without a reference or a reason."""
+    found = measured(document)
+    return [f"{name} has no figure '{figure}', which report.py puts first" for name, figure in FIRST
+            if (name, figure) not in found and name in {bench for bench, _ in found}] + [
+        f"{bench['bench']} does not say why '{figure['name']}' has no reference" for bench in document["benches"]
+        for figure in bench["figures"] if "reference" not in figure and not bench["alone"]]
 
 
 def table(headings, rows):

@@ -64,10 +64,9 @@ inline void expect(const Processes& processes, const std::string& line) {
 /// \param who        of the figures' names, e.g. "1000 clients".
 /// \param domain     of the server.
 /// \param arguments  one process of clients each: what it is told behind "clients" and the domain.
-/// \param budget_s   of the second figure.
 /// \return the processes, which end now.
 inline Processes measure_restart(const std::string& who, std::uint32_t domain,
-                                 const std::vector<std::string>& arguments, double budget_s,
+                                 const std::vector<std::string>& arguments,
                                  std::unique_ptr<test::ServerProcess>& server,
                                  const test::ServerProcess::Options& options) {
   double start_s = wall_s();
@@ -76,7 +75,8 @@ inline Processes measure_restart(const std::string& who, std::uint32_t domain,
     processes.push_back(std::make_unique<test::ChildProcess>(
         std::vector<std::string>{"/proc/self/exe", "clients", std::to_string(domain), argument}));
   expect(processes, "connected");
-  print({.name = who + " start and are answered", .value = wall_s() - start_s, .unit = "s"});
+  const double first_s = wall_s() - start_s;
+  print({.name = who + " start and are answered", .value = first_s, .unit = "s"});
   server->kill();
   for (const auto& process : processes)
     process->signal(SIGUSR1);
@@ -87,7 +87,8 @@ inline Processes measure_restart(const std::string& who, std::uint32_t domain,
   print({.name = who + " answered after the server's start",
          .value = wall_s() - start_s,
          .unit = "s",
-         .budget = budget_s});
+         .reference = Reference{"they start", first_s},
+         .ratio_budget = 1});
   return processes;
 }
 

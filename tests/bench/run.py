@@ -29,6 +29,12 @@ def bench(name, program, title, arguments=(), repeats=3, minutes=5, is_long=Fals
     return Bench(name, program, list(arguments), title, repeats, minutes, is_long, alone)
 
 
+NO_REFERENCES = "--no-references"
+EXPERIMENTS, PUBLIC_SETS = "kinship-experiments", "public_sets_bench"  # programs that know no NO_REFERENCES
+LINE_DOWN = "against the line down in the same run"
+TO_UNIFORM = "each is a ratio to uniform planning in the same run"
+GROWING_PART = "sizes, and times of which the part that grows stands beside the pair alone"
+
 BENCHES = [
     bench("em", "fit_bench", "EM, N = 72 160, d = 7, CPU time", ["em"]),
     bench("fit", "fit_bench", "Fits, N = 72 160, d = 7, CPU time, and samples", ["fit"], repeats=1,
@@ -47,9 +53,9 @@ BENCHES = [
     bench("fleet", "fleet_bench", "Several servers over one PostgreSQL database, over DDS", repeats=1,
           alone="against one server of the same run, or a wait that a person feels"),
     bench("site", "site_bench", "A site that catches up, with the memory on its processors and disk", ["shared"], repeats=1,
-          alone="against the line down in the same run"),
+          alone=LINE_DOWN),
     bench("site-apart", "site_bench", "A site that catches up, with the memory apart", ["apart"], repeats=1,
-          alone="against the line down in the same run"),
+          alone=LINE_DOWN),
     bench("secured", "secured_bench", "Security: fetches, reports, 100 clients after a restart", repeats=1,
           alone="against no security in the same run"),
     bench("collision", "collision_bench", "Collision checks, 12 boxes and a held box, one thread", ["boxes"]),
@@ -59,27 +65,27 @@ BENCHES = [
     bench("proof", "proof_bench", "Edges proven, beside steps and FCL's continuous collision", ["edges"], repeats=1),
     bench("proof-planning", "proof_bench", "Plans with proven edges, beside steps of 0.05", ["planning"], repeats=1),
     bench("recall", "recall_bench", "Recalled paths in the studies' furniture, CPU time of everything", ["furniture", "ur10e", "panda"], repeats=1,
-          alone="each is a ratio to uniform planning in the same run"),
+          alone=TO_UNIFORM),
     bench("recall-kitting", "recall_bench", "Recalled paths in the study of kitting, CPU time of everything", ["kitting", "ur10e", "panda"], repeats=1,
-          alone="each is a ratio to uniform planning in the same run"),
+          alone=TO_UNIFORM),
     bench("dear", "recall_bench", "Recalled paths in the dear studies, one robot a kind, CPU time of everything", ["dear", "iiwa14_lift", "sara_like"],
           repeats=1, minutes=60, is_long=True,
-          alone="each is a ratio to uniform planning in the same run"),
+          alone=TO_UNIFORM),
     bench("recall-planner", "recall_planner_bench", "RecallPlanner beside OMPL's Lightning and RRTConnect in shelves, processor time", repeats=1),
-    bench("order", "kinship-experiments", "Orders: 100 queries one after another from an empty store, CPU time of plans",
+    bench("order", EXPERIMENTS, "Orders: 100 queries one after another from an empty store, CPU time of plans",
           ["order", "--out", "order", "--models", str(ROOT / "robots" / "models"), "--figures"], repeats=1,
           alone="each is a share of uniform planning's time"),
     bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1,
           alone="each is a share of uniform planning's checks, or a time that nobody else's stands beside"),
     bench("command", "command_bench", "One-shot commands against a local server"),
     bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1,
-          alone="sizes, and times of which the part that grows stands beside the pair alone"),
+          alone=GROWING_PART),
     bench("large-store", "large_store_bench", "A store of 1 000 000 paths of 200 robots and tasks", ["1000000", "200"],
           repeats=1, minutes=60, is_long=True,
-          alone="sizes, and times of which the part that grows stands beside the pair alone"),
+          alone=GROWING_PART),
     bench("large-postgres", "large_postgres_bench", "A PostgreSQL database of 10 000 000 paths of 1000 robots and tasks",
           ["10000000", "1000"], repeats=1, minutes=90, is_long=True,
-          alone="sizes, and times of which the part that grows stands beside the pair alone"),
+          alone=GROWING_PART),
     bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True,
           alone="waits that people feel, and memory"),
     bench("soak", "soak_bench", "20 minutes of reports, fits, fetches and short-lived clients", repeats=1, minutes=30, is_long=True,
@@ -90,7 +96,7 @@ BENCHES = [
 def public_sets(options):
     """Plans in problem files of the user's; with `planning` only, as nobody else has them."""
     vamp = ["--vamp", str(options.vamp)] if options.vamp and not options.no_references else []
-    return bench("planning-mbm", "public_sets_bench", f"Uniform plans with proven edges in the problems of {options.mbm.name}, processor time",
+    return bench("planning-mbm", PUBLIC_SETS, f"Uniform plans with proven edges in the problems of {options.mbm.name}, processor time",
                  [str(options.mbm), *vamp], repeats=1)
 
 
@@ -100,7 +106,7 @@ def parse_arguments():
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--repeat", type=int, metavar="N")
     parser.add_argument("--long", action="store_true")
-    parser.add_argument("--no-references", action="store_true")
+    parser.add_argument(NO_REFERENCES, action="store_true")
     parser.add_argument("--eaik", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--mbm", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--vamp", type=pathlib.Path, metavar="PROGRAM")
@@ -108,6 +114,7 @@ def parse_arguments():
     parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
     known = [b.name for b in BENCHES]
+    assert all(name in known for name, _ in report.FIRST), "report.py puts a benchmark first that there is not"
     for name in options.names:
         if name not in known:
             parser.error(f"no benchmark '{name}'; there are: {' '.join(known)}")
@@ -191,7 +198,7 @@ def end_group(process):
 
 def run_once(wanted, has_references, scratch):
     """The figures of one run, in order."""
-    more = [] if has_references or wanted.program in ("kinship-experiments", "public_sets_bench") else ["--no-references"]
+    more = [] if has_references or wanted.program in (EXPERIMENTS, PUBLIC_SETS) else [NO_REFERENCES]
     command = [BUILD / "bin" / wanted.program, *wanted.arguments, *more]
     log = BUILD / f"{wanted.name}.log"
     with open(log, "w") as errors:
@@ -282,11 +289,12 @@ def main():
     (BUILD / "report.md").write_text(report.markdown(document))
     (BUILD / "report.html").write_text(report.html(document))
     failed = [b["bench"] for b in document["benches"] if "failure" in b]
+    failed += [] if options.no_references else report.faults(document)
     if options.write_results and not failed:
         shutil.copy(BUILD / "report.md", ROOT / "tests" / "bench" / "RESULTS.md")
     print(f"Report: {BUILD}/report.html, report.md, report.json; {document['seconds']} s")
     if failed:
-        print(f"bench: failed: {' '.join(failed)}", file=sys.stderr)
+        print(f"bench: failed: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0
 
 

@@ -12,6 +12,7 @@
 #include "client/guided/sampling_mode_choice.hpp"
 #include "robots/planning/planning_budget.hpp"
 #include "tests/bench/figure.hpp"
+#include "tests/bench/processor.hpp"
 
 namespace kinship::bench {
 namespace {
@@ -110,7 +111,8 @@ int main() {
                            .value = kinship::bench::choice_us(slower),
                            .unit = "us a query",
                            .better = Better::Lower,
-                           .budget = 2});
+                           .reference = kinship::bench::time_at_best(140e3, 1e-6),
+                           .ratio_budget = 1});
   for (const auto& season : kinship::bench::kCases) {
     const auto outcome = kinship::bench::play(season);
     kinship::bench::print({.name = season.name,

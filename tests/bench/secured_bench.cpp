@@ -119,7 +119,7 @@ void run() {
     const std::string name = "client_" + std::to_string(i);
     credentials.push_back(add(name, directory / name.c_str()).string());
   }
-  bench::measure_restart("100 clients with security", secured.domain.number(), credentials, 10,
+  bench::measure_restart("100 clients with security", secured.domain.number(), credentials,
                          secured.server, secured.options);
 }
 

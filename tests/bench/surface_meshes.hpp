@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octomap/OcTree.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -101,6 +103,15 @@ inline Eigen::Matrix3Xd surface_points(const Scene& scene, Eigen::Index count,
         object.T_task_object * (std::visit(Radius{direction}, object.shape) * direction);
   }
   return points;
+}
+
+/// A map of cubes that hold points.
+inline std::shared_ptr<octomap::OcTree> map_of(const Eigen::Matrix3Xd& points, double cube_m) {
+  auto map = std::make_shared<octomap::OcTree>(cube_m);
+  for (const auto& p : points.colwise())
+    map->updateNode(p.x(), p.y(), p.z(), /*occupied=*/true, /*lazy_eval=*/true);
+  map->updateInnerOccupancy();
+  return map;
 }
 
 }  // namespace kinship::bench
