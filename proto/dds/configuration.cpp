@@ -68,8 +68,9 @@ std::string cyclone_configuration(const ParticipantOptions& options) {
          interfaces(options) +
          "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize>"
          "<FragmentSize>8000B</FragmentSize></General><Discovery>" +
-         discovery(options) +
-         "<SPDPInterval>1s</SPDPInterval><LeaseDuration>5s</LeaseDuration></Discovery><Internal>"
+         discovery(options) + "<SPDPInterval>1s</SPDPInterval><LeaseDuration>" +
+         std::to_string(kLease.count()) +
+         "s</LeaseDuration></Discovery><Internal>"
          "<SocketReceiveBufferSize max=\"4MB\"/><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>"
          "<HeartbeatInterval>10ms</HeartbeatInterval><NackDelay>10ms</NackDelay>"
          "<MaxSampleSize>2MB</MaxSampleSize></Internal></Domain></CycloneDDS>";

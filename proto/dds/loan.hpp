@@ -31,6 +31,12 @@ class Loan {
   /// Handle of the writer of a sample.
   std::uint64_t writer(std::size_t i) const noexcept { return infos_[i].publication_handle; }
 
+  /// Handle of the instance of a sample, and whether that is still there.
+  std::uint64_t instance(std::size_t i) const noexcept { return infos_[i].instance_handle; }
+  bool is_alive(std::size_t i) const noexcept {
+    return infos_[i].instance_state == DDS_ALIVE_INSTANCE_STATE;
+  }
+
   std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
 
   /// The message, or null if this sample only has the state of an instance.

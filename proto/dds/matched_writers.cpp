@@ -94,7 +94,6 @@ std::optional<Sender> MatchedWriters::look_up(const Entity& reader, std::uint64_
   return sender;
 }
 
-/// Cyclone DDS sets that text itself, whatever a participant announces.
 bool MatchedWriters::is_in_this_process(std::uint64_t participant) const {
   std::array<void*, 1> samples{};
   std::array<dds_sample_info_t, 1> infos{};
@@ -102,15 +101,9 @@ bool MatchedWriters::is_in_this_process(std::uint64_t participant) const {
       dds_read_instance(participants_.get(), samples.data(), infos.data(), 1, 1, participant);
   if (count < 1)
     return false;
-  bool is_here = false;
-  if (infos[0].valid_data) {
-    const auto& data = *static_cast<const dds_builtintopic_participant_t*>(samples[0]);
-    char* addresses = nullptr;
-    if (dds_qget_prop(data.qos, "__NetworkAddresses", &addresses)) {
-      is_here = std::string_view(addresses) == "localprocess";
-      dds_free(addresses);
-    }
-  }
+  const bool is_here =
+      infos[0].valid_data &&
+      dds::is_in_this_process(*static_cast<const dds_builtintopic_participant_t*>(samples[0]));
   dds_return_loan(participants_.get(), samples.data(), count);
   return is_here;
 }

@@ -15,6 +15,7 @@
 #include "proto/dds/network_interface.hpp"
 #include "proto/dds/packet_guard.hpp"
 #include "proto/dds/qos.hpp"
+#include "proto/dds/rejoin_watch.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::dds {
@@ -96,6 +97,8 @@ class Participant::Domain {
       throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
     entity_.emplace(handle, "domain");
   }
+
+  bool is_of_server() const { return role_ == Role::Server; }
 
  private:
   /// Counts as long as the domain lives.
@@ -182,7 +185,10 @@ Participant::Participant(const ParticipantOptions& options)
                    ? std::make_unique<PacketGuard>(!options.security.empty())
                    : nullptr),
       domain_(Domain::join(options)),
-      entity_(create_participant(options)) {}
+      entity_(create_participant(options)),
+      rejoin_(credentials_ && !domain_->is_of_server()
+                  ? std::make_unique<RejoinWatch>(entity_.get())
+                  : nullptr) {}
 
 Participant::~Participant() = default;
 Participant::Participant(Participant&&) noexcept = default;

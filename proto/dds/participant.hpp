@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -34,6 +35,7 @@ std::string forked_process_advice();
 
 class EndpointGuard;
 class PacketGuard;
+class RejoinWatch;
 
 enum class Role {
   Server,  ///< takes the first discovery port of the domain; knows no peers
@@ -59,6 +61,7 @@ struct ParticipantOptions {
 };
 
 inline constexpr std::uint32_t kMaxDomain = 230;  ///< ports stay below 65536
+inline constexpr std::chrono::seconds kLease{5};  ///< a silent participant is gone after it
 
 /// UDP port of discovery at the server of a domain: 7400 + 250 domain + 10.
 std::uint16_t discovery_port(std::uint32_t domain);
@@ -108,6 +111,7 @@ class Participant {
   std::unique_ptr<PacketGuard> packets_;  // of a server
   std::shared_ptr<Domain> domain_;  // shared by the participants of this process on one domain
   Entity entity_;
+  std::unique_ptr<RejoinWatch> rejoin_;  // of a client with security; last: uses the others
 };
 
 }  // namespace kinship::dds

@@ -35,7 +35,7 @@ std::uint64_t wish(const char* name, std::uint64_t otherwise) {
   return text ? std::stoull(text) : otherwise;
 }
 seconds chaos_time() { return seconds(wish("KINSHIP_CHAOS_S", is_long_run() ? 200 : 10)); }
-std::uint64_t chaos_seed() { return wish("KINSHIP_CHAOS_SEED", 1); }
+std::uint64_t chaos_seed() { return wish("KINSHIP_CHAOS_SEED", 20261128); }
 
 void pause(Dice& dice, milliseconds from, milliseconds to) {
   std::this_thread::sleep_for(dice.time(from, to));

@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <thread>
 
+#include "proto/security/authority_folder.hpp"
+#include "proto/security/permissions.hpp"
 #include "proto/security/security_folder.hpp"
 #include "tests/faults/chaos_fleet.hpp"
 
@@ -18,6 +22,32 @@ namespace fs = std::filesystem;
 constexpr std::size_t kClients = 3;
 constexpr seconds kAtOnce{30};  // instead of hours; the machine may have other work
 
+std::chrono::sys_seconds wall_now() {
+  return std::chrono::floor<seconds>(std::chrono::system_clock::now());
+}
+
+/// Waits for something, with a moment's pauses.
+template <typename Happened>
+void wait_until(const Happened& has_happened, const fs::path& log) {
+  const auto end = std::chrono::steady_clock::now() + kAtOnce;
+  while (!has_happened()) {
+    ASSERT_LT(std::chrono::steady_clock::now(), end) << read_text(log);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+std::ptrdiff_t receipts_of(const fs::path& outbox) {
+  return fs::exists(outbox / "sent") ? std::distance(fs::directory_iterator(outbox / "sent"), {})
+                                     : 0;
+}
+
+std::size_t count(std::string_view text, std::string_view part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1))
+    ++found;
+  return found;
+}
+
 /// By which the clock is ahead after each time. With security: Cyclone DDS waits for more there.
 class ClockIsSet : public testing::TestWithParam<hours> {
  protected:
@@ -28,7 +58,7 @@ class ClockIsSet : public testing::TestWithParam<hours> {
                                                 "--security", fleet.string()};
     std::vector<ChaosClients::Place> places(kClients, {domain_.number()});
     // Valid whatever the clock is set to.
-    const auto made = std::chrono::floor<seconds>(std::chrono::system_clock::now()) - hours(48);
+    const auto made = wall_now() - hours(48);
     const auto security = security::SecurityFolder::init(fleet, security::kDefaultDays, made);
     for (std::size_t client = 0; client < kClients; ++client) {
       const std::string name = "r" + std::to_string(client);
@@ -42,16 +72,10 @@ class ClockIsSet : public testing::TestWithParam<hours> {
   }
   /// Until each outbox has so many receipts more. The last two clients share one.
   void wait_for_receipts(std::ptrdiff_t count) const {
-    for (std::size_t outbox = 0; outbox < kClients - 1; ++outbox) {
-      const fs::path sent = folder_ / ("outbox-" + std::to_string(outbox)).c_str() / "sent";
-      const auto receipts = [&sent] {
-        return fs::exists(sent) ? std::distance(fs::directory_iterator(sent), {}) : 0;
-      };
-      const auto end = std::chrono::steady_clock::now() + kAtOnce;
-      for (const auto wanted = receipts() + count; receipts() < wanted;) {
-        ASSERT_LT(std::chrono::steady_clock::now(), end) << read_text(folder_ / "server.log");
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      }
+    for (std::size_t client = 0; client < kClients - 1; ++client) {
+      const fs::path outbox = folder_ / ("outbox-" + std::to_string(client)).c_str();
+      const auto wanted = receipts_of(outbox) + count;
+      wait_until([&] { return receipts_of(outbox) >= wanted; }, folder_ / "server.log");
     }
   }
 
@@ -83,6 +107,65 @@ TEST_P(ClockIsSet, WhileAClientJoins) {
 INSTANTIATE_TEST_SUITE_P(, ClockIsSet, testing::Values(-hours(1), hours(1)), [](const auto& ahead) {
   return std::string(ahead.param < hours(0) ? "Back" : "Ahead");
 });
+
+enum class Side { Clients, Server };
+
+/// Certificates are valid by the clock of one side, which is wrong, and permissions are not: those
+/// Cyclone DDS judges once, and the handshake ends without a match.
+class ClockIsWrong : public testing::TestWithParam<Side> {
+ protected:
+  ClockIsWrong() {
+    const auto security = security::SecurityFolder::init(fleet_, security::kDefaultDays, made_);
+    security.add({.name = "r0"}, client_, made_);
+    const bool is_clients = GetParam() == Side::Clients;
+    const security::Validity later{wall_now() - hours(1), made_ + security::kDefaultDays};
+    sign(is_clients ? security::server_permissions(security::kServerName, later)
+                    : security::client_permissions("r0", AccessRole::Robot, later),
+         is_clients ? security.server_credentials() : client_);
+  }
+  void sign(const std::string& permissions, const fs::path& credentials) const {
+    const fs::path file = security::CredentialFiles(credentials).permissions;
+    fs::remove(file);
+    std::ofstream(file) << security::sign_document(
+        permissions, security::AuthorityFolder(fleet_ / "authority").for_clients().signer,
+        {made_, made_ + security::kDefaultDays});
+  }
+
+  const TemporaryDirectory folder_;
+  const fs::path fleet_ = folder_ / "fleet", client_ = folder_ / "r0";
+  const std::chrono::sys_seconds made_ = wall_now() - hours(48);
+  const JumpingClock clock_of_clients_{folder_ / "clock"};
+  const JumpingClock clock_of_server_{folder_ / "server_clock"};
+  const ReservedDomain domain_;
+};
+
+/// Two clients with one outbox, both refused; one of them waits until the other has sent.
+TEST_P(ClockIsWrong, WhileClientsJoinAndTheyJoinOnceItIsRight) {
+  const fs::path server_log = folder_ / "server.log", client_log = folder_ / "clients.log";
+  Supervised server(clock_of_server_, "kinshipd", server_log, [this] {
+    return std::vector<std::string>{"--domain",   std::to_string(domain_.number()),
+                                    "--store",    (folder_ / "fleet.db").string(),
+                                    "--security", fleet_.string()};
+  });
+  ChaosClients clients(folder_.path(), clock_of_clients_, {{domain_.number(), client_}}, 2);
+  const bool is_clients = GetParam() == Side::Clients;
+  const JumpingClock& wrong = is_clients ? clock_of_clients_ : clock_of_server_;
+  server.start();
+  server.program().read_line();
+  wrong.jump_to(-hours(24));
+  clients.start_all();
+  const fs::path log = is_clients ? client_log : server_log;
+  wait_until([&] { return count(read_text(log), "validity period has not started") == 2; }, log);
+  wrong.jump_to(seconds(0));
+  wait_until([&] { return receipts_of(folder_ / "outbox-0") > 0; }, server_log);
+  clients.drain();
+  EXPECT_EQ(server.terminate(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(, ClockIsWrong, testing::Values(Side::Clients, Side::Server),
+                         [](const auto& side) {
+                           return std::string(side.param == Side::Clients ? "Clients" : "Server");
+                         });
 
 }  // namespace
 }  // namespace kinship::test::clock_test
