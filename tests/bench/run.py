@@ -196,6 +196,11 @@ def end_group(process):
     process.wait()
 
 
+def is_of_time(unit):
+    """Whether a unit is of time, or so many a second: such a figure follows the machine."""
+    return unit.split(" ")[0] in ("s", "ms", "us", "ns") or unit.endswith("/s")
+
+
 def run_once(wanted, has_references, scratch):
     """The figures of one run, in order."""
     more = [] if has_references or wanted.program in (EXPERIMENTS, PUBLIC_SETS) else [NO_REFERENCES]
@@ -216,6 +221,9 @@ def run_once(wanted, has_references, scratch):
     figures = [json.loads(line) for line in output.splitlines()]
     if len({figure["name"] for figure in figures}) < len(figures):
         raise Failed("two figures have one name")
+    for figure in figures:
+        if "budget" in figure and is_of_time(figure["unit"]):
+            raise Failed(f"'{figure['name']}' has a budget that names a machine: make it a ratio")
     return figures
 
 
