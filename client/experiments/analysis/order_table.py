@@ -66,9 +66,9 @@ def order_table(orders: Sequence[Order]) -> str:
     head = ["order", "solved", "total", "first ten", "checks", "worst, ms", "mean, ms", "median, ms", "p95, ms", "recall tries", "line, ms",
             "server, s", "length", "hand's, m", "least clearance, mm", "<planned by"]
     notes = (f"Guided / uniform by processor time of planning: at most {MAX_TOTAL} in total, {MAX_FIRST} for the first ten; *worst*: how far a query "
-             f"went beyond {WORST} x uniform, at most {MAX_WORST} means of uniform planning.\n*line*: processor time in which the client asks and reports, a query; "
-             "*server*: kinshipd's in all.\n*length*, the hand's, and the least clearance of paths: means and medians of the queries that both "
-             "solved.\n")
+             f"went beyond {WORST} x uniform, at most {MAX_WORST} means of uniform planning.\n*line*: processor time in which the client asks and "
+             "reports, a query; *server*: kinshipd's in all.\n*length*, the hand's, and the least clearance of paths: means and medians of the "
+             "queries that both solved.\n")
     return table(head, map(_row, orders)) + notes
 
 
