@@ -97,7 +97,7 @@ def public_sets(options):
     """Plans in problem files of the user's; with `planning` only, as nobody else has them."""
     vamp = ["--vamp", str(options.vamp)] if options.vamp and not options.no_references else []
     return bench("planning-mbm", PUBLIC_SETS, f"Uniform plans with proven edges in the problems of {options.mbm.name}, processor time",
-                 [str(options.mbm), *vamp], repeats=1)
+                 [str(options.mbm), *vamp], repeats=1, alone="--vamp names a program to stand beside")
 
 
 def parse_arguments():
