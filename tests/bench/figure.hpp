@@ -25,28 +25,19 @@ struct Figure {
   std::string unit;
   Better better = Better::Lower;
   std::optional<Reference> reference = {};
-  std::optional<double> budget = {};        ///< of the value: at most, or at least; not of time
+  std::optional<double> budget = {};        ///< of the value: at most, or at least; not of a time
   std::optional<double> ratio_budget = {};  ///< of value / reference
   std::string note = {};
 };
 
-/// Whether a unit is one of time, or so many a second.
-inline bool is_of_time(const std::string& unit) {
-  const std::string first = unit.substr(0, unit.find(' '));
-  return first == "s" || first == "ms" || first == "us" || first == "ns" || first.ends_with("/s");
-}
-
 /// Prints it as a line of JSON on standard output, which tests/bench/run.py collects. Texts are
 /// plain: no control characters.
-/// \throws std::logic_error if a number is not finite, a ratio has a budget but no reference, or a
-///         time or rate has a budget of its own: a faster machine would keep it.
+/// \throws std::logic_error if a number is not finite, or a ratio has a budget but no reference.
 inline void print(const Figure& figure) {
   if (!std::isfinite(figure.value) || (figure.reference && !std::isfinite(figure.reference->value)))
     throw std::logic_error("figure '" + figure.name + "' is not finite");
   if (figure.ratio_budget && !figure.reference)
     throw std::logic_error("figure '" + figure.name + "' has a budget but no reference");
-  if (figure.budget && is_of_time(figure.unit))
-    throw std::logic_error("figure '" + figure.name + "' has a budget that names a machine");
   std::ostringstream line;
   line << std::setprecision(9) << "{\"name\": " << std::quoted(figure.name)
        << ", \"value\": " << figure.value << ", \"unit\": " << std::quoted(figure.unit)

@@ -72,7 +72,7 @@ void measure_opening(const OpenStore& large, const OpenStore& alone) {
          .value = median(warm),
          .unit = "ms",
          .reference = Reference{"the pair alone", median(warm_alone)},
-         .ratio_budget = 3});
+         .ratio_budget = 2});
   print({.name = "open, nothing of it in memory", .value = median(cold), .unit = "ms"});
 }
 

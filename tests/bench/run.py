@@ -97,7 +97,7 @@ def public_sets(options):
     """Plans in problem files of the user's; with `planning` only, as nobody else has them."""
     vamp = ["--vamp", str(options.vamp)] if options.vamp and not options.no_references else []
     return bench("planning-mbm", PUBLIC_SETS, f"Uniform plans with proven edges in the problems of {options.mbm.name}, processor time",
-                 [str(options.mbm), *vamp], repeats=1)
+                 [str(options.mbm), *vamp], repeats=1, alone="--vamp names a program to stand beside")
 
 
 def parse_arguments():
@@ -196,6 +196,11 @@ def end_group(process):
     process.wait()
 
 
+def is_of_time(unit):
+    """Whether a unit is of time, or so many a second: such a figure follows the machine."""
+    return unit.split(" ")[0] in ("s", "ms", "us", "ns") or unit.endswith("/s")
+
+
 def run_once(wanted, has_references, scratch):
     """The figures of one run, in order."""
     more = [] if has_references or wanted.program in (EXPERIMENTS, PUBLIC_SETS) else [NO_REFERENCES]
@@ -216,6 +221,9 @@ def run_once(wanted, has_references, scratch):
     figures = [json.loads(line) for line in output.splitlines()]
     if len({figure["name"] for figure in figures}) < len(figures):
         raise Failed("two figures have one name")
+    for figure in figures:
+        if "budget" in figure and is_of_time(figure["unit"]):
+            raise Failed(f"'{figure['name']}' has a budget that names a machine: make it a ratio")
     return figures
 
 

@@ -53,8 +53,9 @@ class OrderTable(unittest.TestCase):
         self.assertAlmostEqual(total["reference"]["value"], 200)
         self.assertEqual((total["unit"], total["ratio_budget"]), ("ms", 0.5))
         self.assertAlmostEqual(first["value"] / first["reference"]["value"], 1.1)
-        self.assertEqual((first["ratio_budget"], worst["budget"]), (1.1, 10))
+        self.assertEqual((first["ratio_budget"], worst["ratio_budget"]), (1.1, 10))
         self.assertAlmostEqual(worst["value"], 18.5)
+        self.assertAlmostEqual(worst["reference"]["value"], 10)
 
 
 if __name__ == "__main__":
