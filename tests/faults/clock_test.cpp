@@ -110,18 +110,17 @@ INSTANTIATE_TEST_SUITE_P(, ClockIsSet, testing::Values(-hours(1), hours(1)), [](
 
 enum class Side { Clients, Server };
 
-/// Certificates are valid by the clock of one side, which is wrong, and permissions are not: those
-/// Cyclone DDS judges once, and the handshake ends without a match.
+/// The clock of one side. A day ago certificates are valid by it, and the permissions of the other
+/// side are not: those Cyclone DDS judges once, and certificates each second.
 class ClockIsWrong : public testing::TestWithParam<Side> {
  protected:
   ClockIsWrong() {
     const auto security = security::SecurityFolder::init(fleet_, security::kDefaultDays, made_);
     security.add({.name = "r0"}, client_, made_);
-    const bool is_clients = GetParam() == Side::Clients;
     const security::Validity later{wall_now() - hours(1), made_ + security::kDefaultDays};
-    sign(is_clients ? security::server_permissions(security::kServerName, later)
-                    : security::client_permissions("r0", AccessRole::Robot, later),
-         is_clients ? security.server_credentials() : client_);
+    sign(is_clients_ ? security::server_permissions(security::kServerName, later)
+                     : security::client_permissions("r0", AccessRole::Robot, later),
+         is_clients_ ? security.server_credentials() : client_);
   }
   void sign(const std::string& permissions, const fs::path& credentials) const {
     const fs::path file = security::CredentialFiles(credentials).permissions;
@@ -131,35 +130,59 @@ class ClockIsWrong : public testing::TestWithParam<Side> {
         {made_, made_ + security::kDefaultDays});
   }
 
+  /// \param refusal  what the side with the wrong clock says of each client.
+  void expect_receipts_once_it_is_right(std::string_view refusal) {
+    wait_until([&] { return count(read_text(wrong_log_), refusal) >= 2; }, wrong_log_);
+    wrong_.jump_to(seconds(0));
+    wait_until([this] { return receipts_of(folder_ / "outbox-0") > 0; }, wrong_log_);
+    clients_.drain();
+    EXPECT_EQ(server_.terminate(), 0);
+  }
+
   const TemporaryDirectory folder_;
   const fs::path fleet_ = folder_ / "fleet", client_ = folder_ / "r0";
   const std::chrono::sys_seconds made_ = wall_now() - hours(48);
+  const ReservedDomain domain_;
   const JumpingClock clock_of_clients_{folder_ / "clock"};
   const JumpingClock clock_of_server_{folder_ / "server_clock"};
-  const ReservedDomain domain_;
+  const bool is_clients_ = GetParam() == Side::Clients;
+  const JumpingClock& wrong_ = is_clients_ ? clock_of_clients_ : clock_of_server_;
+  const fs::path wrong_log_ = folder_ / (is_clients_ ? "clients.log" : "server.log");
+  ChaosClients clients_{folder_.path(), clock_of_clients_, {{domain_.number(), client_}}, 2};
+  Supervised server_{clock_of_server_, "kinshipd", folder_ / "server.log", [this] {
+                       return std::vector<std::string>{
+                           "--domain",   std::to_string(domain_.number()),
+                           "--store",    (folder_ / "fleet.db").string(),
+                           "--security", fleet_.string()};
+                     }};
 };
 
 /// Two clients with one outbox, both refused; one of them waits until the other has sent.
-TEST_P(ClockIsWrong, WhileClientsJoinAndTheyJoinOnceItIsRight) {
-  const fs::path server_log = folder_ / "server.log", client_log = folder_ / "clients.log";
-  Supervised server(clock_of_server_, "kinshipd", server_log, [this] {
-    return std::vector<std::string>{"--domain",   std::to_string(domain_.number()),
-                                    "--store",    (folder_ / "fleet.db").string(),
-                                    "--security", fleet_.string()};
-  });
-  ChaosClients clients(folder_.path(), clock_of_clients_, {{domain_.number(), client_}}, 2);
-  const bool is_clients = GetParam() == Side::Clients;
-  const JumpingClock& wrong = is_clients ? clock_of_clients_ : clock_of_server_;
-  server.start();
-  server.program().read_line();
-  wrong.jump_to(-hours(24));
-  clients.start_all();
-  const fs::path log = is_clients ? client_log : server_log;
-  wait_until([&] { return count(read_text(log), "validity period has not started") == 2; }, log);
-  wrong.jump_to(seconds(0));
-  wait_until([&] { return receipts_of(folder_ / "outbox-0") > 0; }, server_log);
-  clients.drain();
-  EXPECT_EQ(server.terminate(), 0);
+TEST_P(ClockIsWrong, ByADayWhileClientsJoin) {
+  server_.start();
+  server_.program().read_line();
+  wrong_.jump_to(-hours(24));
+  clients_.start_all();
+  expect_receipts_once_it_is_right("validity period has not started");
+}
+
+/// No participant can be made then: the clock is set when they have been, and meet.
+TEST_P(ClockIsWrong, ByYearsWhileClientsMeetTheServer) {
+  constexpr hours kThreeYears{3 * 8760};
+  if (is_clients_) {
+    clients_.start_all();
+    wait_until(
+        [this] { return fs::exists(folder_ / "ledger-1") && fs::exists(folder_ / "ledger-2"); },
+        wrong_log_);
+    wrong_.jump_to(-kThreeYears);
+    server_.start();
+  } else {
+    server_.start();
+    server_.program().read_line();
+    wrong_.jump_to(-kThreeYears);
+    clients_.start_all();
+  }
+  expect_receipts_once_it_is_right("certificate is not yet valid");
 }
 
 INSTANTIATE_TEST_SUITE_P(, ClockIsWrong, testing::Values(Side::Clients, Side::Server),
