@@ -1,5 +1,6 @@
-// The file that is written is the file that is named: what an administrator's hand may do to the
-// files of a store that kinshipd serves, or to those of one that it left behind when it was killed.
+// The file that is written is the file that is named, and has what was written: what an
+// administrator's hand may do to the files of a store that kinshipd serves, or to those of one that
+// it left behind when it was killed.
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -8,11 +9,13 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <string>
 
 #include "tests/faults/served_store.hpp"
 #include "tests/support/small_file_system.hpp"
+#include "tests/support/store_values.hpp"
 
 namespace kinship::lost_store_file_test {
 namespace {
@@ -25,6 +28,13 @@ constexpr std::uint64_t kReports = 20;
 constexpr std::chrono::seconds kSoon{1};
 
 void make_empty(const fs::path& file) { std::ofstream{file}; }
+
+/// As `dd conv=notrunc` does.
+void overwrite(const fs::path& file, std::uint64_t place, std::size_t bytes) {
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekp(static_cast<std::streamoff>(place));
+  stream << std::string(bytes, '\x55');
+}
 
 class LostStoreFile : public testing::Test {
  protected:
@@ -65,6 +75,18 @@ class LostStoreFile : public testing::Test {
     store_.report(1);
     EXPECT_EQ(store_.cell().terminate(), 0);
     EXPECT_EQ(store_.missing(store_.file()), 0U);
+  }
+  /// The client offers again what the copy lacks, so that all is there in the end.
+  void expect_all_once_offered_again(std::uint64_t reports) {
+    restore_rescued(true);
+    EXPECT_TRUE(store_.status_becomes(
+        [&](const ServerStatus& status) { return status.attempts >= reports; }));
+    expect_all_in_the_end();
+  }
+  /// So that the store's file has all, and the WAL nothing.
+  void start_again() {
+    EXPECT_EQ(store_.cell().terminate(), 0);
+    store_.cell().start();
   }
   /// The one copy that the server made before it is killed, put in the store's place.
   void restore_rescued(bool repair_it = false) {
@@ -207,6 +229,111 @@ TEST_F(StoreAmongMounts, BelowOneGoesOnWhenThatIsGone) {
   EXPECT_TRUE(store_->has_all_receipts());
   EXPECT_EQ(store_->cell().terminate(), 0);
   EXPECT_EQ(store_->missing(store_->file()), 0U);
+}
+
+// --- its content ---
+
+constexpr std::size_t kPage = 4096;
+
+/// Within the fifth frame of a WAL, which a transaction with reports has.
+constexpr std::uint64_t kInWal = 32 + 4 * (24 + kPage) + 1000;
+
+TEST_F(LostStoreFile, OverwrittenByAnotherOneIsSavedAsFarAsItIsThere) {
+  const fs::path other = store_.beside() / "other.db";
+  {
+    test::Stranger stranger(other, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    stranger.run("CREATE TABLE t (x); INSERT INTO t VALUES (7)");
+  }
+  lose([&] { fs::copy_file(other, store_.file(), fs::copy_options::overwrite_existing); },
+       "; what is left of it is in '");
+  restore_rescued(true);
+  expect_all_in_the_end();  // all was in the WAL
+}
+
+TEST_F(LostStoreFile, WhoseHeaderIsOverwrittenIsSavedAsFarAsItIsThere) {
+  start_again();
+  store_.report(3);
+  lose([&] { overwrite(store_.file(), 0, kPage); }, "it was overwritten; what is left of it is in");
+  expect_all_once_offered_again(kReports + 3);
+}
+
+TEST_F(LostStoreFile, OverwrittenAfterACrashIsNoticed) {
+  store_.cell().kill();
+  store_.cell().start();
+  const std::uint64_t size = fs::file_size(store_.file());
+  lose([&] { overwrite(store_.file(), size / kPage / 2 * kPage, kPage); },
+       "it was overwritten; what is left of it is in");
+  expect_all_once_offered_again(kReports);
+}
+
+TEST_F(LostStoreFile, WithATruncatedWalSaysHowFarItIsSaved) {
+  start_again();
+  store_.report(3);
+  lose([&] { fs::resize_file(store_.wal(), 0); },
+       "its WAL '" + store_.wal().string() + "' was truncated to 0 bytes; what is left of it is");
+  EXPECT_NE(store_.cell().status().storage_message.find(std::to_string(kReports + 3) +
+                                                        " were acknowledged: stop kinshipd"),
+            std::string::npos)
+      << store_.cell().status().storage_message;
+  expect_all_once_offered_again(kReports + 3);
+}
+
+TEST_F(LostStoreFile, WithHalfAWalIsSavedAsFarAsThatGoes) {
+  lose([&] { fs::resize_file(store_.wal(), kInWal); }, "bytes; what is left of it is in '");
+  expect_all_once_offered_again(kReports);
+}
+
+TEST_F(LostStoreFile, WhoseWalIsOverwrittenInItsMiddleIsNoticed) {
+  lose([&] { overwrite(store_.wal(), kInWal, 100); },
+       "its WAL '" + store_.wal().string() + "' was overwritten; what is left of it is in '");
+  expect_all_once_offered_again(kReports);
+}
+
+TEST_F(LostStoreFile, MovesNothingOfASpoiltWalWhenItStops) {
+  overwrite(store_.wal(), kInWal, 100);
+  EXPECT_EQ(store_.cell().terminate(), 0);
+  expect_says(store_.cell().log(), "was overwritten; what is left of it is in '");
+  expect_all_once_offered_again(kReports);
+}
+
+TEST_F(LostStoreFile, GoesOnWithoutAWalThatWasMovedAlready) {
+  std::size_t logged = 0;
+  for (const std::uint64_t bytes : {kInWal, std::uint64_t{0}}) {
+    store_.report(10);
+    test::Stranger(store_.file()).run("PRAGMA wal_checkpoint(PASSIVE)");
+    fs::resize_file(store_.wal(), bytes);
+    EXPECT_TRUE(store_.status_becomes([&](const ServerStatus&) {
+      return store_.cell().log().find("is the file again", logged) != std::string::npos;
+    }));
+    const std::string log = store_.cell().log().substr(logged);
+    EXPECT_NE(log.find("bytes; the store itself has all reports"), std::string::npos) << log;
+    logged += log.size();
+  }
+  expect_all_when_it_goes_on();
+}
+
+TEST(StoreThatIsLost, AnswersReportsWhileItIsBeingSaved) {
+  const test::TemporaryDirectory folder;
+  const store::RobotRecord robot = test::make_robot("panda", 1);
+  std::promise<void> saved, may_go_on;
+  const auto log = [&, goes_on = may_go_on.get_future().share()](std::string_view line) {
+    if (line.find("all of it is in '") == std::string_view::npos)
+      return;
+    saved.set_value();
+    goes_on.wait();
+  };
+  const auto store = store::open_sqlite_store(
+      folder / "store.db",
+      {.retry_after = std::chrono::milliseconds(1), .scrub_bytes_per_s = 0, .log = log});
+  ASSERT_TRUE(store->register_robot(robot));
+  fs::remove(folder / "store.db");
+  saved.get_future().wait();
+  auto answer = std::async(std::launch::async, [&] {
+    return test::report(*store, {test::make_attempt(robot.digest, "shelf", 1)}).at(0);
+  });
+  EXPECT_EQ(answer.wait_for(test::Cell::kEnough), std::future_status::ready);
+  may_go_on.set_value();
+  EXPECT_EQ(answer.get().status, ReceiptStatus::TryAgain);
 }
 
 // --- at the start ---

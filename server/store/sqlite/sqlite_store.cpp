@@ -64,11 +64,11 @@ class SqliteStore : public SqlStore {
         lock_(lock_for_serving(file_, options.new_store)),
         history_(file_),
         readers_(file_),
-        watch_(file_, lock_, readers_, options.log),
+        watch_(file_, lock_, readers_, history_, options.log),
         space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
     std::unique_ptr<Database> database = open_writer(file_);
     history_.begin_run(*database);
-    watch_.note_opened();
+    watch_.note_opened(*database);
     for (const std::string& line : mend_indexes(*database))
       if (options.log)
         options.log(line);
@@ -78,7 +78,7 @@ class SqliteStore : public SqlStore {
             .retry_after = options.retry_after,
             .checkpoint_bytes = options.checkpoint_bytes,
             .max_wal_bytes = options.max_wal_bytes,
-            .look = [this](Database& /*writing*/) { watch_.require_named(); },
+            .look = [this](Database& writing, LookAt what) { watch_.require_named(writing, what); },
             .lost = [this](std::unique_ptr<Database> lost) { watch_.keep(std::move(lost)); }});
     scrub_ = std::make_unique<Scrub>(readers_, *writer_,
                                      ScrubOptions{options.scrub_bytes_per_s, options.log});
@@ -343,7 +343,7 @@ class SqliteStore : public SqlStore {
       watch_.require_named_closed();
       std::unique_ptr<Database> database = reopen_writer(file_);
       history_.begin_run(*database);
-      watch_.note_opened();
+      watch_.note_opened(*database);
       readers_.resume();
       return database;
     } catch (const NotTheFile&) {

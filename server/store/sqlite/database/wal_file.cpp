@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -56,6 +58,39 @@ void make_wal_durable(const std::filesystem::path& file) {
       throw Failure(ErrorCode::Storage,
                     "'" + name + "' cannot be made durable: " + error.reason_text());
   }
+}
+
+std::optional<WalIndex> read_wal_index(Database& database) {
+  constexpr int kRegion = 32768, kMethodsWithShm = 2;
+  constexpr std::size_t kHeader = 48, kMoved = 96, kMoving = 128, kEnd = 136;
+  constexpr std::uint32_t kVersion = 3'007'000;
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(&database.connection(), "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  volatile void* shared = nullptr;
+  if (file == nullptr || file->pMethods == nullptr || file->pMethods->iVersion < kMethodsWithShm ||
+      file->pMethods->xShmMap(file, 0, kRegion, 0, &shared) != SQLITE_OK || shared == nullptr)
+    return std::nullopt;
+  std::array<char, kEnd> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<const volatile char*>(shared)[i];
+  const auto word = [&](std::size_t place) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, &bytes[place], sizeof value);
+    return value;
+  };
+  std::uint16_t page_bytes = 0;  // 65536 does not fit
+  std::memcpy(&page_bytes, &bytes[14], sizeof page_bytes);
+  if (word(0) != kVersion || std::memcmp(bytes.data(), &bytes[kHeader], kHeader) != 0)
+    return std::nullopt;
+  WalIndex index{.frames = word(16),
+                 .checksum = {word(24), word(28)},
+                 .page_bytes = page_bytes == 1 ? 65536U : page_bytes,
+                 .moved = word(kMoved),
+                 .moving = word(kMoving)};
+  std::memcpy(index.salts.data(), &bytes[32], index.salts.size());
+  if (index.page_bytes == 0)
+    return std::nullopt;
+  return index;
 }
 
 bool checkpoint(Database& database, CheckpointKind kind) {

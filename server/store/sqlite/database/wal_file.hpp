@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/files/wal_frames.hpp"
 
 namespace kinship::store {
 
@@ -13,6 +15,10 @@ namespace kinship::store {
 /// writing. Other programs do not write meanwhile: it holds SQLite's lock.
 /// \throws Failure(Storage), SqliteError; the WAL reads as before then.
 void make_wal_durable(const std::filesystem::path& file);
+
+/// The wal-index as this connection and all others share it, in a few copies of memory. Nothing
+/// while another program writes it, or in a format that is not known.
+std::optional<WalIndex> read_wal_index(Database& database);
 
 enum class CheckpointKind {
   Passive,  ///< as far as possible without waiting for readers

@@ -198,7 +198,7 @@ void Writer::write(Items& items) {
       transaction.commit();
     }
     if (options_.look)
-      options_.look(*database_);
+      options_.look(*database_, LookAt::Ends);
     if (is_busy_)
       note_busy("");
   } catch (const Failure& failure) {
@@ -281,7 +281,7 @@ std::optional<Error> Writer::write_alone(WriteItem& item) {
       batch.raise_generations();
       transaction.commit();
       if (options_.look)
-        options_.look(*database_);
+        options_.look(*database_, LookAt::Ends);
       return error;
     } catch (const Failure& failure) {
       if (!is_of_batch(failure) && !is_busy(failure))
@@ -311,9 +311,17 @@ void Writer::note_busy(const std::string& trouble) {
 }
 
 void Writer::fail(const Failure& failure) {
+  const bool is_lost = dynamic_cast<const NotTheFile*>(&failure) != nullptr;
+  if (database_ && options_.look && !is_lost)
+    try {
+      options_.look(*database_, LookAt::All);
+    } catch (const NotTheFile& cause) {
+      return fail(cause);
+    } catch (const Failure&) {  // no more than is known
+    }
   if (database_)  // nothing more is written by this connection, a checkpoint at its end neither
     sqlite3_db_config(&database_->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
-  if (database_ && options_.lost && dynamic_cast<const NotTheFile*>(&failure) != nullptr)
+  if (database_ && options_.lost && is_lost)
     options_.lost(std::move(database_));
   database_.reset();
   const std::lock_guard lock(mutex_);
@@ -330,7 +338,7 @@ void Writer::look() {
     return;
   try {
     if (options_.look)
-      options_.look(*database_);
+      options_.look(*database_, LookAt::Ends);
     if (is_busy_) {
       wait_for_lock(*database_, false);
       const Transaction probe(*database_, Transaction::Kind::Write);
@@ -386,6 +394,8 @@ void Writer::checkpoint_if_needed() {
     const std::uint64_t bytes = static_cast<std::uint64_t>(wal_pages_) * frame_bytes_;
     const bool full = bytes > options_.max_wal_bytes;
     if (full || bytes >= options_.checkpoint_bytes) {
+      if (options_.look)
+        options_.look(*database_, LookAt::All);
       wait_for_lock(*database_, false);  // reports would wait as well
       const bool done =
           checkpoint(*database_, full ? CheckpointKind::Whole : CheckpointKind::Passive);
@@ -403,9 +413,13 @@ void Writer::close() {
   if (!database_)
     return;
   try {
+    if (options_.look)
+      options_.look(*database_, LookAt::All);
     wait_for_lock(*database_, false);
     checkpoint(*database_, CheckpointKind::Whole);
-  } catch (const SqliteError&) {
+  } catch (const NotTheFile& failure) {
+    fail(failure);
+  } catch (const Failure&) {
     // All is durable in the WAL already; the next start checkpoints it.
   }
   database_.reset();

@@ -50,6 +50,12 @@ class Batch {
   std::map<std::pair<std::int64_t, std::int64_t>, bool> changed_;  // task, robot -> retired
 };
 
+/// How much of the files a look reads.
+enum class LookAt {
+  Ends,  ///< a few bytes, and a share of the WAL
+  All    ///< every frame of the WAL
+};
+
 /// A write in the queue. apply() and finish() run on the writer's thread.
 class WriteItem {
  public:
@@ -73,8 +79,9 @@ struct WriterOptions {
   std::uint64_t checkpoint_bytes = std::uint64_t{32} << 20U;  ///< of the WAL, to checkpoint it
   std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;    ///< see Writer::wal_full()
   /// Throws Failure if the connection's files are not those of the store any more. Called after
-  /// each commit, before its items are finished, and so often meanwhile; may be empty.
-  std::function<void(Database&)> look = {};
+  /// each commit, before its items are finished, and so often meanwhile, and looks at all before a
+  /// checkpoint, and after another failure, to find its cause; may be empty.
+  std::function<void(Database&, LookAt)> look = {};
   std::chrono::milliseconds look_every{250};
   /// Takes the connection, when the look threw NotTheFile, to save what it has once the items are
   /// finished; it is closed otherwise.

@@ -48,6 +48,11 @@ std::string descriptor_of(const files::File& file) {
 
 }  // namespace
 
+bool is_of_content(StoreChange change) {
+  return change == StoreChange::Truncated || change == StoreChange::Overwritten ||
+         change == StoreChange::WalDamaged || change == StoreChange::WalSpent;
+}
+
 NamedStore::NamedStore(fs::path file, const files::File& open)
     : file_(std::move(file)),
       wal_(file_.string() + "-wal"),

@@ -24,9 +24,15 @@ enum class StoreChange {
   FolderGone,   ///< the file is whole in its folder, to which its name no longer leads
   FileGone,     ///< the name leads to no file, or to another one
   Truncated,    ///< the file lost its end
+  Overwritten,  ///< the file has other bytes than SQLite wrote
   WalGone,      ///< no WAL has the name
   WalReplaced,  ///< another file has the name of the WAL
+  WalDamaged,   ///< the WAL lost transactions, or has other bytes than SQLite wrote
+  WalSpent,     ///< the same, but all of them are in the file already
 };
+
+/// Whether the files themselves were changed, not what their names lead to.
+bool is_of_content(StoreChange change);
 
 /// Whether the names of an open store (FILE, FILE-wal) still lead to the files that are open: to be
 /// asked again and again, each time a few calls of the system. A name may be taken from a file at
@@ -50,6 +56,11 @@ class NamedStore {
   Finding look();
   /// Before it is opened again: a WAL that is missing or empty is none, then.
   Finding look_closed();
+
+  const files::File& file() const noexcept { return *open_; }
+  /// As it was opened; null if it had no name then.
+  const files::File* wal() const noexcept { return log_ ? &*log_ : nullptr; }
+  const std::filesystem::path& wal_path() const noexcept { return wal_; }
 
   /// Whether any name leads to the file: it was moved, not removed.
   bool has_name() const;

@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -32,6 +33,16 @@ void require_not_moving(Database& database, const std::filesystem::path& file) {
                       read_setting(database, kMovedTo));
 }
 
+/// After a crash SQLite does not know which frames of the WAL the file has, and nobody else does,
+/// until a checkpoint.
+void move_frames(Database& database) {
+  try {
+    checkpoint(database, CheckpointKind::Passive);
+  } catch (const SqliteError&) {
+    // No room: the WAL still has all.
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
@@ -41,6 +52,7 @@ std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
   require_not_moving(*database, file);
   configure_writer(*database);
+  move_frames(*database);
   files::sync_folder_of(file);  // SQLite drops errors of that
   return database;
 }

@@ -145,6 +145,11 @@ Uuid History::epoch() const {
   return state_.log.epoch();
 }
 
+std::uint64_t History::position() const {
+  const std::lock_guard lock(mutex_);
+  return state_.position;
+}
+
 StorePoint History::point() const {
   Digest key;
   Uuid epoch;

@@ -44,6 +44,7 @@ class History {
 
   Uuid epoch() const;
   StorePoint point() const;
+  std::uint64_t position() const;  ///< of the last attempt that is durable
   bool has_lost(const ConsistencyToken& token) const;
 
   std::uint64_t rollbacks() const;  ///< noticed by this object

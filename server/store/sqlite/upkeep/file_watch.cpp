@@ -1,71 +1,27 @@
 #include "server/store/sqlite/upkeep/file_watch.hpp"
 
-#include <fcntl.h>
-
 #include <exception>
-#include <new>
 #include <utility>
-#include <vector>
-
-#include "server/store/sqlite/database/online_backup.hpp"
-#include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/database/wal_file.hpp"
-#include "server/store/sqlite/files/leftovers.hpp"
-#include "server/store/sqlite/files/store_file.hpp"
 
 namespace kinship::store {
-namespace {
-
-namespace fs = std::filesystem;
-
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-
-/// Whether the file itself, wherever it is now, has everything.
-bool fold_wal(Database& writer) {
-  try {
-    return checkpoint(writer, CheckpointKind::Whole);
-  } catch (const SqliteError&) {
-    return false;  // the copy reads the WAL
-  }
-}
-
-/// Copies what a connection reads; no file of the name is touched.
-/// \return why it cannot; empty: done.
-std::string try_copy(Database& source, const fs::path& target) {
-  try {
-    const files::File made(target, O_RDWR | O_CREAT | O_EXCL, 0600);
-  } catch (const files::FileError& error) {
-    return error.what();
-  }
-  std::error_code none;
-  try {
-    copy_database(source, target, [](double) {});
-    files::sync_file(target);
-    files::sync_folder_of(target);
-    return {};
-  } catch (const Failure& failure) {
-    fs::remove(target, none);
-    return quoted(target) + ": " + failure.what();
-  } catch (const std::bad_alloc&) {
-    fs::remove(target, none);
-    throw;
-  }
-}
-
-}  // namespace
-
-FileWatch::FileWatch(fs::path file, const StoreLock& lock, ReaderPool& readers,
-                     std::function<void(std::string_view)> log)
+FileWatch::FileWatch(std::filesystem::path file, const StoreLock& lock, ReaderPool& readers,
+                     const History& history, std::function<void(std::string_view)> log)
     : file_(std::move(file)),
       readers_(readers),
+      history_(history),
       log_(std::move(log)),
       named_(file_, lock.file().value()) {}
 
 FileWatch::~FileWatch() {
-  next_try_ = {};
   try {
-    if (lost_)
-      save_lost(named_.look());
+    if (saving_.valid())
+      take_saved();
+    if (!lost_)
+      return;
+    if (const NamedStore::Finding found = find(); found.change != StoreChange::None) {
+      begin_saving(found);
+      take_saved();
+    }
   } catch (const std::exception&) {
     // The log has what could not be saved, as of the try before.
   }
@@ -82,7 +38,8 @@ void FileWatch::log(const std::string& line) const {
 }
 
 void FileWatch::tell(const NamedStore::Finding& found, const std::string& saved) {
-  std::string trouble = quoted(file_) + " is not the file any more: " + found.text + "; " + saved;
+  std::string trouble =
+      "'" + file_.string() + "' is not the file any more: " + found.text + "; " + saved;
   {
     const std::lock_guard lock(mutex_);
     if (trouble == trouble_)
@@ -92,15 +49,27 @@ void FileWatch::tell(const NamedStore::Finding& found, const std::string& saved)
   log("not writable: " + trouble);
 }
 
-void FileWatch::note_opened() { named_.note_opened(); }
-
-void FileWatch::require_named() {
-  const NamedStore::Finding found = named_.look();
-  if (found.change == StoreChange::None)
-    return;
-  tell(found, "what can be saved of it is being saved");
+void FileWatch::refuse() {
   readers_.refuse(trouble());
   throw NotTheFile(trouble());
+}
+
+void FileWatch::note_opened(Database& writing) {
+  named_.note_opened();
+  content_.begin();
+  content_.look(writing, named_, LookAt::Ends);
+}
+
+void FileWatch::require_named(Database& writing, LookAt what) {
+  NamedStore::Finding found = named_.look();
+  if (found.change == StoreChange::None)
+    found = content_.look(writing, named_, what);
+  if (found.change == StoreChange::None)
+    return;
+  if (is_of_content(found.change))
+    spoilt_ = found;
+  tell(found, "what can be saved of it is being saved");
+  refuse();
 }
 
 void FileWatch::keep(std::unique_ptr<Database> lost) {
@@ -108,14 +77,26 @@ void FileWatch::keep(std::unique_ptr<Database> lost) {
   next_try_ = {};
 }
 
+/// A file that is back has all itself, unless its content is what changed.
+NamedStore::Finding FileWatch::find() {
+  if (spoilt_)
+    return *spoilt_;
+  return lost_ ? named_.look() : named_.look_closed();
+}
+
 void FileWatch::require_named_closed() {
-  if (lost_)
-    save_lost(named_.look());
-  const NamedStore::Finding found = lost_ ? named_.look() : named_.look_closed();
-  if (found.change != StoreChange::None) {
+  constexpr std::chrono::milliseconds kShort{100};  // most savings end within it
+  if (const NamedStore::Finding found = find(); lost_ && !saving_.valid() &&
+                                                found.change != StoreChange::None &&
+                                                std::chrono::steady_clock::now() >= next_try_)
+    begin_saving(found);
+  if (saving_.valid() && saving_.wait_for(kShort) == std::future_status::timeout)
+    refuse();
+  if (saving_.valid())
+    take_saved();
+  if (const NamedStore::Finding found = find(); found.change != StoreChange::None) {
     tell(found, saved_.empty() ? "it was closed before, so that nothing could be saved" : saved_);
-    readers_.refuse(trouble());
-    throw NotTheFile(trouble());
+    refuse();
   }
   lost_.reset();
   saved_.clear();
@@ -125,68 +106,29 @@ void FileWatch::require_named_closed() {
       return;
     trouble_.clear();
   }
-  log(quoted(file_) + " is the file again");
+  log("'" + file_.string() + "' is the file again");
 }
 
-/// A file that is back has all itself.
-void FileWatch::save_lost(const NamedStore::Finding& found) {
+void FileWatch::begin_saving(const NamedStore::Finding& found) {
+  const LostStore store{file_, named_, found.change, content_.index(), history_.position()};
+  // Without a thread, on the one that takes what was saved.
+  saving_ = std::async(std::launch::async | std::launch::deferred, [this, found, store] {
+    Rescue saved = rescue(*lost_, store);
+    tell(found, saved.text);
+    return saved;
+  });
+}
+
+void FileWatch::take_saved() {
   constexpr std::chrono::seconds kPause{3};
-  if (found.change == StoreChange::None || std::chrono::steady_clock::now() < next_try_)
-    return;
-  saved_ = save(found);
-  tell(found, saved_);
   next_try_ = std::chrono::steady_clock::now() + kPause;
-}
-
-/// Closes the connection once all is saved. \return what was saved, and what to do.
-std::string FileWatch::save(const NamedStore::Finding& found) {
-  if (found.change == StoreChange::FolderGone) {
-    lost_.reset();
-    return "bring the folder back, and kinshipd goes on";
-  }
-  const bool is_whole = found.change != StoreChange::Truncated && fold_wal(*lost_);
-  if (found.change == StoreChange::Truncated || !is_whole || !named_.has_name())
-    return copy(found.change);
+  const Rescue saved = saving_.get();
+  saved_ = saved.text;
+  if (!saved.is_saved)
+    return;
   lost_.reset();
-  if (found.change == StoreChange::FileGone)
-    return "all of it is there: put it back, and kinshipd goes on";
-  return "the store itself has all reports" +
-         std::string(found.change == StoreChange::WalReplaced
-                         ? "; put that file away, and kinshipd goes on"
-                         : "");
-}
-
-std::string FileWatch::copy(StoreChange change) {
-  std::vector<fs::path> folders;
-  if (const fs::path folder = named_.folder_now(); !folder.empty())
-    folders.push_back(folder);
-  for (fs::path folder = file_.parent_path(); folder.has_relative_path();
-       folder = folder.parent_path())
-    folders.push_back(folder);
-  return copy_into(folders, change);
-}
-
-std::string FileWatch::copy_into(const std::vector<fs::path>& folders, StoreChange change) {
-  const std::string name = file_.filename().string() + ".rescued-" + time_stamp();
-  std::string why;
-  for (const fs::path& folder : folders) {
-    const std::string failed = try_copy(*lost_, folder / name);
-    if (!failed.empty()) {
-      why += (why.empty() ? "" : "; ") + failed;
-      continue;
-    }
-    lost_.reset();
-    const std::string copy = quoted(folder / name);
-    const std::string restore =
-        "'kinshipd restore --store " + file_.string() + " " + (folder / name).string() + "'";
-    if (change == StoreChange::Truncated)
-      return "what is left of it is in " + copy + ": stop kinshipd, 'kinshipd repair --store " +
-             (folder / name).string() + "', then " + restore;
-    return "all of it is in " + copy + ": put the file back, and kinshipd goes on, or stop it, " +
-           restore;
-  }
-  return "nothing could be saved yet: " + why + "; make room, it is tried again every 3 s; until " +
-         "kinshipd ends " + named_.open_files() + " have what is left";
+  if (saved.is_in_file && spoilt_ && spoilt_->change == StoreChange::WalSpent)
+    spoilt_.reset();
 }
 
 }  // namespace kinship::store
