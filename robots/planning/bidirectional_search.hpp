@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -235,8 +236,9 @@ class BidirectionalSearch {
   std::optional<Extension> grow(Tree& tree, std::size_t which, Eigen::Index ahead) {
     Eigen::Index asked = 0;
     spent_[0] = steering_.spent();
+    begin(tree, which, ahead);
     for (Eigen::Index i = 0; i < ahead; ++i) {
-      const Beginning& beginning = begin(tree, which, i);
+      const Beginning& beginning = samples_.at(static_cast<std::uint64_t>(i)).beginnings[which];
       if (beginning.is_any) {
         firsts_.col(asked) = beginning.first;
         starts_[static_cast<std::size_t>(asked++)] = i;
@@ -267,22 +269,24 @@ class BidirectionalSearch {
 
   using Beginning = SamplesAhead::Beginning;
 
-  /// The beginning of a tree's extension towards a sample: at the nearest node, towards a target
+  /// The beginnings of a tree's extensions towards samples: at the nearest node, towards a target
   /// beyond the sample.
-  const Beginning& begin(const Tree& tree, std::size_t which, Eigen::Index skipped) {
-    SamplesAhead::Sample& sample = samples_.at(static_cast<std::uint64_t>(skipped));
-    const Eigen::Index near = tree.nearest(sample.q, sample.nearest[which]);
-    Beginning& beginning = sample.beginnings[which];
-    if (beginning.near == near)
-      return beginning;
-    beginning.near = near;
-    beginning.target = (tree.node(near) + options_.overshoot * (sample.q - tree.node(near)))
-                           .cwiseMax(lower_)
-                           .cwiseMin(upper_);
-    const std::uint64_t before = steering_.spent();
-    beginning.is_any = steering_.first_of(tree.node(near), beginning.target, beginning.first);
-    beginning.spent = steering_.spent() - before;
-    return beginning;
+  void begin(const Tree& tree, std::size_t which, Eigen::Index ahead) {
+    std::size_t count = 0;
+    for (Eigen::Index i = 0; i < ahead; ++i) {
+      SamplesAhead::Sample& sample = samples_.at(static_cast<std::uint64_t>(i));
+      const Eigen::Index near = tree.nearest(sample.q, sample.nearest[which]);
+      Beginning& beginning = sample.beginnings[which];
+      if (beginning.near == near)
+        continue;
+      beginning.near = near;
+      beginning.target = (tree.node(near) + options_.overshoot * (sample.q - tree.node(near)))
+                             .cwiseMax(lower_)
+                             .cwiseMin(upper_);
+      begun_[count++] = &beginning;
+    }
+    if (count > 0)
+      steering_.begin(tree, std::span(begun_).first(count));
   }
 
   const ConfigurationSampler& sampler_;
@@ -298,6 +302,7 @@ class BidirectionalSearch {
   std::uint64_t track_checks_ = 0;
   // Of the samples ahead, a column each: kept, so that an iteration allocates nothing.
   Eigen::MatrixXd firsts_{sampler_.bounds().cols(), SamplesAhead::kAhead};
+  std::array<Beginning*, SamplesAhead::kAhead> begun_{};
   std::array<Eigen::Index, SamplesAhead::kAhead> starts_{};      // samples that have a first one
   std::array<std::uint64_t, SamplesAhead::kAhead + 1> spent_{};  // before each sample, after all
   Eigen::VectorXd tip_;

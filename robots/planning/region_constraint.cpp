@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -36,10 +37,25 @@ double beyond(double value, double lower, double upper) {
   return value > upper ? value - upper : std::min(value - lower, 0.0);
 }
 
+/// Joint after joint, kSideBySide values each; behind the last column it is repeated.
+struct LaneConfigurations {
+  explicit LaneConfigurations(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+    for (Eigen::Index joint = 0; joint < qs.rows(); ++joint)
+      for (Eigen::Index lane = 0; lane < kSideBySide; ++lane)
+        values[joint * kSideBySide + lane] =
+            static_cast<float>(qs(joint, std::min(lane, qs.cols() - 1)));
+  }
+  alignas(32) float values[kLaneJoints * kSideBySide];
+};
+
+unsigned first_bits(Eigen::Index count) { return (1U << count) - 1; }
+
 constexpr double kRounding = 1e-9;  // joint units
 /// Of a stride: a projection that takes back more has met the end of the way along the region.
 constexpr double kMinProgress = 0.2;
 constexpr int kHalvings = 2;
+/// Between two configurations of the region the excess is nearly a parabola: largest midway.
+constexpr double kMostBetween = 0.9 * RegionConstraint::kBetweenTolerance;
 
 }  // namespace
 
@@ -74,6 +90,64 @@ RegionConstraint::RegionConstraint(const kinematics::Chain& chain, const TaskSpa
   R_end_ = T.linear();
   p_end_ = T.translation();
   tilt_ = tilt();
+  fill_lanes();
+}
+
+void RegionConstraint::fill_lanes() {
+  const auto put = [](const Eigen::Matrix3d& R, const Eigen::Vector3d& p, float* R_lane,
+                      float* p_lane) {
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      p_lane[row] = static_cast<float>(p[row]);
+      for (Eigen::Index column = 0; column < 3; ++column)
+        R_lane[3 * row + column] = static_cast<float>(R(row, column));
+    }
+  };
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    LaneRegion::Joint& joint = lanes_.joints[i];
+    put(segments_[i].R, segments_[i].p, joint.R, joint.p);
+    joint.slides = segments_[i].prismatic;
+    const auto column = bounds_.col(static_cast<Eigen::Index>(i));
+    lanes_.least[i] = std::nextafter(static_cast<float>(column[0]), kInfinity);  // inside
+    lanes_.most[i] = std::nextafter(static_cast<float>(column[1]), -kInfinity);
+  }
+  lanes_.dof = static_cast<int>(segments_.size());
+  put(R_end_, p_end_, lanes_.R_end, lanes_.p_end);
+  for (int i = 0; i < 6; ++i) {
+    lanes_.lower[i] = static_cast<float>(region_bounds_(0, i));
+    lanes_.upper[i] = static_cast<float>(region_bounds_(1, i));
+    lanes_.margin[i] = static_cast<float>(margin_[i]);
+    if (std::isfinite(region_bounds_(0, i)) || std::isfinite(region_bounds_(1, i)))
+      lanes_.rows[lanes_.row_count++] = i;
+  }
+  lanes_.has_place = lanes_.row_count > 0 && lanes_.rows[0] < 3;
+  lanes_.aimed_squared = static_cast<float>(kAimed * kAimed);
+  lanes_.squared_damping = static_cast<float>(kSquaredDamping);
+  lanes_.least_cosine = static_cast<float>(kMinCosine);
+}
+
+unsigned RegionConstraint::project_together(Eigen::Ref<Eigen::MatrixXd> qs) const {
+  if (qs.cols() == 0)
+    return 0;
+  LaneConfigurations lanes(qs);
+  const unsigned arrived = fastest_region_kernels().project(lanes_, lanes.values);
+  for (Eigen::Index lane = 0; lane < qs.cols(); ++lane)
+    for (Eigen::Index joint = 0; joint < qs.rows(); ++joint)
+      qs(joint, lane) = lanes.values[joint * kSideBySide + lane];
+  return arrived & first_bits(qs.cols());
+}
+
+unsigned RegionConstraint::hold_together(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                         double distance) const {
+  if (qs.cols() == 0)
+    return 0;
+  const LaneConfigurations lanes(qs);
+  float squared[kSideBySide];
+  fastest_region_kernels().measure(lanes_, lanes.values, squared);
+  unsigned within = 0;
+  for (Eigen::Index lane = 0; lane < qs.cols(); ++lane)
+    within |= squared[lane] <= static_cast<float>(distance * distance) ? 1U << lane : 0U;
+  return within;
 }
 
 std::shared_ptr<const RegionTilt> RegionConstraint::tilt() const {
@@ -215,12 +289,63 @@ bool RegionConstraint::project(Eigen::VectorXd& q) {
 ConstrainedStepper::ConstrainedStepper(double step, RegionConstraint& constraint)
     : step_(step), constraint_(constraint) {}
 
+bool ConstrainedStepper::is_step(const Eigen::Ref<const Eigen::VectorXd>& q,
+                                 const Eigen::Ref<const Eigen::VectorXd>& next,
+                                 const Eigen::Ref<const Eigen::VectorXd>& target,
+                                 double stride) const {
+  const double made = (next - q).norm();
+  return made >= kMinProgress * stride && made <= step_ + kRounding &&
+         (next - target).norm() < (q - target).norm() - kRounding;
+}
+
+unsigned ConstrainedStepper::advance_together(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                              const Eigen::Ref<const Eigen::MatrixXd>& targets,
+                                              Eigen::Ref<Eigen::MatrixXd> next) {
+  for (Eigen::Index i = 0; i < qs.cols(); ++i) {
+    const double distance = (targets.col(i) - qs.col(i)).norm();
+    next.col(i) = qs.col(i) + std::min(step_ / distance, 1.0) * (targets.col(i) - qs.col(i));
+  }
+  constraint_.set_projections(constraint_.projections() + static_cast<std::uint64_t>(qs.cols()));
+  unsigned steps = constraint_.project_together(next);
+  for (Eigen::Index i = 0; i < qs.cols(); ++i) {
+    const double stride = std::min(step_, (targets.col(i) - qs.col(i)).norm());
+    if (!is_step(qs.col(i), next.col(i), targets.col(i), stride))
+      steps &= ~(1U << i);
+  }
+  middles_.resize(qs.rows(), kSideBySide);
+  middles_.leftCols(qs.cols()) = 0.5 * (qs + next);
+  return steps & constraint_.hold_together(middles_.leftCols(qs.cols()), kMostBetween);
+}
+
+Eigen::Index ConstrainedStepper::advance_ahead(const Eigen::VectorXd& q,
+                                               const Eigen::VectorXd& target,
+                                               Eigen::Ref<Eigen::MatrixXd> steps) {
+  const double distance = (target - q).norm();
+  const Eigen::Index count = std::min<Eigen::Index>(
+      kSideBySide, static_cast<Eigen::Index>(std::ceil(distance / step_ - kRounding)));
+  for (Eigen::Index i = 0; i < count; ++i)
+    steps.col(i) = q + std::min(static_cast<double>(i + 1) * step_ / distance, 1.0) * (target - q);
+  const unsigned arrived = constraint_.project_together(steps.leftCols(count));
+  Eigen::Index made = 0;
+  middles_.resize(q.size(), kSideBySide);
+  for (; made < count && (arrived >> made & 1U) != 0; ++made) {
+    const Eigen::Ref<const Eigen::VectorXd> last =
+        made == 0 ? Eigen::Ref<const Eigen::VectorXd>(q) : steps.col(made - 1);
+    const double stride = std::min(step_, distance - static_cast<double>(made) * step_);
+    if (!is_step(last, steps.col(made), target, stride))
+      break;
+    middles_.col(made) = 0.5 * (last + steps.col(made));
+  }
+  const unsigned held = constraint_.hold_together(middles_.leftCols(made), kMostBetween);
+  made = std::min<Eigen::Index>(made, std::countr_one(held));
+  constraint_.set_projections(constraint_.projections() + static_cast<std::uint64_t>(made));
+  return made;
+}
+
 bool ConstrainedStepper::within_tolerance_between(const Eigen::VectorXd& q,
                                                   const Eigen::VectorXd& other) {
-  // Between two configurations of the region the excess is nearly a parabola: largest midway.
-  constexpr double kMargin = 0.9;
   middle_ = 0.5 * (q + other);
-  return constraint_.distance(middle_) <= kMargin * RegionConstraint::kBetweenTolerance;
+  return constraint_.distance(middle_) <= kMostBetween;
 }
 
 bool ConstrainedStepper::joins(const Eigen::VectorXd& q, const Eigen::VectorXd& other) {

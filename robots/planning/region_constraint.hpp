@@ -10,6 +10,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/task_space_region.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/region_lanes.hpp"
 
 namespace kinship::planning {
 
@@ -57,12 +58,26 @@ class RegionConstraint {
   /// \return false if it did not converge; q is then anywhere within the bounds.
   bool project(Eigen::VectorXd& q);
 
+  /// Some configurations side by side, as project() but to single precision and with fewer
+  /// iterations: enough for those that are near the region. Each column as if it were alone, alike
+  /// on all machines. Counts nothing.
+  /// \param qs  dof x n, n <= kSideBySide; columns that did not arrive are anywhere in the bounds.
+  /// \return    a bit for each that arrived.
+  unsigned project_together(Eigen::Ref<Eigen::MatrixXd> qs) const;
+
+  /// \param qs  dof x n, n <= kSideBySide.
+  /// \return    a bit for each that is at most so far outside the region, to single precision.
+  unsigned hold_together(const Eigen::Ref<const Eigen::MatrixXd>& qs, double distance) const;
+
+  const LaneRegion& lanes() const noexcept { return lanes_; }  ///< as the kernels take it
+
   std::uint64_t projections() const noexcept { return projections_; }
   /// For a caller that projects ahead and counts only the projections it needed.
   void set_projections(std::uint64_t projections) noexcept { projections_ = projections; }
 
  private:
   static constexpr int kMaxJoints = static_cast<int>(kMaxDof);
+  static_assert(kLaneJoints >= kMaxJoints);
   using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints>;
 
   /// A joint whose axis is the z-axis of its frame.
@@ -79,6 +94,7 @@ class RegionConstraint {
     Eigen::Vector3d p;
   };
 
+  void fill_lanes();
   /// Not null if only roll and pitch are bounded.
   std::shared_ptr<const RegionTilt> tilt() const;
   void sweep(const Eigen::VectorXd& q, Sweep& along) const;
@@ -93,6 +109,7 @@ class RegionConstraint {
   Eigen::Matrix<double, 2, 6> region_bounds_;
   Vector6 margin_;  // how far inside its bounds a coordinate is aimed at
   Eigen::Matrix2Xd bounds_;
+  LaneRegion lanes_{};
   std::shared_ptr<const RegionTilt> tilt_;  // shared by copies; immutable
   std::uint64_t projections_ = 0;
 };
@@ -112,6 +129,20 @@ class ConstrainedStepper {
   /// \return   false if no progress is possible.
   bool advance(const Eigen::VectorXd& q, const Eigen::VectorXd& target, Eigen::VectorXd& next);
 
+  /// As advance() from some configurations towards their targets, side by side and without shorter
+  /// steps. Counts a projection for each.
+  /// \param qs, targets  dof x n, n <= kSideBySide. \param next  dof x n, out.
+  /// \return a bit for each that made its step; for the others advance() may know a shorter one.
+  unsigned advance_together(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                            const Eigen::Ref<const Eigen::MatrixXd>& targets,
+                            Eigen::Ref<Eigen::MatrixXd> next);
+
+  /// Some steps towards a target at once, as a repeated advance() may make them: the configurations
+  /// of a straight line, projected side by side. Counts a projection for each step.
+  /// \param steps  dof x kSideBySide, out. \return how many; 0: advance() may know a shorter one.
+  Eigen::Index advance_ahead(const Eigen::VectorXd& q, const Eigen::VectorXd& target,
+                             Eigen::Ref<Eigen::MatrixXd> steps);
+
   /// All configurations from `from` to `to`, both of which hold the constraint, in such steps.
   /// Not checked for collisions.
   /// \return dof x n, n >= 1; empty if the way gets stuck.
@@ -127,9 +158,16 @@ class ConstrainedStepper {
  private:
   bool within_tolerance_between(const Eigen::VectorXd& q, const Eigen::VectorXd& other);
 
+  /// Whether a projected configuration is a step on the way. \param stride  before its projection.
+  bool is_step(const Eigen::Ref<const Eigen::VectorXd>& q,
+               const Eigen::Ref<const Eigen::VectorXd>& next,
+               const Eigen::Ref<const Eigen::VectorXd>& target, double stride) const;
+
   double step_;
   RegionConstraint& constraint_;
-  Eigen::VectorXd middle_;  // kept, so that a step allocates nothing
+  // Kept, so that a step allocates nothing.
+  Eigen::VectorXd middle_;
+  Eigen::MatrixXd middles_;
 };
 
 }  // namespace kinship::planning

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "robots/planning/bidirectional_search.hpp"
 #include "robots/planning/region_constraint.hpp"
@@ -22,14 +22,13 @@ class StraightSteering {
     return set_out(tree.node(from), target) ? go(tree, from, 1, budget) : Extension{from, true};
   }
 
-  /// The first configuration of an extension, before any check. \return false: none, the target is
-  /// the origin.
-  bool first_of(const Eigen::Ref<const Eigen::VectorXd>& origin,
-                const Eigen::Ref<const Eigen::VectorXd>& target, Eigen::VectorXd& first) {
-    if (!set_out(origin, target))
-      return false;
-    write(1, first);
-    return true;
+  /// Completes beginnings of extensions, whose node and target are known, before any check.
+  void begin(const Tree& tree, std::span<SamplesAhead::Beginning* const> beginnings) {
+    for (SamplesAhead::Beginning* const beginning : beginnings) {
+      beginning->is_any = set_out(tree.node(beginning->near), beginning->target);
+      if (beginning->is_any)
+        write(1, beginning->first);
+    }
   }
 
   /// An extension towards a sample whose first configuration is known and free.
@@ -103,7 +102,9 @@ class ConstrainedSteering {
         q_(dof),
         next_(dof),
         target_(dof),
-        way_(dof, kTogether) {}
+        way_(dof, kTogether),
+        origins_(dof, kSideBySide),
+        targets_(dof, kSideBySide) {}
 
   Extension extend(Tree& tree, Eigen::Index from, const Eigen::Ref<const Eigen::VectorXd>& target,
                    Aim aim, PlanningBudget& budget) {
@@ -112,16 +113,28 @@ class ConstrainedSteering {
     return go(tree, from, aim, budget);
   }
 
-  /// The first configuration of an extension towards a sample, before any check.
-  /// \return false: there is none.
-  bool first_of(const Eigen::Ref<const Eigen::VectorXd>& origin,
-                const Eigen::Ref<const Eigen::VectorXd>& target, Eigen::VectorXd& first) {
-    q_ = origin;
-    target_ = target;
-    if (q_ == target_ || !stepper_.advance(q_, target_, next_))
-      return false;
-    first = next_;
-    return true;
+  /// Completes beginnings of extensions, whose node and target are known, before any check: the
+  /// first steps of all are projected side by side.
+  void begin(const Tree& tree, std::span<SamplesAhead::Beginning* const> beginnings) {
+    const auto count = static_cast<Eigen::Index>(beginnings.size());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      origins_.col(i) = tree.node(beginnings[static_cast<std::size_t>(i)]->near);
+      targets_.col(i) = beginnings[static_cast<std::size_t>(i)]->target;
+    }
+    const unsigned made = stepper_.advance_together(origins_.leftCols(count),
+                                                    targets_.leftCols(count), way_.leftCols(count));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      SamplesAhead::Beginning& beginning = *beginnings[static_cast<std::size_t>(i)];
+      beginning.first = way_.col(i);
+      beginning.is_any = (made >> i & 1U) != 0;
+      beginning.spent = 1;
+      if (beginning.is_any || origins_.col(i) == targets_.col(i))
+        continue;
+      const std::uint64_t before = spent();
+      q_ = origins_.col(i);
+      beginning.is_any = stepper_.advance(q_, beginning.target, beginning.first);
+      beginning.spent += spent() - before;
+    }
   }
 
   /// An extension towards a sample whose first configuration is known and free.
@@ -140,46 +153,56 @@ class ConstrainedSteering {
  private:
   enum class Next { Further, Arrived, Stuck };
 
-  /// From q_ on. The steps are known before any check, so a few are checked together, more and
-  /// more: those behind one that is not free were projected in vain.
+  /// From q_ on. The steps are known before any check, so some are projected and checked together:
+  /// those behind one that is not free were projected in vain.
   Extension go(Tree& tree, Eigen::Index from, Aim aim, PlanningBudget& budget) {
-    constexpr Eigen::Index kFirst = 2;
-    for (Eigen::Index together = kFirst;; together = std::min(2 * together, kTogether)) {
-      Eigen::Index count = 0;
-      Next next = Next::Further;
-      while (count < together && (next = step(aim)) == Next::Further) {
-        way_.col(count) = q_;
-        spent_[static_cast<std::size_t>(count++)] = spent();
-      }
-      const Eigen::Index free = count == 0 ? 0 : budget.free_ahead(way_.leftCols(count));
+    for (;;) {
+      const std::uint64_t before = spent();
+      const Steps steps = ahead(aim);
+      const Eigen::Index free =
+          steps.count == 0 ? 0 : budget.free_ahead(way_.leftCols(steps.count));
       for (Eigen::Index i = 0; i < free; ++i)
         from = tree.add(way_.col(i), from);
-      if (free < count) {
-        set_spent(spent_[static_cast<std::size_t>(free)]);
+      if (free < steps.count) {
+        set_spent(std::min(spent(), before + static_cast<std::uint64_t>(free) + 1));
         return {from, false};
       }
-      if (next != Next::Further)
-        return {from, next == Next::Arrived};
+      if (steps.next != Next::Further)
+        return {from, steps.next == Next::Arrived};
     }
   }
 
-  /// Moves q_ on.
-  Next step(Aim aim) {
+  /// What the next steps lead to.
+  struct Steps {
+    Eigen::Index count;  ///< configurations in way_
+    Next next;
+  };
+
+  /// Moves q_ on by some steps, or by a shorter one.
+  Steps ahead(Aim aim) {
     if (q_ == target_)
-      return Next::Arrived;
-    if (aim == Aim::Node && stepper_.joins(q_, target_))
-      next_ = target_;
-    else if (!stepper_.advance(q_, target_, next_))
-      return Next::Stuck;
-    q_.swap(next_);
-    return Next::Further;
+      return {0, Next::Arrived};
+    Eigen::Index count = 0;
+    if (aim == Aim::Sample || !stepper_.joins(q_, target_)) {
+      count = stepper_.advance_ahead(q_, target_, way_.leftCols(kSideBySide));
+      if (count == 0) {
+        if (!stepper_.advance(q_, target_, next_))
+          return {0, Next::Stuck};
+        way_.col(count++) = next_;
+      }
+      q_ = way_.col(count - 1);
+    }
+    if (aim == Aim::Node && stepper_.joins(q_, target_)) {
+      way_.col(count++) = target_;
+      return {count, Next::Arrived};
+    }
+    return {count, Next::Further};
   }
 
   ConstrainedStepper stepper_;
   RegionConstraint& constraint_;
   Eigen::VectorXd q_, next_, target_;  // kept, so that a step allocates nothing
-  Eigen::MatrixXd way_;
-  std::array<std::uint64_t, kTogether> spent_{};  // up to each configuration of the way
+  Eigen::MatrixXd way_, origins_, targets_;
 };
 
 }  // namespace kinship::planning

@@ -62,6 +62,7 @@ BENCHES = [
     bench("collision-meshes", "collision_bench", "A Panda of meshes among boxes, meshes and a camera's points, one thread", ["meshes"], repeats=1),
     bench("planning", "planning_bench", "Uniform BiRRT in a shelf cell", ["free"], repeats=1),
     bench("planning-upright", "planning_bench", "Uniform CBiRRT2 carrying a container upright", ["upright"], repeats=1),
+    bench("constrained", "constrained_bench", "First paths along constraints beside OMPL's constrained spaces, processor time", repeats=1, minutes=15),
     bench("proof", "proof_bench", "Edges proven, beside steps and FCL's continuous collision", ["edges"], repeats=1),
     bench("proof-planning", "proof_bench", "Plans with proven edges, beside steps of 0.05", ["planning"], repeats=1),
     bench("recall", "recall_bench", "Recalled paths in the studies' furniture, CPU time of everything", ["furniture", "ur10e", "panda"], repeats=1,

@@ -266,7 +266,7 @@ TEST(RepetitionRoadmap, CarriesAContainerAsBefore) {
   RegionConstraint constraint = carrying->constraint();
   const IsFree is_free = carrying->is_free();
   const ConstrainedFreedom freedom{is_free, constraint};
-  std::mt19937_64 generator(2);
+  std::mt19937_64 generator(4);
   RoadmapOptions with = options();
   with.tree.step = 0.1;
   const PlanSummary first =
