@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -118,14 +117,14 @@ TEST(RegionLanes, AnswerAlikeOnAllInstructionSets) {
                                         planning_bounds(chain, q));
       alignas(32) float one[kLaneJoints * kSideBySide] = {}, other[kLaneJoints * kSideBySide];
       std::generate_n(one, chain.dof() * kSideBySide, [&] { return angle(generator); });
-      std::memcpy(other, one, sizeof one);
+      std::ranges::copy(one, other);
       float squared[kSideBySide], others[kSideBySide];
       measure_lanes_sse2(constraint.lanes(), one, squared);
       measure_lanes_avx2(constraint.lanes(), other, others);
-      EXPECT_EQ(std::memcmp(squared, others, sizeof squared), 0);
+      EXPECT_TRUE(std::ranges::equal(squared, others));
       EXPECT_EQ(project_lanes_sse2(constraint.lanes(), one),
                 project_lanes_avx2(constraint.lanes(), other));
-      EXPECT_EQ(std::memcmp(one, other, sizeof one), 0);
+      EXPECT_TRUE(std::ranges::equal(one, other));
     }
   }
 }
