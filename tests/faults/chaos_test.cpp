@@ -53,7 +53,9 @@ class Chaos : public testing::Test {
   }
   std::vector<std::string> arguments_of(const std::string& store,
                                         std::vector<std::string> others) const {
-    others.insert(others.end(), {"--store", store, "--rehearsal-cpu", "0"});
+    // All paths, as sites do not bring each other an attempt whose path is not kept.
+    others.insert(others.end(),
+                  {"--store", store, "--rehearsal-cpu", "0", "--max-paths-per-pair", "0"});
     return others;
   }
 

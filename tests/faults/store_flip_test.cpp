@@ -165,6 +165,14 @@ class StoreFlip : public testing::Test {
     }
   }
 
+  std::vector<fs::path> rescued_copies() const {
+    std::vector<fs::path> copies;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path()))
+      if (entry.path().string().find(".rescued-") != std::string::npos)
+        copies.push_back(entry.path());
+    return copies;
+  }
+
   const test::TemporaryDirectory directory_;
   const fs::path template_ = directory_ / "template.db";
   const fs::path file_ = directory_ / "store.db";
@@ -223,6 +231,8 @@ TEST_F(StoreFlip, NoWrongAnswerComesOutOfAnOpenStoresWalAndNoCheckpointBlessesIt
       expect_repair_to_mend();
     if (HasFailure())
       return;
+    for (const fs::path& rescued : rescued_copies())  // two of one second would have one name
+      fs::remove(rescued);
   }
 }
 

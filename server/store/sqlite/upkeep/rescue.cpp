@@ -165,6 +165,13 @@ Rescue copy_into(Database& lost, const LostStore& store, const std::vector<fs::p
                   store.named.open_files() + " have what is left"};
 }
 
+/// A WAL with all frames, of which some have other bytes than SQLite wrote. At the next start
+/// SQLite would pass over all transactions from the first such frame on, without a word.
+bool has_wrong_frames(const LostStore& store) {
+  return store.change == StoreChange::WalDamaged && store.index && store.named.wal() != nullptr &&
+         store.named.wal()->size() >= WalFrames::bytes_of(*store.index);
+}
+
 }  // namespace
 
 Rescue rescue(Database& lost, const LostStore& store) {
@@ -185,7 +192,10 @@ Rescue rescue(Database& lost, const LostStore& store) {
   for (fs::path folder = store.file.parent_path(); folder.has_relative_path();
        folder = folder.parent_path())
     folders.push_back(folder);
-  return copy_into(lost, store, folders);
+  const Rescue saved = copy_into(lost, store, folders);
+  if (saved.is_saved && has_wrong_frames(store))
+    fold_wal(lost);  // the rows that they spoil are named by their checksums, the others are there
+  return saved;
 }
 
 }  // namespace kinship::store
