@@ -17,8 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// From hearing a server to being accepted takes a second, and 5 s where a hundred clients of a small
-// machine start at once: who fell silent then would begin anew what is nearly done.
+// From hearing a server to being accepted takes a second, and 5 s where a hundred clients of a
+// small machine start at once: who fell silent then would begin anew what is nearly done.
 constexpr std::chrono::seconds kFirstPatience = 20s;
 constexpr std::chrono::seconds kLongestPatience = 40s;
 constexpr std::chrono::seconds kSilence = kLease + 2s;
