@@ -122,7 +122,7 @@ endfunction()
 # kinship_embed_texts(VARIABLE header.hpp kinship::name FUNCTION FILE ...)
 #
 # Sets VARIABLE to a source that defines `std::span<const page::EmbeddedText> kinship::name::FUNCTION()`, which header.hpp
-# declares: the files of a page (client/page), carried by the program that writes it.
+# declares: the files of a page (pages/page), carried by the program that writes it.
 function(kinship_embed_texts variable header namespace function)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
   add_custom_command(

@@ -11,7 +11,7 @@
 #include "client/cli/value_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "client/link/robot_names.hpp"
-#include "client/plots/plot_pages.hpp"
+#include "pages/plots/plot_pages.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/tables/table.hpp"

@@ -8,7 +8,7 @@
 #include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
-#include "client/plots/plot_pages.hpp"
+#include "pages/plots/plot_pages.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"

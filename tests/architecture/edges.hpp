@@ -58,6 +58,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string collision = "robots/collision";
   const std::string planning = "robots/planning";
   const std::string recall = "robots/recall";
+  const std::string page = "pages/page";
+  const std::string plots = "pages/plots";
   const std::string access = "server/access";
   const std::string metrics = "server/metrics";
   const std::string store = "server/store";
@@ -76,8 +78,6 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string guided = "client/guided";
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
-  const std::string page = "client/page";
-  const std::string plots = "client/plots";
   const std::set<std::string> planner_programs = {
       guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
       collision, geometry, kinematics, models, mixture,  json, manual,   types};
@@ -102,6 +102,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {recall, {{planning, inverse, collision, kinematics, types}, {"Eigen"}}},
+      {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
+      {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
       {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
@@ -131,8 +133,6 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
         {"Eigen"}}},
       {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
-      {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
-      {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {"client/cli",
        {{link, arguments, files, moveit, page, plots, inverse, collision, geometry, kinematics,
          models, mixture, json, manual, tables, types},

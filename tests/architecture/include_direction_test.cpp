@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kRoot = test::source_dir();
-const std::vector<std::string> kRoofs = {"proto", "robots", "server", "client"};
+const std::vector<std::string> kRoofs = {"proto", "robots", "pages", "server", "client"};
 
 struct Include {
   std::string file;  // relative to the repository root

@@ -8,9 +8,9 @@
 
 #include "client/experiments/page/embedded_texts.hpp"
 #include "client/experiments/page/run_files.hpp"
-#include "client/page/bones.hpp"
-#include "client/page/document.hpp"
-#include "client/page/json_text.hpp"
+#include "pages/page/bones.hpp"
+#include "pages/page/document.hpp"
+#include "pages/page/json_text.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"

@@ -109,7 +109,14 @@ class ShelfCell {
 struct MadeShelf {
   ShelfCell cell;
   std::vector<PosedQuery> recorded = cell.queries(0, 6);
-  RecallLibrary library = cell.make(recorded).value();
+  RecallLibrary library = made();
+
+ private:
+  RecallLibrary made() const {
+    RecallLibrary library = cell.make(recorded).value();
+    library.try_checks = 20;  // as measured without sanitizers, with which no try is worth its time
+    return library;
+  }
 };
 
 /// Made once, as that takes a second or two.

@@ -1,4 +1,4 @@
-#include "client/plots/plot_pages.hpp"
+#include "pages/plots/plot_pages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "proto/json/distribution_json.hpp"
-#include "tests/unit/client/plots/history_values.hpp"
-#include "tests/unit/client/plots/plot_values.hpp"
+#include "tests/unit/pages/plots/history_values.hpp"
+#include "tests/unit/pages/plots/plot_values.hpp"
 
 namespace kinship::plots::plot_pages_test {
 namespace {

@@ -1,9 +1,9 @@
-#include "client/page/document.hpp"
+#include "pages/page/document.hpp"
 
 #include <ostream>
 #include <stdexcept>
 
-#include "client/page/embedded_text.hpp"
+#include "pages/page/embedded_text.hpp"
 
 namespace kinship::page {
 namespace {

@@ -1,4 +1,4 @@
-#include "client/page/document.hpp"
+#include "pages/page/document.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <regex>
 #include <sstream>
 
-#include "client/page/bones.hpp"
-#include "client/page/json_text.hpp"
+#include "pages/page/bones.hpp"
+#include "pages/page/json_text.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/robot_arguments.hpp"
 #include "tests/support/places.hpp"

@@ -1,4 +1,4 @@
-#include "client/page/json_text.hpp"
+#include "pages/page/json_text.hpp"
 
 #include <cmath>
 #include <cstdio>

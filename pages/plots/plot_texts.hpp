@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "client/page/embedded_text.hpp"
+#include "pages/page/embedded_text.hpp"
 
 namespace kinship::plots {
 

@@ -1,12 +1,12 @@
-#include "client/plots/plot_pages.hpp"
+#include "pages/plots/plot_pages.hpp"
 
 #include <ostream>
 #include <string_view>
 #include <utility>
 
-#include "client/page/document.hpp"
-#include "client/page/json_text.hpp"
-#include "client/plots/plot_texts.hpp"
+#include "pages/page/document.hpp"
+#include "pages/page/json_text.hpp"
+#include "pages/plots/plot_texts.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_answers_json.hpp"
 

@@ -1,4 +1,4 @@
-#include "client/plots/distribution_plot.hpp"
+#include "pages/plots/distribution_plot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "proto/types/failure.hpp"
-#include "tests/unit/client/plots/plot_values.hpp"
+#include "tests/unit/pages/plots/plot_values.hpp"
 
 namespace kinship::plots::marginals_test {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <iostream>
 
-#include "client/page/bones.hpp"
-#include "client/page/document.hpp"
-#include "client/page/json_text.hpp"
+#include "pages/page/bones.hpp"
+#include "pages/page/document.hpp"
+#include "pages/page/json_text.hpp"
 #include "robots/models/loaded_robot.hpp"
 #include "tests/support/places.hpp"
 

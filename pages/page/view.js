@@ -189,7 +189,7 @@ const kinshipView = (() => {
   /// \param view.layers  each {name, color (of the style, without --), and any of: text (in the legend, which hides and
   ///   shows the layer), shown (true), fits (true: the camera sees all of it), objects [{pose, box | cylinder | sphere}] with
   ///   opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity}], ways [{positions: one line, width}],
-  ///   points [{positions, size, opacity}]}. Solids and bones are those of client/page/json_text.hpp.
+  ///   points [{positions, size, opacity}]}. Solids and bones are those of pages/page/json_text.hpp.
   /// \return {replace(name, layer): other content, colour or text for a layer; show(name, shown); grow(name, lines, points):
   ///   only so many segments and points of it; follow(other): turns as another figure does; fit()}
   function show(figure, view) {

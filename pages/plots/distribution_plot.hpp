@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client/page/bones.hpp"
+#include "pages/page/bones.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/kinematics/chain.hpp"

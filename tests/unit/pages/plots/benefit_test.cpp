@@ -1,10 +1,10 @@
-#include "client/plots/task_history.hpp"
+#include "pages/plots/task_history.hpp"
 
 #include <gtest/gtest.h>
 
 #include "proto/evidence/attempt_window.hpp"
 #include "proto/evidence/cost_ratio.hpp"
-#include "tests/unit/client/plots/history_values.hpp"
+#include "tests/unit/pages/plots/history_values.hpp"
 
 namespace kinship::plots::benefit_test {
 namespace {

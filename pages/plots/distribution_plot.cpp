@@ -1,4 +1,4 @@
-#include "client/plots/distribution_plot.hpp"
+#include "pages/plots/distribution_plot.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "client/plots/task_history.hpp"
+#include "pages/plots/task_history.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "client/page/bones.hpp"
+#include "pages/page/bones.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "client/plots/distribution_plot.hpp"
-#include "client/plots/task_history.hpp"
+#include "pages/plots/distribution_plot.hpp"
+#include "pages/plots/task_history.hpp"
 #include "proto/types/transferability.hpp"
 
-/// Pages of a server's data: one HTML document each, which needs no network (client/page), with its
+/// Pages of a server's data: one HTML document each, which needs no network (pages/page), with its
 /// data as one JSON document in it. Lengths are whole millimetres, times Unix time in ms.
 namespace kinship::plots {
 

@@ -1,10 +1,10 @@
-#include "client/plots/distribution_plot.hpp"
+#include "pages/plots/distribution_plot.hpp"
 
 #include <gtest/gtest.h>
 
 #include "proto/types/failure.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "tests/unit/client/plots/plot_values.hpp"
+#include "tests/unit/pages/plots/plot_values.hpp"
 
 namespace kinship::plots::distribution_plot_test {
 namespace {

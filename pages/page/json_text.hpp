@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/page/bones.hpp"
+#include "pages/page/bones.hpp"
 #include "proto/types/scene.hpp"
 
 /// Parts of the JSON document that a page's scripts read. Lengths are whole millimetres, which is
