@@ -40,6 +40,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_problems(app, session);
   add_tasks(app, session);
   add_paths(app, session);
+  add_attempts(app, session);
   add_distributions(app, session);
   add_configurations(app, session);
   add_outbox(app, session);

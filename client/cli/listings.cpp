@@ -116,6 +116,25 @@ RowColumns<PathSummary> columns_of_paths(link::Client& /*server*/) {
           {{"RETIRED", Fit::Wide}, time(&Row::retired_ms)}};
 }
 
+RowColumns<AttemptSummary> columns_of_attempts() {
+  using Row = AttemptSummary;
+  const auto record = [](auto PlanningRecord::*member) {
+    return [member](const Row& row) { return row.record.*member; };
+  };
+  return {{"ATTEMPT", &Row::report_uuid},
+          {{"ROBOT", Fit::Cut}, &Row::label},
+          {{"TASK", Fit::Cut}, &Row::task},
+          {"OUTCOME", record(&PlanningRecord::outcome)},
+          {"TIME_S", [](const Row& row) { return number_text(row.record.planning_time_s, 3); }},
+          {"CHECKS", record(&PlanningRecord::collision_checks)},
+          {"AGE", age(&Row::received_ms)},
+          {{"WHY", Fit::Cut}, or_none(&Row::why)},
+          {{"PLANNER", Fit::Wide}, record(&PlanningRecord::planner)},
+          {{"MODE", Fit::Wide}, record(&PlanningRecord::sampling_mode)},
+          {{"MACHINE", Fit::Wide}, &Row::machine},
+          {{"RECEIVED", Fit::Wide}, time(&Row::received_ms)}};
+}
+
 /// Labels of robots by their digests, asked for when the first is wanted.
 class RobotLabels {
  public:
@@ -372,6 +391,19 @@ int list_clients(link::Client& server, std::size_t limit, bool json, std::ostrea
                  std::ostream& err) {
   return list_rows(server, {"status --clients", {.verb = AdminVerb::ListClients}, limit, json},
                    columns_of_clients(), out, err);
+}
+
+int list_attempts(link::Client& server, const AttemptListOptions& options, std::ostream& out,
+                  std::ostream& err) {
+  return list_rows(server,
+                   {"attempts list",
+                    {.verb = AdminVerb::FindAttempts,
+                     .argument = to_text(options.filter),
+                     .robot = options.robot,
+                     .task = options.task},
+                    options.limit,
+                    options.json},
+                   columns_of_attempts(), out, err);
 }
 
 int list_audit(link::Client& server, const AuditOptions& options, std::ostream& out,

@@ -7,6 +7,7 @@
 
 #include "client/cli/session.hpp"
 #include "client/link/client.hpp"
+#include "proto/types/attempt_filter.hpp"
 #include "proto/types/audit.hpp"
 
 /// Commands that list the contents of a server's store. Each prints a table for people, or one
@@ -21,6 +22,17 @@ void add_listings(CLI::App& noun, Session& session);
 /// \param limit  0: all.
 int list_clients(link::Client& server, std::size_t limit, bool json, std::ostream& out,
                  std::ostream& err);
+
+struct AttemptListOptions {
+  std::string robot, task;  ///< filters; empty: all
+  AttemptFilter filter;
+  std::size_t limit = 100;  ///< rows in all; 0: every one
+  bool json = false;
+};
+
+/// `attempts list`: with why they failed, where their search records say so.
+int list_attempts(link::Client& server, const AttemptListOptions& options, std::ostream& out,
+                  std::ostream& err);
 
 struct AuditOptions {
   std::string who;            ///< the name in a certificate; empty: all

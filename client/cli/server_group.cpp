@@ -1,7 +1,6 @@
 #include <chrono>
 
 #include "client/arguments/number_range.hpp"
-#include "client/arguments/selection_arguments.hpp"
 #include "client/cli/backup_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/session.hpp"
@@ -138,22 +137,14 @@ void add_audit(CLI::App& app, Session& session) {
       add_command(app, "audit", "Who had what done, or was refused it: the audit log, newest first",
                   "kinship audit --since 90m\n  kinship audit --who anna --json");
   command->add_option("--who", options->who, "Only of this name in a certificate");
-  command
-      ->add_option("--since", *since,
-                   "Only since a date or time in UTC (2026-11-21T05:32) or an age (90m, 14d)")
-      ->check([](const std::string& text) {
-        const auto time = arguments::parse_since(text, std::chrono::system_clock::now());
-        return time ? std::string() : time.error().message;
-      });
+  add_since(*command, *since);
   constexpr std::size_t kMostRows = 1'000'000'000;
   command->add_option("--limit", options->limit, "Rows at most (default: all)")
       ->check(CLI::Range(std::size_t{0}, kMostRows));
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options, since](link::Client& server) {
     options->json = session.json;
-    if (!since->empty())
-      options->since_ms =
-          arguments::parse_since(*since, std::chrono::system_clock::now()).value_or_throw();
+    options->since_ms = since_ms(*since);
     return list_audit(server, *options, session.out, session.err);
   });
 }

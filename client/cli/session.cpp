@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "client/arguments/number_range.hpp"
+#include "client/arguments/selection_arguments.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/host_name.hpp"
@@ -62,6 +63,22 @@ void add_json(CLI::App& command, Session& session, const std::string& what) {
           "table: what fits the terminal; wide: every column; json: as --json")
       ->check(CLI::IsMember({"table", "wide", "json"}))
       ->excludes(json);
+}
+
+void add_since(CLI::App& command, std::string& since) {
+  command
+      .add_option("--since", since,
+                  "Only since a date or time in UTC (2026-11-21T05:32) or an age (90m, 14d)")
+      ->check([](const std::string& text) {
+        const auto time = arguments::parse_since(text, std::chrono::system_clock::now());
+        return time ? std::string() : time.error().message;
+      });
+}
+
+std::int64_t since_ms(const std::string& since) {
+  return since.empty()
+             ? 0
+             : arguments::parse_since(since, std::chrono::system_clock::now()).value_or_throw();
 }
 
 CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output) {

@@ -56,6 +56,11 @@ void add_json(CLI::App& command, Session& session,
 /// --output of a command that writes a page. \return it.
 CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output);
 
+/// --since of a listing.
+void add_since(CLI::App& command, std::string& since);
+/// Unix time in ms of what --since was given; 0: nothing.
+std::int64_t since_ms(const std::string& since);
+
 /// Sets `run` to be run if the command line names the command.
 template <typename Run>
 void on_run(CLI::App& command, Session& session, Run run) {
@@ -93,6 +98,7 @@ void add_robots(CLI::App& app, Session& session);
 void add_problems(CLI::App& app, Session& session);
 void add_tasks(CLI::App& app, Session& session);
 void add_paths(CLI::App& app, Session& session);
+void add_attempts(CLI::App& app, Session& session);
 void add_distributions(CLI::App& app, Session& session);
 void add_configurations(CLI::App& app, Session& session);
 void add_outbox(CLI::App& app, Session& session);

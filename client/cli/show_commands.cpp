@@ -109,6 +109,8 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
   out << '\n';
   if (attempt.scene)
     print_scene(*attempt.scene, out);
+  if (attempt.search)
+    print_search(*attempt.search, out);
   if (!attempt.path && record.outcome == Outcome::Solved)
     out << "waypoints   not kept: beyond the cap of its robot and task (kinshipd "
            "--max-paths-per-pair)\n";
@@ -122,6 +124,12 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
           << number_text(attempt.path->waypoints()(joint, waypoint), kDigits);
     out << '\n';
   }
+}
+
+int show_report(link::Client& server, const Question& question, std::ostream& out,
+                std::ostream& err) {
+  return show(server, question, out, err, json::stored_attempt_from_json,
+              [&](const json::NamedAttempt& named) { print_attempt(named.attempt, out); });
 }
 
 void print_upstream(const UpstreamStatus& upstream, std::ostream& out) {
@@ -261,9 +269,14 @@ int show_task(link::Client& server, const std::string& task, bool json, std::ost
 
 int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
               std::ostream& err) {
-  return show(server, {"paths show", {.verb = AdminVerb::ShowPath, .argument = id}, json}, out, err,
-              json::stored_attempt_from_json,
-              [&](const json::NamedAttempt& named) { print_attempt(named.attempt, out); });
+  return show_report(server, {"paths show", {.verb = AdminVerb::ShowPath, .argument = id}, json},
+                     out, err);
+}
+
+int show_attempt(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                 std::ostream& err) {
+  return show_report(server, {"attempts show", {.verb = AdminVerb::ShowPath, .argument = id}, json},
+                     out, err);
 }
 
 int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,

@@ -20,6 +20,9 @@ int show_task(link::Client& server, const std::string& task, bool json, std::ost
 /// \param id  a report UUID.
 int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
               std::ostream& err);
+/// Also an attempt that is not solved: why not. \param id  a report UUID.
+int show_attempt(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                 std::ostream& err);
 /// \param id  the beginning of a distribution's id.
 int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
                       std::ostream& err);

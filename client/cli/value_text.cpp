@@ -26,6 +26,14 @@ std::string bound_text(double value) {
   return text.str();
 }
 
+std::string configuration_text(const Eigen::VectorXd& q) {
+  constexpr int kDigits = 4;
+  std::string text;
+  for (const double value : q)
+    text += (text.empty() ? "" : " ") + number_text(value, kDigits);
+  return text;
+}
+
 std::string sentence(const Rehearsal& rehearsal) {
   if (rehearsal.queries == 0)
     return rehearsal.message.empty() ? "not rehearsed: there is no recorded query"
@@ -100,6 +108,30 @@ void print_scene(const RecordedScene& scene, std::ostream& out) {
   out << "scene       " << scene.objects.size() << " objects, " << scene.held.size() << " held\n";
   if (scene.constraint)
     out << "constraint  " << region_text(*scene.constraint) << '\n';
+}
+
+void print_search(const SearchRecord& search, std::ostream& out) {
+  if (!search.reason.empty())
+    out << "why         " << search.reason << '\n';
+  const char* heading = "in the way  ";
+  for (const Blocker& blocker : search.blockers) {
+    out << heading << "'" << blocker.first << "' touches '" << blocker.second << "' in "
+        << count_text(blocker.count, "refused configuration") << '\n';
+    heading = "            ";
+  }
+  if (search.goals.cols() > 0)
+    out << "goals       " << count_text(static_cast<std::uint64_t>(search.goals.cols()), "goal")
+        << '\n';
+  for (const GoalContact& contact : search.goal_contacts)
+    out << "            at goal " << contact.goal + 1 << " '" << contact.first << "' touches '"
+        << contact.second << "'\n";
+  if (search.last_free.size() > 0)
+    out << "last free   " << configuration_text(search.last_free) << '\n';
+  for (const SearchTree& tree : search.trees)
+    out << "tree        "
+        << count_text(static_cast<std::uint64_t>(tree.configurations.cols()), "configuration")
+        << '\n';
+  out << "seed        " << search.seed << '\n';
 }
 
 void print_rehearsal(const std::optional<Rehearsal>& rehearsal, std::ostream& out) {

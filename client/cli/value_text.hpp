@@ -7,6 +7,7 @@
 #include "proto/types/recorded_scene.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/robot_description.hpp"
+#include "proto/types/search_record.hpp"
 #include "proto/types/transferability.hpp"
 
 /// Values of proto/types for people.
@@ -24,6 +25,10 @@ std::string region_text(const TaskSpaceRegion& region);
 
 /// The objects of a scene and its constraint; one line each, values from the 13th column on.
 void print_scene(const RecordedScene& scene, std::ostream& out);
+
+/// What explains an attempt: why it was not solved, the bodies in the way, what its goals touch;
+/// one line each, values from the 13th column on.
+void print_search(const SearchRecord& search, std::ostream& out);
 
 /// "1.40 by time, 2.10 by checks (best without experience none, with it ways)".
 std::string worth_text(const Worth& worth);

@@ -44,6 +44,11 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   record.machine_speed = evidence::machine_speed();
   if (result.waypoints)
     attempt.path = Path(*result.waypoints);
+  attempt.search = planned.search;
+  if (attempt.search && !batch_bytes(attempt).fits())
+    attempt.search->trees.clear();
+  if (attempt.search && !batch_bytes(attempt).fits())
+    attempt.search.reset();
   return attempt;
 }
 

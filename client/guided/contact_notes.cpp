@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -64,6 +65,14 @@ planning::IsFree ContactNotes::watched(const planning::IsFree& is_free) {
               note(qs.col(free));
             return free;
           }};
+}
+
+Eigen::MatrixXd ContactNotes::noted() const {
+  Eigen::MatrixXd configurations(colliding_.empty() ? 0 : colliding_.front().size(),
+                                 std::ssize(colliding_));
+  for (Eigen::Index i = 0; i < configurations.cols(); ++i)
+    configurations.col(i) = colliding_[static_cast<std::size_t>(i)];
+  return configurations;
 }
 
 std::string ContactNotes::text() {

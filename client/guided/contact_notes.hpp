@@ -30,6 +30,8 @@ class ContactNotes {
   /// Notes a configuration that is not free.
   void note(const Eigen::Ref<const Eigen::VectorXd>& q);
 
+  Eigen::MatrixXd noted() const;  ///< dof x n
+
   /// The contacts of the noted configurations with their counts, the most frequent first: "'l4' or
   /// 'l3' touches 'wall' in 5 of 8 configurations, 'l2' touches 'l4' in 3 of 8"; without counts for
   /// a single configuration. A pair that is too near is "less than 1 mm from" each other. Of two

@@ -11,6 +11,8 @@
 
 #include "client/guided/contact_notes.hpp"
 #include "client/guided/problem_mismatch.hpp"
+#include "client/guided/query_outcome.hpp"
+#include "client/guided/search_notes.hpp"
 #include "client/ompl/ompl_planner.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/unreached.hpp"
@@ -60,72 +62,6 @@ std::string with_detail(const std::string& text, const std::string& detail) {
   return detail.empty() ? text : text + ": " + detail;
 }
 
-/// Empty for a query that is to be guided.
-std::string why_unguided(const QueryGuidance& query) {
-  if (query.guidance == nullptr)
-    return query.why_not;
-  switch (query.sampling_mode) {
-    case SamplingMode::Control:
-      return "planned uniformly as control";
-    case SamplingMode::Uniform:
-      return "planned uniformly by wish";
-    case SamplingMode::Guided:
-      break;
-  }
-  if (query.guidance->guide == Guide::None)
-    return "by rehearsal nothing is better than uniform planning";
-  return query.guidance->guided_fraction == 0 ? "the share of guided samples is 0" : "";
-}
-
-/// Which planner answers: a roadmap leaves a mixture of too many components to its trees.
-std::string planner_text(const PlannerChoice& planner,
-                         const planning::ConfigurationSampler& sampler) {
-  const std::string name = name_of(planner);
-  if (planner.kind != PlannerKind::Roadmap || !sampler.mixture() ||
-      sampler.mixture()->size() <= planning::kMaxRoadmapComponents)
-    return name;
-  return name + " (trees alone: " + std::to_string(sampler.mixture()->size()) +
-         " components exceed " + std::to_string(planning::kMaxRoadmapComponents) + ")";
-}
-
-Outcome outcome_of(const planning::PlanSummary& summary) {
-  if (summary.waypoints)
-    return Outcome::Solved;
-  const bool is_used_up =
-      summary.reason == NoPath::MaxChecks || summary.reason == NoPath::TimeLimit;
-  return is_used_up ? Outcome::Timeout : Outcome::Failed;
-}
-
-/// Why no search was begun; empty for reasons that end a search.
-std::optional<NotPlanned> not_planned_by(NoPath reason) {
-  switch (reason) {
-    case NoPath::StartOutOfReach:
-      return NotPlanned::StartOutOfReach;
-    case NoPath::StartBeyondLimits:
-      return NotPlanned::StartBeyondLimits;
-    case NoPath::StartNotFound:
-      return NotPlanned::StartNotFound;
-    case NoPath::StartCollides:
-      return NotPlanned::StartCollides;
-    case NoPath::StartOffConstraint:
-      return NotPlanned::StartOffConstraint;
-    case NoPath::GoalOutOfReach:
-      return NotPlanned::GoalOutOfReach;
-    case NoPath::GoalBeyondLimits:
-    case NoPath::GoalOutsideBounds:
-      return NotPlanned::GoalBeyondLimits;
-    case NoPath::NoGoal:
-    case NoPath::GoalNotFound:
-      return NotPlanned::GoalNotFound;
-    case NoPath::GoalsCollide:
-      return NotPlanned::GoalCollides;
-    case NoPath::GoalsOffConstraint:
-      return NotPlanned::GoalOffConstraint;
-    default:
-      return std::nullopt;
-  }
-}
-
 /// One problem under way.
 class Planning {
  public:
@@ -139,7 +75,9 @@ class Planning {
                {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
         prover_(world_),
         goal_contacts_(find_near()),
-        is_free_(what_is_free(stop)),
+        notes_(settings.record_search, robot.chain.dof()),
+        asked_(what_is_free(stop)),
+        is_free_(notes_.is_wanted() ? notes_.watched(asked_) : asked_),
         recorder_(recorder),
         generator_(problem.seed) {}
 
@@ -147,6 +85,9 @@ class Planning {
     const double begin_s = planning::thread_time_s();
     plan(planner, query, planned);
     planned.result.processor_time_s = planning::thread_time_s() - begin_s;
+    if (const ProblemResult& result = planned.result;
+        notes_.has_record(result.solved, result.processor_time_s, settings_.slow_time_s))
+      planned.search = notes_.record(problem_, start_, asked_goals_, result.reason, find_near());
   }
 
  private:
@@ -173,6 +114,7 @@ class Planning {
     end_ = std::chrono::steady_clock::now() + options.time_limit;
     options.track_check_fraction = settings_.tracks.check_fraction;
     options.recorder = recorder_;
+    options.trees = notes_.trees();
     const double begin_s = planning::thread_time_s();
     const auto sampler = make_query_sampler(
         robot_.chain,
@@ -303,6 +245,7 @@ class Planning {
         refuse(NoPath::GoalOutsideBounds, result);
       for (const auto& goal : goals.colwise())  // as none of them may be free
         goal_contacts_.note(goal);
+      asked_goals_ = goals.cols() > 0 ? goals : problem_.goal_configurations;
       return goals;
     }
     const planning::IsFree watched = goal_contacts_.watched(is_free_);
@@ -313,6 +256,7 @@ class Planning {
         robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_goal, bounds_,
         watched, options);
     result.goal_checks += goals.collision_checks;
+    asked_goals_ = goals.configurations.cols() > 0 ? goals.configurations : goal_contacts_.noted();
     if (goals.reason != NoPath::None)
       refuse(goals.reason, result);
     return std::move(goals.configurations);
@@ -338,6 +282,7 @@ class Planning {
     };
     tree.track_check_fraction = 0;
     tree.recorder = nullptr;
+    tree.trees = nullptr;
     std::uint64_t spent = summary.collision_checks;
     const auto plan = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, double finer) {
       planning::PlanSummary over;
@@ -440,9 +385,11 @@ class Planning {
   collision::CollisionWorld world_;
   collision::EdgeProver prover_;
   ContactNotes goal_contacts_;
-  planning::IsFree is_free_;
-  Eigen::VectorXd start_;    // dof; from find_start on
-  Eigen::Matrix2Xd bounds_;  // around it
+  SearchNotes notes_;
+  planning::IsFree asked_, is_free_;  // the check itself, and the one that notes what it refuses
+  Eigen::MatrixXd asked_goals_;       // dof x n, also those that touch something
+  Eigen::VectorXd start_;             // dof; from find_start on
+  Eigen::Matrix2Xd bounds_;           // around it
   std::optional<planning::RegionConstraint> constraint_;
   std::vector<recall::Warp> failed_;  // recalled paths; they borrow the guidance
   planning::SearchRecorder* recorder_;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,7 @@ struct PlannedProblem {
   double recall_expected = 0;      ///< chance that the recalled paths tried would do, 0 to 1
   bool attempted = false;    ///< false if the problem does not fit the robot: nothing was planned
   bool interrupted = false;  ///< `stop` ended it; the other members are then meaningless
+  std::optional<SearchRecord> search = {};  ///< as PlanSettings::record_search says
   /// Bodies within a closed mesh at the start, which no check notices.
   std::vector<collision::CollisionWorld::Enclosed> enclosed = {};
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "client/guided/planner_choice.hpp"
 #include "robots/planning/guided_sampler.hpp"
@@ -9,6 +10,14 @@ namespace kinship::guided {
 
 /// Range of `PlanSettings::resolution`, joint units.
 inline constexpr double kLeastResolution = 1e-4, kLargestResolution = 1;
+
+/// The queries whose PlannedProblem has a search record, and so their reports.
+enum class RecordSearch {
+  Never,
+  Failed,  ///< unsolved ones, without trees
+  Slow,    ///< unsolved ones, and those slower than PlanSettings::slow_time_s; with trees
+  All      ///< with trees
+};
 
 /// How every problem of a run is planned, guided or not.
 struct PlanSettings {
@@ -26,6 +35,8 @@ struct PlanSettings {
   double gate_distance = planning::kGateDistance;
   planning::TrackOptions tracks = {};  ///< of guided queries with experience
   PlannerChoice planner = {};
+  RecordSearch record_search = RecordSearch::Failed;
+  double slow_time_s = std::numeric_limits<double>::infinity();  ///< processor time
 };
 
 }  // namespace kinship::guided

@@ -55,6 +55,7 @@ struct RawOptions {
   std::string guidance;
   std::string report = "no";
   std::string record_scenes = "yes";
+  std::string record_search = "failed";
   std::string guide = "auto";
   double timeout_s = 5;
   double wait_s = 30;
@@ -186,6 +187,13 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
                  "configurations that would touch it")
       ->check(CLI::IsMember({"yes", "no"}))
       ->capture_default_str();
+  app.add_option(
+         "--record-search", raw.record_search,
+         "attempts that keep what explains them (start, goals, bodies in the way), for "
+         "`kinship attempts`: never, failed ones, slow ones too (beyond the 95th percentile "
+         "of this run), or all; slow and all with the trees of the search")
+      ->check(CLI::IsMember({"never", "failed", "slow", "all"}))
+      ->capture_default_str();
   app.add_option("--machine", options.machine,
                  "name of this robot or cell in reports (default: the host's)");
   arguments::add_server_address(app, {options.server, options.domain, options.security});
@@ -203,7 +211,7 @@ constexpr std::initializer_list<const char*> kOfExperience = {
 constexpr std::initializer_list<const char*> kOfSampling = {"--guide", "--share",
                                                             "--control-share"};
 constexpr std::initializer_list<const char*> kOfReports = {"--machine", "--record-scenes",
-                                                           "--outbox"};
+                                                           "--record-search", "--outbox"};
 constexpr std::initializer_list<const char*> kOfServer = {"--server", "--domain", "--timeout"};
 
 std::chrono::milliseconds milliseconds_of(double seconds) {
@@ -297,6 +305,16 @@ void complete_shares(const CLI::App& app, const RawOptions& raw, PlanOptions& op
     options.sampling.control_fraction = 0;
 }
 
+/// Only reports carry search records.
+guided::RecordSearch record_search_of(const RawOptions& raw, bool is_reported) {
+  using enum guided::RecordSearch;
+  if (!is_reported || raw.record_search == "never")
+    return Never;
+  if (raw.record_search == "failed")
+    return Failed;
+  return raw.record_search == "slow" ? Slow : All;
+}
+
 /// Sets the members of `options` that depend on several options.
 /// \param app    parsed.
 /// \param notes  for people: options that have no effect beside the others.
@@ -312,6 +330,7 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
     options.settings.planner = guided::parse_planner(raw.planner).value_or_throw();
   options.report = raw.report == "yes";
   options.record_scenes = raw.record_scenes == "yes";
+  options.settings.record_search = record_search_of(raw, options.report);
   if (raw.guide != "auto")
     options.guide = parse_word<Guide>(raw.guide).value_or_throw();
   else if (app.count("--guide") == 0 && options.profile.starts_with("paper"))

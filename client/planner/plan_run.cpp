@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -97,6 +98,25 @@ class SceneRecorder {
   bool told_ = false, told_of_meshes_ = false;
 };
 
+/// What counts as slow in a run.
+class SlowQueries {
+ public:
+  /// The 95th percentile of the queries so far; infinity as long as there are few.
+  double time_s() const {
+    constexpr std::size_t kEnough = 20;
+    if (times_s_.size() < kEnough)
+      return std::numeric_limits<double>::infinity();
+    std::vector<double> times_s = times_s_;
+    const auto slow = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * 95 / 100);
+    std::ranges::nth_element(times_s, slow);
+    return *slow;
+  }
+  void add(double time_s) { times_s_.push_back(time_s); }
+
+ private:
+  std::vector<double> times_s_;
+};
+
 /// The answer to a problem whose meshes cannot be had.
 guided::PlannedProblem unread(const Problem& problem, const Error& error) {
   guided::PlannedProblem planned;
@@ -171,9 +191,12 @@ class Run {
     problem.seed += options_.seed_offset;
     if (const auto error = meshes_.read(problem.scene, problem.attached))
       return unread(problem, *error);
+    guided::PlanSettings settings = options_.settings;
+    settings.slow_time_s = slow_.time_s();
     guided::PlannedProblem planned =
-        guided::plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
+        guided::plan_problem(robot_, problem, server_.choose(problem), settings, stop,
                              streams_.searches != nullptr ? &recorder_ : nullptr);
+    slow_.add(planned.result.processor_time_s);
     guided::measure_path(robot_, problem, planned.result);
     for (const std::string& warning : warnings_.find(problem, planned))
       streams_.messages << "warning: " << warning << '\n';
@@ -199,6 +222,7 @@ class Run {
   const guided::Reporter reporter_;
   models::SceneMeshes meshes_;
   SceneRecorder scenes_;
+  SlowQueries slow_;
   planning::SearchRecorder recorder_;  // of the search under way
 };
 

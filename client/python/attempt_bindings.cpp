@@ -136,7 +136,24 @@ void bind_path(AttemptClass& attempt) {
           [](NamedAttempt& self, const std::optional<Scene>& scene) {
             self.attempt.scene = scene ? std::optional(recorded(*scene)) : std::nullopt;
           },
-          "What was around the robot, in the task's frame: primitives only; None: not said.");
+          "What was around the robot, in the task's frame: primitives only; None: not said.")
+      .def_property(
+          "search",
+          [](const NamedAttempt& self) -> py::object {
+            if (!self.attempt.search)
+              return py::none();
+            return py::module_::import("json").attr("loads")(json::to_json(*self.attempt.search));
+          },
+          [](NamedAttempt& self, const py::object& search) {
+            self.attempt.search.reset();
+            if (!search.is_none())
+              self.attempt.search =
+                  json::search_record_from_json(
+                      py::module_::import("json").attr("dumps")(search).cast<std::string>())
+                      .value_or_throw();
+          },
+          "What explains it: a dict with start, goals, blockers, goal_contacts, last_free, reason "
+          "... as proto/FORMATS.md has them; None: not said.");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +27,8 @@ Uuid read_uuid(const std::uint8_t (&bytes)[16]);
 /// A text of any length, which the check of its value limits.
 /// \param text  may be null (a shorter message left it out): reads as empty.
 inline std::string read_text(const char* text) { return text ? text : ""; }
+/// Its length, without a copy.
+inline std::size_t text_bytes(const char* text) { return text == nullptr ? 0 : std::strlen(text); }
 
 /// Converts members of an incoming message to parts of a value and records the first broken rule.
 /// Sizes are checked before memory is allocated; values returned after a broken rule are

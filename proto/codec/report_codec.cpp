@@ -4,6 +4,7 @@
 
 #include "proto/codec/fields.hpp"
 #include "proto/codec/scene_codec.hpp"
+#include "proto/codec/search_codec.hpp"
 #include "proto/types/names.hpp"
 
 namespace kinship::codec {
@@ -50,6 +51,7 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   arena.resize(wire.record, 1);
   write_fields(attempt.record, arena, wire.record._buffer[0]);
   write_value(attempt.scene, {}, arena, wire.scene);
+  write_value(attempt.search, {}, arena, wire.search);
   if (!attempt.path)
     return;
   const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
@@ -73,6 +75,8 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   attempt.path = read_path(wire, reader);
   if (!reader.rules.broken())
     attempt.scene = read_value<std::optional<RecordedScene>>({"scene"}, wire.scene, {}, reader);
+  if (!reader.rules.broken())
+    attempt.search = read_value<std::optional<SearchRecord>>({"search"}, wire.search, {}, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = validate(attempt))
@@ -81,9 +85,11 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
 }
 
 BatchBytes batch_bytes(const kinship_wire_Attempt& wire) {
-  BatchBytes bytes{sizeof(double) * elements(wire.waypoints).size(), 0};
+  BatchBytes bytes{.waypoints = sizeof(double) * elements(wire.waypoints).size()};
   for (const kinship_wire_RecordedScene& scene : elements(wire.scene))
     bytes.scenes += scene_bytes(scene);
+  for (const kinship_wire_SearchRecord& search : elements(wire.search))
+    bytes.searches += search_bytes(search);
   return bytes;
 }
 
@@ -95,6 +101,8 @@ Rules& check_batch(std::size_t attempts, std::size_t token, Rules& rules) {
 
 void check_bytes(const BatchBytes& bytes, Rules& rules) {
   rules.at_most("waypoints of a batch (bytes)", bytes.waypoints, kMaxBatchBytes)
+      .at_most("waypoints and searches of a batch (bytes)", bytes.waypoints + bytes.searches,
+               kMaxBatchBytes)
       .at_most("scenes of a batch (bytes)", bytes.scenes, kMaxSceneBytes);
 }
 

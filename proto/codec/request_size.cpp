@@ -1,9 +1,8 @@
 #include "proto/codec/request_size.hpp"
 
-#include <cstring>
-
 #include "proto/codec/reader.hpp"
 #include "proto/codec/scene_codec.hpp"
+#include "proto/codec/search_codec.hpp"
 
 namespace kinship::codec {
 namespace {
@@ -13,8 +12,6 @@ constexpr std::size_t kFixedBytes = 256;
 constexpr std::size_t kAttemptBytes = 256;  // its record, digest and UUID
 constexpr std::size_t kSolidBytes = 128;
 constexpr std::size_t kPairBytes = 64;
-
-std::size_t text_bytes(const char* text) { return text == nullptr ? 0 : std::strlen(text); }
 
 }  // namespace
 
@@ -32,6 +29,8 @@ RequestSize size_of(const kinship_wire_ReportRequest& wire) {
     size.bytes += kAttemptBytes + sizeof(double) * elements(attempt.waypoints).size();
     for (const kinship_wire_RecordedScene& scene : elements(attempt.scene))
       size.bytes += scene_bytes(scene);
+    for (const kinship_wire_SearchRecord& search : elements(attempt.search))
+      size.bytes += search_bytes(search);
   }
   return size;
 }

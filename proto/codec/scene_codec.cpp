@@ -1,7 +1,5 @@
 #include "proto/codec/scene_codec.hpp"
 
-#include <cstring>
-
 #include "proto/codec/fields.hpp"
 #include "proto/types/limits.hpp"
 
@@ -24,8 +22,6 @@ Thing read_solid(const kinship_wire_SceneSolid& wire, Reader& reader) {
   const Eigen::Isometry3d T = reader.pose("scene: '" + name + "'", wire.pose);
   return {std::move(name), shape, T, wire.approximate};
 }
-
-std::size_t length(const char* text) { return text == nullptr ? 0 : std::strlen(text); }
 
 }  // namespace
 
@@ -84,11 +80,11 @@ std::size_t scene_bytes(const kinship_wire_RecordedScene& wire) {
                       kPairBytes * elements(wire.allowed_collisions).size() +
                       kConstraintBytes * elements(wire.constraint).size();
   for (const kinship_wire_SceneSolid& solid : elements(wire.objects))
-    bytes += length(solid.name);
+    bytes += text_bytes(solid.name);
   for (const kinship_wire_SceneSolid& solid : elements(wire.held))
-    bytes += length(solid.name);
+    bytes += text_bytes(solid.name);
   for (const kinship_wire_SolidPair& pair : elements(wire.allowed_collisions))
-    bytes += length(pair.first) + length(pair.second);
+    bytes += text_bytes(pair.first) + text_bytes(pair.second);
   return bytes;
 }
 

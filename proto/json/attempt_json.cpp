@@ -3,6 +3,7 @@
 #include "proto/json/fields.hpp"
 #include "proto/json/parts.hpp"
 #include "proto/json/recorded_scene_json.hpp"
+#include "proto/json/search_record_json.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -55,6 +56,8 @@ NamedAttempt read(const Reader& reader, Waypoints rule) {
   attempt.path = read_path(reader, attempt.record.outcome, rule);
   if (const auto scene = reader.find("scene"))
     attempt.scene = read_recorded_scene(*scene);
+  if (const auto search = reader.find("search"))
+    attempt.search = read_search_record(*search);
   const bool is_dropped = !attempt.path && attempt.record.outcome == Outcome::Solved;
   if (const auto error = is_dropped ? std::nullopt : validate(attempt))
     throw Failure(*error);
@@ -76,6 +79,8 @@ std::string to_json(const Attempt& attempt) {
       attempt.path ? list_of_columns(attempt.path->waypoints()) : OrderedJson(nullptr);
   object["record"] = json_of(attempt.record);
   object["scene"] = attempt.scene ? recorded_scene_object(*attempt.scene) : OrderedJson(nullptr);
+  if (attempt.search)
+    object["search"] = search_record_object(*attempt.search);
   return write(object);
 }
 

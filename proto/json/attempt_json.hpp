@@ -24,4 +24,8 @@ Result<NamedAttempt> attempt_from_json(std::string_view text);
 /// The same for an attempt of a store, whose path may have been dropped: solved, without waypoints.
 Result<NamedAttempt> stored_attempt_from_json(std::string_view text);
 
+std::string to_json(const SearchRecord& search);  ///< member `search` of an attempt
+/// \return the record, which keeps its rules, or an error as attempt_from_json().
+Result<SearchRecord> search_record_from_json(std::string_view text);
+
 }  // namespace kinship::json

@@ -17,7 +17,7 @@ enum class AdminVerb {
   ListTasks,             ///< rows: TaskSummary
   ShowTask,              ///< row: TaskSummary
   ListPaths,             ///< rows: PathSummary; filters robot and task
-  ShowPath,              ///< row: Attempt
+  ShowPath,              ///< row: Attempt, also an unsolved one
   ListDistributions,     ///< rows: DistributionSummary; filters robot and task
   ShowDistribution,      ///< row: Distribution
   ExplainDistribution,   ///< row: Explanation
@@ -38,9 +38,10 @@ enum class AdminVerb {
   ListClients,           ///< rows: ClientUse, the busiest first
   ListBackups,           ///< rows: BackupSummary, the newest first
   HashBackup,            ///< begins a job; row: Job. Rows of the job: SHA-256 in hex, bytes
-  ReadBackup             ///< row: bytes of a backup from `cursor` on, in base64
+  ReadBackup,            ///< row: bytes of a backup from `cursor` on, in base64
+  FindAttempts           ///< rows: AttemptSummary as AttemptFilter says; filters robot and task
 };
-inline constexpr AdminVerb kLastVerb = AdminVerb::ReadBackup;
+inline constexpr AdminVerb kLastVerb = AdminVerb::FindAttempts;
 
 /// Kind of object that `argument` of a request names, where a narrowed certificate or the owner of
 /// a job limits it.
@@ -115,7 +116,9 @@ inline constexpr auto kVerbRules = [] {
       // own machine alone. Reading the pieces of one is in the log where it is refused.
       VerbRule{HashBackup, "hash_backup", "digest backups", kOperator, Is::Other, Changes | OfAll},
       VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::Other,
-               Changes | OfAll}};
+               Changes | OfAll},
+      VerbRule{FindAttempts, "find_attempts", "list attempts", kReader, Is::Other,
+               Lists | Filters}};
 }();
 
 /// Whether a table has one row for each verb, in their order.

@@ -10,6 +10,8 @@ BatchBytes batch_bytes(const Attempt& attempt) {
     bytes.waypoints = sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
   if (attempt.scene)
     bytes.scenes = scene_bytes(*attempt.scene);
+  if (attempt.search)
+    bytes.searches = search_bytes(*attempt.search);
   return bytes;
 }
 
@@ -30,6 +32,14 @@ std::optional<Error> validate(const Attempt& attempt) {
         .at_most("waypoints (bytes)", batch_bytes(attempt).waypoints, kMaxBatchBytes);
   if (attempt.scene)
     rules.name(check_scene(*attempt.scene));
+  if (attempt.search) {
+    const Eigen::Index dof = dof_of(*attempt.search);
+    const BatchBytes bytes = batch_bytes(attempt);
+    rules.name(check_search(*attempt.search))
+        .that(!attempt.path || dof == 0 || dof == attempt.path->dof(),
+              "search: has " + std::to_string(dof) + " joints, the path another number")
+        .at_most("waypoints and search (bytes)", bytes.waypoints + bytes.searches, kMaxBatchBytes);
+  }
   return rules.broken();
 }
 

@@ -13,6 +13,7 @@
 #include "proto/types/names.hpp"
 #include "proto/types/path.hpp"
 #include "proto/types/recorded_scene.hpp"
+#include "proto/types/search_record.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship {
@@ -88,6 +89,7 @@ struct Attempt {
   PlanningRecord record;
   std::optional<Path> path;            ///< present exactly if solved
   std::optional<RecordedScene> scene;  ///< optional
+  std::optional<SearchRecord> search;  ///< optional; no part of what makes a report a duplicate
 };
 
 /// The rule of the contract that an attempt breaks, if any. Attempts are checked where they enter a
@@ -98,13 +100,16 @@ std::optional<Error> validate(const Attempt& attempt);
 
 /// Bytes of attempts that count against the limits of a batch.
 struct BatchBytes {
-  std::size_t waypoints = 0;  ///< 8 per waypoint and joint; at most kMaxBatchBytes
+  std::size_t waypoints = 0;  ///< 8 per waypoint and joint; with searches at most kMaxBatchBytes
   std::size_t scenes = 0;     ///< as scene_bytes() counts; at most kMaxSceneBytes
+  std::size_t searches = 0;   ///< as search_bytes() counts
 
-  bool fits() const noexcept { return waypoints <= kMaxBatchBytes && scenes <= kMaxSceneBytes; }
+  bool fits() const noexcept {
+    return waypoints + searches <= kMaxBatchBytes && scenes <= kMaxSceneBytes;
+  }
 
   friend BatchBytes operator+(const BatchBytes& a, const BatchBytes& b) noexcept {
-    return {a.waypoints + b.waypoints, a.scenes + b.scenes};
+    return {a.waypoints + b.waypoints, a.scenes + b.scenes, a.searches + b.searches};
   }
 };
 

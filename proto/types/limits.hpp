@@ -21,8 +21,12 @@ inline constexpr std::size_t kMaxHeldJoints = 64;
 inline constexpr std::size_t kMaxCollisionPairs = 4096;
 inline constexpr std::size_t kMaxMeshSolids = 1024;  ///< of one robot
 inline constexpr std::size_t kMaxAttemptsPerBatch = 256;
-inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;  ///< of waypoints, 8 bytes each
-inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;  ///< of a scene, and of a batch
+inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;   ///< of waypoints, search records
+inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;   ///< of a scene, and of a batch
+inline constexpr std::size_t kMaxSearchBytes = 128 * 1024;  ///< of a search record
+inline constexpr std::size_t kMaxSearchGoals = 64, kMaxBlockers = 32, kMaxGoalContacts = 256;
+inline constexpr std::size_t kMaxSearchTrees = 2;
+inline constexpr std::size_t kMaxWhyBytes = 512;
 inline constexpr std::size_t kMaxSceneObjects = 2048;
 inline constexpr std::size_t kMaxHeldObjects = 64;
 inline constexpr std::size_t kMaxAllowedPairs = 1024;          ///< of a recorded scene

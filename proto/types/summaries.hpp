@@ -127,6 +127,9 @@ struct AttemptSummary {
   std::string machine;
   PlanningRecord record;
   std::int64_t received_ms = 0;
+  /// Whether the store has its search record, and the why_text() of that; of FindAttempts alone.
+  bool has_search = false;
+  std::string why = {};
 };
 
 template <>
@@ -137,7 +140,9 @@ inline constexpr std::tuple kFieldsOf<AttemptSummary>{
     Field{"task", &AttemptSummary::task, {.limit = kMaxTaskBytes}},
     Field{"machine", &AttemptSummary::machine, {.limit = kMaxMachineBytes}},
     Field{"record", &AttemptSummary::record},
-    Field{"received_ms", &AttemptSummary::received_ms}};
+    Field{"received_ms", &AttemptSummary::received_ms},
+    Field{"has_search", &AttemptSummary::has_search, {.may_be_missing = true}},
+    Field{"why", &AttemptSummary::why, {.limit = kMaxWhyBytes, .may_be_missing = true}}};
 
 struct DistributionSummary {
   Digest id;

@@ -73,6 +73,13 @@ class BidirectionalSearch {
     trees_.record(options.recorder, budget);
   }
 
+  BidirectionalSearch(const BidirectionalSearch&) = delete;
+  BidirectionalSearch& operator=(const BidirectionalSearch&) = delete;
+  ~BidirectionalSearch() {
+    if (options_.trees != nullptr)
+      *options_.trees = std::move(trees_);
+  }
+
   /// Plants both trees and extends them until they meet or the budget is used up.
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     Eigen::MatrixXd free_goals;

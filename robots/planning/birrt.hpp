@@ -16,6 +16,7 @@
 namespace kinship::planning {
 
 class SearchRecorder;
+class TreePair;
 
 struct BirrtOptions {
   double step = 0.1;       ///< between checked configurations, joint units
@@ -25,6 +26,9 @@ struct BirrtOptions {
   /// Largest fraction of checks spent on tracks at which the next track is begun, 0 to 1.
   double track_check_fraction = 0.3;
   SearchRecorder* recorder = nullptr;  ///< records how the trees grow; borrowed for the plan
+  /// Gets the trees when the search ends, at no cost to it; null: they are dropped. Not from OMPL's
+  /// planners.
+  TreePair* trees = nullptr;
 };
 
 struct PlanSummary {

@@ -41,8 +41,15 @@ class Connecting {
         generator_(generator),
         trees_(sampler.bounds().cols()),
         sample_(sampler.bounds().cols()),
-        asked_(sampler.bounds().cols(), kRake) {
+        asked_(sampler.bounds().cols(), kRake),
+        wanted_trees_(options.trees) {
     trees_.record(options.recorder, budget);
+  }
+  Connecting(const Connecting&) = delete;
+  Connecting& operator=(const Connecting&) = delete;
+  ~Connecting() {
+    if (wanted_trees_ != nullptr)
+      *wanted_trees_ = std::move(trees_);
   }
 
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
@@ -145,6 +152,7 @@ class Connecting {
   // Kept, so that an iteration allocates little.
   Eigen::VectorXd sample_, from_, way_, direction_;
   Eigen::MatrixXd asked_;
+  TreePair* wanted_trees_;
 };
 
 }  // namespace

@@ -70,6 +70,11 @@ class Tree {
   /// Valid until the next node is added.
   Eigen::MatrixXd::ConstColXpr node(Eigen::Index index) const { return nodes_.col(index); }
 
+  /// \return -1 of a root.
+  Eigen::Index parent(Eigen::Index index) const {
+    return parents_[static_cast<std::size_t>(index)];
+  }
+
   /// From a node to its root: dof x n.
   Eigen::MatrixXd branch(Eigen::Index index) const;
 

@@ -136,6 +136,16 @@ void add_retention_options(CLI::App& app, ServerOptions& options) {
                  "Distributions that the store keeps; those not used for longest go first; 0: all")
       ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
       ->capture_default_str();
+  constexpr std::uint32_t kMaxDays = 100'000;
+  app.add_option("--search-records-mb", options.search_records_mb,
+                 "Search records of attempts that the store keeps, the oldest go first; 0: none is "
+                 "kept")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
+      ->capture_default_str();
+  app.add_option("--search-record-days", options.search_record_days,
+                 "Days that search records are kept; the attempts stay; 0: no limit")
+      ->check(CLI::Range(std::uint32_t{0}, kMaxDays))
+      ->capture_default_str();
   app.add_option("--distribution-memory-mb", options.distribution_memory_mb,
                  "Distributions in memory; those not used for longest go first")
       ->check(CLI::Range(std::uint64_t{1}, kMaxMegabytes))

@@ -88,6 +88,9 @@ store::StoreOptions store_options(const ServerOptions& options) {
   store.sqlite.max_wal_bytes = options.max_wal_mb * kMega;
   store.sqlite.max_paths_per_pair = options.max_paths_per_pair;
   store.sqlite.max_distribution_bytes = options.stored_distributions_mb * kMega;
+  store.sqlite.searches = {.bytes = options.search_records_mb * kMega,
+                           .days = options.search_record_days};
+  store.postgres.searches = store.sqlite.searches;
   store.sqlite.scrub_bytes_per_s = static_cast<std::size_t>(kBytesOfMb * options.scrub_mb_per_s);
   store.sqlite.log = [](std::string_view line) { spdlog::warn("store: {}", line); };
   store.postgres.max_paths_per_pair = options.max_paths_per_pair;

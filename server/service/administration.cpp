@@ -108,6 +108,7 @@ const std::array<Administration::VerbHandler, kVerbRules.size()> Administration:
       {ListBackups, &run<&A::list_backups>},
       {HashBackup, &run<&A::hash_backup>},
       {ReadBackup, &run<&A::read_backup>},
+      {FindAttempts, &run<&A::find_attempts>},
   });
   static_assert(is_complete_for_verbs(kAll));
   return kAll;
@@ -173,6 +174,13 @@ AdminPage Administration::show_path(const Call& call) {
   const std::string& uuid = call.request.argument;
   std::optional<Attempt> attempt = parts_.store.find_attempt(report_of(uuid));
   return attempt ? page_of(std::move(*attempt)) : page_of(not_found("report", uuid));
+}
+
+AdminPage Administration::find_attempts(const Call& call) {
+  const AdminRequest& request = call.request;
+  const AttemptFilter filter = attempt_filter_from_text(request.argument).value_or_throw();
+  return page_of(parts_.store.find_attempts({robot_filter(request), request.task, filter},
+                                            request.cursor, page_size(request)));
 }
 
 AdminPage Administration::show_distribution(const Call& call) {

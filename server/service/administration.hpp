@@ -120,6 +120,7 @@ class Administration {
   AdminPage list_backups(const Call& call);
   AdminPage hash_backup(const Call& call);
   AdminPage read_backup(const Call& call);
+  AdminPage find_attempts(const Call& call);
 
   /// \throws Failure(InvalidInput) for an invalid name; Failure(NotFound).
   BackupFile open_backup(const std::string& name) const;

@@ -66,7 +66,7 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done, const std::string&
     batch->costs.push_back(catalog::cost_of(attempt));
     const BatchBytes bytes = batch_bytes(attempt);
     batch->path_bytes.push_back(bytes.waypoints);
-    batch->bytes += bytes.waypoints + bytes.scenes;
+    batch->bytes += bytes.waypoints + bytes.scenes + bytes.searches;
   }
   batch->attempts = std::move(attempts);
   received_ += batch->receipts.size();

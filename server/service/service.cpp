@@ -147,6 +147,9 @@ std::vector<BoundUse> Service::bounds(const store::StoreStatus& store) const {
   if (store.max_distribution_bytes > 0)
     bounds.push_back({"MB of distributions in the store", store.distribution_bytes >> 20U,
                       store.max_distribution_bytes >> 20U});
+  if (store.max_search_bytes > 0)
+    bounds.push_back({"MB of search records in the store", store.search_bytes >> 20U,
+                      store.max_search_bytes >> 20U});
   if (store.max_paths_per_pair > 0)
     bounds.push_back({"paths, of the robot and task with most", store.most_paths_of_pair,
                       store.max_paths_per_pair});

@@ -112,6 +112,10 @@ void expose_store(Exposition& page, const store::StoreStatus& store) {
              store.distribution_bytes);
   page.gauge("kinship_store_distribution_limit_bytes", "Those that are kept; 0: all.",
              store.max_distribution_bytes);
+  page.gauge("kinship_store_search_bytes", "Of search records in the store, about.",
+             store.search_bytes);
+  page.gauge("kinship_store_search_limit_bytes", "Those that are kept; 0: none.",
+             store.max_search_bytes);
   expose_rows(page, store);
   expose_replicas(page, store.replicas);
   page.gauge("kinship_store_scrub_progress_ratio",

@@ -60,6 +60,12 @@ std::optional<Error> check_path(const Path& path, const runtime::Robot& robot) {
 }  // namespace
 
 std::optional<Error> validate(const Attempt& attempt, const runtime::Robot& robot) {
+  if (attempt.search) {
+    const Eigen::Index dof = dof_of(*attempt.search);
+    if (dof != 0 && dof != robot.chain.dof())
+      return invalid("robot '" + robot.label + "': a search record of " + std::to_string(dof) +
+                     " joints, but it has " + std::to_string(robot.chain.dof()));
+  }
   return attempt.path ? check_path(*attempt.path, robot) : std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/attempt_filter.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/summaries.hpp"
 #include "proto/types/uuid.hpp"
@@ -72,6 +73,13 @@ struct AttemptTotals {
   std::vector<KnownAttempt> recent;  ///< the newest kKnownAttemptsPerMode of each, oldest first
 };
 
+/// The attempts of a listing.
+struct WantedAttempts {
+  std::optional<Digest> robot = {};  ///< missing: all
+  std::string_view task = {};        ///< empty: all
+  AttemptFilter filter = {};
+};
+
 /// Reads attempts, paths and scenes, by robot and task; see Store.
 class ExperienceStore {
  public:
@@ -105,8 +113,14 @@ class ExperienceStore {
   virtual Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot,
                                              std::string_view task, std::string_view cursor,
                                              std::size_t limit) const = 0;
-  /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path if
-  /// that is damaged or dropped, without its scene if that is damaged.
+  /// The newest, or slowest, first, with what their search records say. A page looks at the newest
+  /// kMaxSlowestOf attempts of the robot and task from its cursor on, so it may be short before the
+  /// last one; of the slowest there is one page.
+  virtual Page<AttemptSummary> find_attempts(const WantedAttempts& wanted, std::string_view cursor,
+                                             std::size_t limit) const = 0;
+  /// An attempt with its path, scene and search record, by report UUID; unsolved ones too. Without
+  /// its path if that is damaged or dropped, without its scene or search record if that is damaged
+  /// or was let go.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
   /// Attempts with their paths and scenes for export, oldest first; without the attempts of
   /// retired, dropped and damaged paths. A page ends early once its waypoints and scenes (as

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -14,6 +15,12 @@ namespace kinship::store {
 struct StorePoint {
   Uuid epoch;
   ConsistencyToken token;  ///< of the newest attempt that is durable
+};
+
+/// What a store keeps of search records; beyond it the oldest go, in the order in which they came.
+struct SearchLimits {
+  std::uint64_t bytes = std::uint64_t{256} << 20U;  ///< 0: none is kept
+  std::uint32_t days = 90;                          ///< 0: no limit
 };
 
 /// Commits the reports of robots, and finds the loss of reports that have a receipt; see Store.

@@ -1,13 +1,16 @@
 #include "server/store/sql_store.hpp"
 
 #include "proto/types/names.hpp"
+#include "server/store/tables/attempts.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/experience.hpp"
 #include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
+#include "server/store/tables/searches.hpp"
 #include "server/store/tables/settings.hpp"
 #include "server/store/tables/tasks.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 
@@ -66,6 +69,13 @@ std::uint64_t SqlStore::generation(const Digest& robot, std::string_view task) c
               [&](Session& session) { return generation_of(session, robot, task); });
 }
 
+Page<AttemptSummary> SqlStore::find_attempts(const WantedAttempts& wanted, std::string_view cursor,
+                                             std::size_t limit) const {
+  return read(View::Snapshot, [&](Session& session) {
+    return page_of_found_attempts(session, wanted, cursor, limit);
+  });
+}
+
 AttemptTotals SqlStore::attempt_totals(const Digest& robot, std::string_view task) const {
   return read(View::Snapshot, [&](Session& session) { return totals_of(session, robot, task); });
 }
@@ -119,6 +129,13 @@ void SqlStore::put_rehearsal(const StoredRehearsal& rehearsal, const RehearsalLi
 std::vector<StoredRehearsal> SqlStore::read_rehearsals(std::size_t limit) const {
   return read(View::EachStatement,
               [&](Session& session) { return select_rehearsals(session, limit); });
+}
+
+void SqlStore::trim_searches_later() const {
+  run_writing_later([this](Session& session, const RetireSome&) {
+    if (trim_searches(session, search_room_.limits(), now_ms()))
+      trim_searches_later();
+  });
 }
 
 void SqlStore::add_audit(const AuditEntry& entry) {

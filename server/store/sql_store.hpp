@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/store/search_room.hpp"
 #include "server/store/session.hpp"
 #include "server/store/store.hpp"
 #include "server/store/tables/retirement.hpp"
@@ -33,6 +34,8 @@ class SqlStore : public Store {
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override;
   std::uint64_t generation(const Digest& robot, std::string_view task) const override;
+  Page<AttemptSummary> find_attempts(const WantedAttempts& wanted, std::string_view cursor,
+                                     std::size_t limit) const override;
   AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override;
   Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
                                 const AuditEntry* audit) override;
@@ -56,8 +59,8 @@ class SqlStore : public Store {
 
  protected:
   /// \param max_distribution_bytes  of all distributions; 0: no limit.
-  explicit SqlStore(std::uint64_t max_distribution_bytes)
-      : max_distribution_bytes_(max_distribution_bytes) {}
+  SqlStore(std::uint64_t max_distribution_bytes, const SearchLimits& searches)
+      : max_distribution_bytes_(max_distribution_bytes), search_room_(searches) {}
 
   /// What a reading sees.
   enum class View {
@@ -68,6 +71,16 @@ class SqlStore : public Store {
   /// In a transaction; the second argument retires paths in it.
   using Writing = std::function<void(Session&, const RetireSome&)>;
 
+  /// Takes search records from reports if none is to be kept.
+  /// \return whether records have to be let go after this commit.
+  template <typename Reported>
+  bool admit_searches(std::vector<Reported>& reports) {
+    return search_room_.admit(reports);
+  }
+  /// On the writer's thread; no caller waits for it.
+  void trim_searches_later() const;
+  std::uint64_t search_bytes(Session& session) const { return search_room_.used(session); }
+
   /// As the last robots() saw them.
   std::size_t damaged_robots() const noexcept { return damaged_robots_; }
 
@@ -77,6 +90,8 @@ class SqlStore : public Store {
   virtual void run_reading(View view, const Reading& reading) const = 0;
   /// Runs a change, perhaps more than once; on return the last run is durable.
   virtual void run_writing(const Writing& writing) = 0;
+  /// The same on the writer's thread; no caller waits for it, and it may be lost.
+  virtual void run_writing_later(Writing writing) const = 0;
   /// \throws Failure(Unavailable) if another server has taken the right to fit.
   virtual void require_fit_right(Session& /*session*/, const Digest& /*distribution*/,
                                  const FitRight& /*right*/) {}
@@ -97,6 +112,7 @@ class SqlStore : public Store {
   }
 
   const std::uint64_t max_distribution_bytes_;
+  mutable SearchRoom search_room_;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
 };
 

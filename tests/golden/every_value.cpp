@@ -141,6 +141,25 @@ RecordedScene every_recorded_scene() {
   return scene;
 }
 
+SearchRecord every_search_record() {
+  Distinct next(3400);
+  SearchRecord search;
+  search.start = next.matrix(kJoints, 1);
+  search.goals = next.matrix(kJoints, 2);
+  search.T_task_start = next.pose();
+  search.T_task_goal = next.pose();
+  for (int i = 0; i < 2; ++i)
+    search.blockers.push_back({next.name("link"), next.name("object"), next.count()});
+  search.goal_contacts = {{1, next.name("link"), next.name("object")}};
+  search.last_free = next.matrix(kJoints, 1);
+  search.trees = {{next.matrix(kJoints, 3).cast<float>(), {-1, 0, 1}},
+                  {next.matrix(kJoints, 2).cast<float>(), {-1, -1}}};
+  search.allowed_collisions = {{next.name("link"), next.name("held")}};
+  search.seed = next.count();
+  search.reason = next.text("reason");
+  return search;
+}
+
 Attempt every_attempt() {
   Distinct next(300);
   Attempt attempt;
@@ -152,6 +171,7 @@ Attempt every_attempt() {
   attempt.record = every_record(next);
   attempt.path = Path(next.matrix(kJoints, 3));
   attempt.scene = every_recorded_scene();
+  attempt.search = every_search_record();
   return attempt;
 }
 
@@ -163,6 +183,7 @@ Attempt every_unsolved_attempt() {
   attempt.record.distribution_id.reset();
   attempt.path.reset();
   attempt.scene.reset();
+  attempt.search.reset();
   return attempt;
 }
 

@@ -107,7 +107,8 @@ inline constexpr Eigen::Index kJoints = 4;  ///< of paths and mixtures
 
 RobotDescription every_robot_description();
 RecordedScene every_recorded_scene();
-Attempt every_attempt();            ///< solved, with a scene
+SearchRecord every_search_record();
+Attempt every_attempt();            ///< solved, with a scene and a search record
 Attempt every_unsolved_attempt();   ///< without all that may be missing
 Distribution every_distribution();  ///< a mixture of two components, four joints
 Distribution every_kernels();       ///< the same, three kernels

@@ -14,6 +14,16 @@ inline const std::vector<store::RobotRecord>& golden_robots() {
   return kRobots;
 }
 
+/// Of attempt 4, in schemas that have search records.
+inline SearchRecord golden_search_record() {
+  SearchRecord search;
+  search.start = Eigen::VectorXd::Constant(kDof, 0.25);
+  search.goals = Eigen::MatrixXd::Constant(kDof, 2, 0.5);
+  search.blockers = {{"arm", "shelf", 60}};
+  search.reason = "not solved within 10 s";
+  return search;
+}
+
 /// For robot 0 and 1 in turn, tasks "bin" and "shelf"; number 4 is not solved, number 5 has no
 /// placement, number 6 is long and smooth, so that it is compressed.
 inline std::vector<Attempt> golden_attempts() {
@@ -24,6 +34,7 @@ inline std::vector<Attempt> golden_attempts() {
     attempts.push_back(number == 4 ? make_unsolved(robot, task, number)
                                    : make_attempt(robot, task, number));
   }
+  attempts[4].search = golden_search_record();
   attempts[5].T_task_base.reset();
   Eigen::MatrixXd line(kDof, 200);
   for (Eigen::Index i = 0; i < line.cols(); ++i)

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kAttempts = 17;
 constexpr std::uint64_t kPaths = 11;
-constexpr int kFirstWithRehearsals = 2;
+constexpr int kFirstWithRehearsals = 2, kFirstWithSearches = 3;
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -82,6 +82,20 @@ TEST_P(GoldenStore, StillHasItsRehearsal) {
   EXPECT_EQ(found[0].rehearsal, wanted.rehearsal);
   ASSERT_TRUE(found[0].library);
   EXPECT_EQ(found[0].library->paths[0].waypoints, wanted.library->paths[0].waypoints);
+}
+
+TEST_P(GoldenStore, StillHasItsSearchRecord) {
+  Attempt fresh = test::golden_attempts()[4];
+  const std::optional<SearchRecord> found = store_->find_attempt(fresh.report_uuid)->search;
+  ASSERT_EQ(found.has_value(), GetParam() >= kFirstWithSearches);
+  if (found) {
+    EXPECT_EQ(found->goals, fresh.search->goals);
+    EXPECT_EQ(why_text(*found), why_text(*fresh.search));
+  }
+  EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Duplicate);
+  fresh.report_uuid = test::id_from<Uuid>(1002);
+  EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Recorded);
+  EXPECT_EQ(store_->find_attempt(fresh.report_uuid)->search->goals, fresh.search->goals);
 }
 
 TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
@@ -210,7 +224,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

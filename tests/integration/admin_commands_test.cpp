@@ -48,8 +48,8 @@ TEST_F(AdminCommands, EveryListingIsATableAndADocument) {
       const auto rows = nlohmann::json::parse(document.out).at("rows").size();
       EXPECT_EQ(count_lines(table.out), rows + 1) << table.out;  // headings, or (none)
     }
-  EXPECT_EQ(seen,
-            (std::set<std::string>{"backup", "distributions", "jobs", "paths", "robots", "tasks"}));
+  EXPECT_EQ(seen, (std::set<std::string>{"attempts", "backup", "distributions", "jobs", "paths",
+                                         "robots", "tasks"}));
 }
 
 TEST_F(AdminCommands, ARobotThatBreaksARuleIsWrongUsage) {

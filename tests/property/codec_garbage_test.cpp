@@ -23,11 +23,18 @@ class Vandal {
 
   void spoil(kinship_wire_Attempt& w) {
     one_of(w.machine, w.task, w.T_task_base, w.dof, w.waypoints, w.scene, w.scene, w.record,
-           w.record);
+           w.record, w.search, w.search);
   }
   void spoil(kinship_wire_RecordedScene& w) {
     one_of(w.objects, w.held, w.allowed_collisions, w.constraint);
   }
+  void spoil(kinship_wire_SearchRecord& w) {
+    one_of(w.dof, w.start, w.goals, w.T_task_goal, w.blockers, w.goal_contacts, w.last_free,
+           w.trees, w.trees, w.reason);
+  }
+  void spoil(kinship_wire_Blocker& w) { one_of(w.first, w.second, w.count); }
+  void spoil(kinship_wire_GoalContact& w) { one_of(w.goal, w.first, w.second); }
+  void spoil(kinship_wire_SearchTree& w) { one_of(w.configurations, w.parents); }
   void spoil(kinship_wire_SceneSolid& w) { one_of(w.name, w.shape, w.size, w.pose); }
   void spoil(kinship_wire_SolidPair& w) { one_of(w.first, w.second); }
   void spoil(kinship_wire_TaskSpaceRegion& w) { one_of(w.T_task_region, w.T_region_end, w.bounds); }
@@ -115,6 +122,8 @@ TEST(CodecGarbage, SpoiledAttemptIsRefusedOrKeepsTheRules) {
     ReportRequest written;
     written.attempts = {values.attempt(5), values.attempt(5)};
     written.attempts[0].scene = values.recorded_scene();
+    const std::optional<Path>& path = written.attempts[0].path;
+    written.attempts[0].search = values.search_record(path ? path->dof() : 7);
     auto message = encode(kHead, written).value_or_throw();
     vandal.spoil(message.wire.attempts._buffer[0]);
     const auto read = decode(message.wire).value_or_throw();

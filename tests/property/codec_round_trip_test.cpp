@@ -60,6 +60,8 @@ TEST(CodecRoundTrip, BatchOfAttemptsComesBack) {
       Attempt& attempt = written.attempts.emplace_back(values.attempt());
       if (values.coin())
         attempt.scene = values.recorded_scene();
+      if (values.coin())
+        attempt.search = values.search_record(attempt.path ? attempt.path->dof() : 7);
     }
     const auto message = encode(kHead, written);
     ASSERT_TRUE(message) << message.error().message;
@@ -70,6 +72,11 @@ TEST(CodecRoundTrip, BatchOfAttemptsComesBack) {
     for (std::size_t n = 0; n < written.attempts.size(); ++n) {
       expect_same_pose(written.attempts[n].T_task_base, read.attempts[n].T_task_base);
       expect_same_scene(written.attempts[n].scene, read.attempts[n].scene);
+      if (written.attempts[n].search) {
+        ASSERT_TRUE(read.attempts[n].search);
+        expect_same_pose(written.attempts[n].search->T_task_goal,
+                         read.attempts[n].search->T_task_goal);
+      }
       EXPECT_EQ(json::to_json(read.attempts[n]), json::to_json(written.attempts[n]));
     }
   }
@@ -84,6 +91,20 @@ TEST(CodecRoundTrip, SceneComesBackFromAFileWithTheSameContent) {
     ASSERT_TRUE(read.scene);
     EXPECT_EQ(content_digest(*read.scene), content_digest(*written.scene));
     EXPECT_EQ(scene_bytes(*read.scene), scene_bytes(*written.scene));
+  }
+}
+
+TEST(CodecRoundTrip, SearchRecordComesBackFromAFileAsItWas) {
+  test::RandomValues values(kSeed);
+  for (int i = 0; i < kCases; ++i) {
+    Attempt written = values.attempt(3);
+    written.search = values.search_record(written.path ? written.path->dof() : 7);
+    written.T_task_base.reset();
+    written.search->T_task_goal.reset();  // poses come back within rounding
+    const std::string text = json::to_json(written);
+    const auto read = json::attempt_from_json(text).value_or_throw().attempt;
+    EXPECT_EQ(json::to_json(read), text);
+    EXPECT_EQ(search_bytes(*read.search), search_bytes(*written.search));
   }
 }
 

@@ -96,6 +96,33 @@ class RandomValues {
     return scene;
   }
 
+  /// Of a chain with `dof` joints; parts are missing at random.
+  SearchRecord search_record(Eigen::Index dof) {
+    SearchRecord search;
+    if (coin())
+      search.start = matrix(dof, 1);
+    if (coin())
+      search.goals = matrix(dof, 1 + below(5));
+    if (coin())
+      search.T_task_goal = pose();
+    for (int i = below(4); i > 0; --i)
+      search.blockers.push_back({name(30), name(30), count()});
+    if (search.goals.cols() > 0)
+      search.goal_contacts.push_back(
+          {static_cast<std::uint32_t>(search.goals.cols() - 1), name(30), name(30)});
+    if (coin())
+      search.last_free = matrix(dof, 1);
+    if (coin()) {
+      SearchTree& tree = search.trees.emplace_back();
+      tree.configurations = matrix(dof, 1 + below(30)).cast<float>();
+      for (std::int32_t i = 0; i < tree.configurations.cols(); ++i)
+        tree.parents.push_back(below(i + 1) - 1);
+    }
+    search.seed = count();
+    search.reason = name(100);
+    return search;
+  }
+
   Attempt attempt(int max_waypoints = 50) {
     Attempt attempt;
     attempt.report_uuid = Uuid::random();

@@ -212,6 +212,7 @@ class Attempt:
     collision_checks: int
     share: float
     scene: Optional[Scene]
+    search: Optional[Dict[str, Any]]
     def __init__(
         self,
         task: str,
@@ -230,6 +231,7 @@ class Attempt:
         collision_checks: int = ...,
         share: float = ...,
         scene: Optional[Scene] = ...,
+        search: Optional[Dict[str, Any]] = ...,
     ) -> None: ...
     @property
     def robot(self) -> str: ...

@@ -209,6 +209,23 @@ MovedTable rehearsals() {
           .postgres_light = light};
 }
 
+MovedTable searches() {
+  const std::string light = "SELECT id, received_ms, crc32c FROM search ORDER BY id";
+  return {.name = "search",
+          .reading = Reading::ById,
+          .columns = {{"id"},
+                      {"report_uuid", Blob},
+                      {"task_id"},
+                      {"robot_id"},
+                      {"received_ms"},
+                      {"bytes"},
+                      {"why", Text},
+                      {"crc32c"},
+                      {"payload", Blob}},
+          .sqlite_light = light,
+          .postgres_light = light};
+}
+
 MovedTable audit() {
   return {.name = "audit",
           .reading = Reading::ById,
@@ -256,6 +273,7 @@ std::vector<MovedTable> all_tables() {
           uses(),
           evictions(),
           rehearsals(),
+          searches(),
           audit(),
           settings(),
           {.name = "retired_report",

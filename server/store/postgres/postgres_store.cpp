@@ -31,7 +31,7 @@ namespace {
 class PostgresStore : public SqlStore {
  public:
   PostgresStore(const std::string& url, const PostgresOptions& options)
-      : SqlStore(options.max_distribution_bytes),
+      : SqlStore(options.max_distribution_bytes, options.searches),
         options_(options),
         primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
         readers_([this] { return primary_.connect(); }),
@@ -92,6 +92,7 @@ class PostgresStore : public SqlStore {
     status.replicas = fit_reads_.use();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
+    status.max_search_bytes = options_.searches.bytes;
     if (status.rollbacks > 0)
       status.message = "rolled back, clients offer again what is missing: " + history_.trouble() +
                        "; " + status.message;
@@ -261,6 +262,11 @@ class PostgresStore : public SqlStore {
       return true;
     });
   }
+  void run_writing_later(Writing writing) const override {
+    write_later([writing = std::move(writing)](Connection& connection) {
+      writing(connection, retirement_in(connection));
+    });
+  }
   void require_fit_right(Session& session, const Digest& distribution,
                          const FitRight& right) override {
     if (right.fence > 0 && !has_fit_right(static_cast<Connection&>(session), distribution, right))
@@ -270,9 +276,13 @@ class PostgresStore : public SqlStore {
 
   template <typename Reported>
   void commit(std::vector<Reported> reported, ReportsDone done) {
-    if (writer_->queued_bytes() <= options_.max_queued_bytes)
-      return writer_->submit(
-          prepare_item(std::move(reported), std::move(done), writer_->put_off()));
+    if (writer_->queued_bytes() <= options_.max_queued_bytes) {
+      const bool is_trim_due = admit_searches(reported);
+      writer_->submit(prepare_item(std::move(reported), std::move(done), writer_->put_off()));
+      if (is_trim_due)
+        trim_searches_later();
+      return;
+    }
     writer_->submit(declined_item(report_uuids(reported), std::move(done),
                                   "the queue of reports is full, try again"));
   }
@@ -298,6 +308,7 @@ class PostgresStore : public SqlStore {
       readers_.read([&](Connection& connection) {
         status = {};
         count_rows(connection, status);
+        status.search_bytes = search_bytes(connection);
         return true;
       });
     } catch (const PostgresError& error) {

@@ -22,6 +22,7 @@ struct PostgresOptions {
   /// Beyond it the least recently used distributions are deleted; 0: no limit.
   std::uint64_t max_distribution_bytes = 0;
   std::uint64_t max_paths_per_pair = 0;  ///< of a robot and task; 0: no cap
+  SearchLimits searches = {};
   /// How long a report that the database did not take is answered without asking it again.
   std::chrono::milliseconds put_off_for = PutOffReports::kRemembered;
   /// Receipts are given only for commits that a synchronous standby has.

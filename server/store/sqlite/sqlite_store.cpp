@@ -58,7 +58,7 @@ StoreLock lock_for_serving(const std::filesystem::path& file, bool is_new) {
 class SqliteStore : public SqlStore {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
-      : SqlStore(options.max_distribution_bytes),
+      : SqlStore(options.max_distribution_bytes, options.searches),
         options_(options),
         file_(locate_servable(file)),
         lock_(lock_for_serving(file_, options.new_store)),
@@ -107,6 +107,7 @@ class SqliteStore : public SqlStore {
     status.wal_bytes = writer_->wal_bytes();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
+    status.max_search_bytes = options_.searches.bytes;
     describe_disk(status, space_, *writer_, out_of_space_reason());
     if (status.rollbacks > 0)
       status.message +=
@@ -188,11 +189,7 @@ class SqliteStore : public SqlStore {
   }
 
   void note_use(const Digest& id) const override {
-    const auto note = [id](Batch& batch) {
-      store::note_use(batch.database(), id);
-      return true;
-    };
-    writer_->submit(std::make_unique<CallItem<decltype(note)>>(note));
+    run_writing_later([id](Session& session, const RetireSome&) { store::note_use(session, id); });
   }
 
   Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
@@ -251,6 +248,13 @@ class SqliteStore : public SqlStore {
       return true;
     });
   }
+  void run_writing_later(Writing writing) const override {
+    const auto write = [writing = std::move(writing)](Batch& batch) {
+      writing(batch.database(), retirement_in(batch));
+      return true;
+    };
+    writer_->submit(std::make_unique<CallItem<decltype(write)>>(write));
+  }
 
   template <typename Reported>
   void commit(std::vector<Reported> reported, ReportsDone done) {
@@ -260,8 +264,11 @@ class SqliteStore : public SqlStore {
     if (!why.empty())
       return writer_->submit(
           ReportItem::declined(history_, put_off_, report_uuids(reported), std::move(done), why));
+    const bool is_trim_due = admit_searches(reported);
     writer_->submit(std::make_unique<ReportItem>(history_, put_off_, std::move(reported),
                                                  std::move(done), options_.max_paths_per_pair));
+    if (is_trim_due)
+      trim_searches_later();
     take_ballast_later();
   }
 
@@ -286,6 +293,7 @@ class SqliteStore : public SqlStore {
     const ReaderPool::Lease reader = readers_.lease();
     StoreStatus now;  // an exception leaves no half of a count
     count_rows(*reader, now);
+    now.search_bytes = search_bytes(*reader);
     counted_ = std::move(now);
   } catch (const NotTheFile&) {  // or not any more: then it is back meanwhile
   }

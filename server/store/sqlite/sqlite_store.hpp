@@ -32,6 +32,7 @@ struct SqliteOptions {
   /// A store that is to be made although files of one that is gone lie beside it, which are set
   /// aside; refused if there is a store.
   bool new_store = false;
+  SearchLimits searches = {};
   /// How long a report that the database did not take is answered without asking it again.
   std::chrono::milliseconds put_off_for = PutOffReports::kRemembered;
   std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: no search

@@ -10,6 +10,7 @@
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/experience.hpp"
 #include "server/store/tables/robots.hpp"
+#include "server/store/tables/searches.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -95,6 +96,9 @@ Step<Retirement> continue_reset(Session& session, const TaskReset& reset, Retire
   const std::int64_t gone =
       retire_step(lock_pairs_of_task(session, reset.task_id), reset.last_path_id, retire_and_name);
   retired.paths += static_cast<std::uint64_t>(gone);
+  if (gone == 0)
+    for (const ExperienceKey& key : lock_pairs_of_task(session, reset.task_id))
+      drop_searches_of(session, key);
   if (gone == 0 && audit != nullptr)
     note_act(session, audit, AuditOutcome::Done, {},
              describe_paths(retired.task, count_paths_of(session, retired.task)) + ", " +
@@ -123,6 +127,8 @@ Result<Step<RemovedRobot>> continue_removal(Session& session, const Digest& robo
   count_rest(session, *id, removed);
   for (const Digest& distribution : removed.distributions)
     static_cast<void>(delete_distribution(session, distribution));
+  for (const ExperienceKey& key : lock_pairs_of_robot(session, *id))
+    drop_searches_of(session, key);
   removed.removal.robot = robot;
   removed.removal.label = record->description.label;
   removed.removal.is_deleted = !is_referred_to(session, *id);

@@ -8,6 +8,7 @@
 #include "proto/types/field_digest.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/sha256.hpp"
+#include "server/store/values/search_blob.hpp"
 
 namespace kinship::store {
 namespace {
@@ -99,10 +100,19 @@ Result<PreparedAttempt> prepare(Attempt attempt) {
   std::optional<PreparedScene> scene;
   if (attempt.scene)
     scene = PreparedScene{content_digest(*attempt.scene), encode_scene(*attempt.scene)};
+  std::optional<PreparedSearch> search;
+  if (attempt.search)
+    search = PreparedSearch{why_text(*attempt.search), encode_search(*attempt.search)};
   const Digest body = body_digest(attempt, path, scene);
   attempt.path.reset();
   attempt.scene.reset();
-  return PreparedAttempt{std::move(attempt), body, std::move(path), std::move(scene), {}, false};
+  attempt.search.reset();
+  return PreparedAttempt{.attempt = std::move(attempt),
+                         .body = body,
+                         .path = std::move(path),
+                         .scene = std::move(scene),
+                         .search = std::move(search),
+                         .received_ms = {}};
 }
 
 Result<PreparedAttempt> prepare(ReplicatedReport report) {

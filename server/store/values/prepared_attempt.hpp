@@ -27,12 +27,22 @@ struct PreparedScene {
   SceneBlob blob;
 };
 
+/// A search record ready to be written.
+struct PreparedSearch {
+  std::string why;                    ///< why_text()
+  std::vector<std::uint8_t> payload;  ///< encode_search()
+
+  std::uint64_t bytes() const { return 128 + why.size() + payload.size(); }  ///< of its row, about
+};
+
 /// An attempt with all values that can be computed before the writer gets it.
 struct PreparedAttempt {
-  Attempt attempt;  ///< without its path and scene
-  Digest body;      ///< of everything but the UUID: tells a retry from a second use of the UUID
+  Attempt attempt;  ///< without its path, scene and search record
+  /// Of everything but the UUID and the search record: tells a retry from a second use of the UUID.
+  Digest body;
   std::optional<PreparedPath> path;
   std::optional<PreparedScene> scene;
+  std::optional<PreparedSearch> search;
   std::optional<std::int64_t> received_ms;  ///< by the first store that had it; missing: now
   bool is_retired = false;                  ///< its path, elsewhere
 };

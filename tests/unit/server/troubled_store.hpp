@@ -266,6 +266,11 @@ class TroubledStore final : public store::Store {
                                             std::size_t limit) const override {
     return store_.list_attempts(robot, task, cursor, limit);
   }
+  store::Page<AttemptSummary> find_attempts(const store::WantedAttempts& wanted,
+                                            std::string_view cursor,
+                                            std::size_t limit) const override {
+    return store_.find_attempts(wanted, cursor, limit);
+  }
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     return store_.find_attempt(report_uuid);
   }

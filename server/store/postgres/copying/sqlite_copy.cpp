@@ -42,6 +42,7 @@ const std::vector<CopiedTable>& copied_tables() {
       {"distribution_use"},
       {"evicted_distribution", false},
       {"rehearsal"},
+      {"search"},
       {"audit"},
       {"setting", false, "key = 'revision_floor'"},
       {"retired_report"},

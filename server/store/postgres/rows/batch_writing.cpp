@@ -8,6 +8,7 @@
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/rows/arrivals.hpp"
 #include "server/store/values/codes.hpp"
+#include "server/store/values/crc32c.hpp"
 #include "server/store/values/path_content.hpp"
 #include "server/store/values/record_columns.hpp"
 
@@ -58,6 +59,12 @@ constexpr std::string_view kWritePaths =
     " task_id, robot_id, report_uuid, content, length, T_task_base, dof, waypoint_count, encoding,"
     " crc, waypoints, received_ms, retired_ms, scene)"
     " LEFT JOIN scene ON scene.content_sha256 = new.scene";
+
+constexpr std::string_view kWriteSearches =
+    "INSERT INTO search (report_uuid, task_id, robot_id, received_ms, bytes, why, crc32c, payload)"
+    " SELECT report_uuid, task_id, robot_id, coalesce(received_ms, $1), bytes, why, crc, payload"
+    " FROM unnest($2, $3, $4, $5, $6, $7, $8, $9) AS new (report_uuid, task_id, robot_id,"
+    " received_ms, bytes, why, crc, payload)";
 
 constexpr std::string_view kRestore =
     "UPDATE attempt SET path_id = new.path_id, status = new.status"
@@ -246,6 +253,30 @@ class AttemptColumns {
   RecordLists records_;
 };
 
+/// The columns of kWriteSearches, of the attempts that have a search record.
+struct SearchColumns {
+  Blobs uuids, payloads;
+  Integers tasks, robots, sizes, crcs;
+  OptionalIntegers received;
+  std::vector<std::string> reasons;
+
+  explicit SearchColumns(const std::vector<NewAttempt>& attempts) {
+    for (const NewAttempt& added : attempts)
+      if (added.from->search)
+        add(added, *added.from->search);
+  }
+  void add(const NewAttempt& added, const PreparedSearch& search) {
+    uuids.emplace_back(added.from->attempt.report_uuid.bytes);
+    payloads.emplace_back(search.payload);
+    tasks.push_back(added.key.task_id);
+    robots.push_back(added.key.robot_id);
+    sizes.push_back(static_cast<std::int64_t>(search.bytes()));
+    crcs.push_back(crc32c(search.payload));
+    received.push_back(added.from->received_ms);
+    reasons.push_back(search.why);
+  }
+};
+
 Parameters restored_in_columns(const BatchChanges& changes) {
   Blobs uuids;
   OptionalIntegers paths;
@@ -323,6 +354,11 @@ std::vector<Request> requests_of(const BatchChanges& changes, std::int64_t now_m
   }
   if (!changes.pairs.empty())
     requests.push_back({kChangePairs, pairs_in_columns(changes)});
+  if (const SearchColumns columns(changes.attempts); !columns.uuids.empty())
+    requests.push_back(
+        {kWriteSearches,
+         Parameters(now_ms, columns.uuids, columns.tasks, columns.robots, columns.received,
+                    columns.sizes, columns.reasons, columns.crcs, columns.payloads)});
   return requests;
 }
 

@@ -8,22 +8,44 @@
 
 #include "server/store/postgres/rows/arrivals.hpp"
 #include "server/store/tables/pages.hpp"
+#include "server/store/values/crc32c.hpp"
 #include "server/store/values/path_content.hpp"
 #include "server/store/values/scene_blob.hpp"
+#include "server/store/values/search_blob.hpp"
 
 namespace kinship::store::postgres {
 namespace {
 
-/// Paths and scenes by their ids, each read once.
+std::map<Uuid, SearchRecord> select_searches(Connection& connection,
+                                             std::span<const Uuid> reports) {
+  std::map<Uuid, SearchRecord> searches;
+  if (reports.empty())
+    return searches;
+  for (const Row row : connection.query("SELECT report_uuid, crc32c, payload FROM search"
+                                        " WHERE report_uuid = ANY ($1)",
+                                        bytes_of(reports))) {
+    const Bytes payload = row.column_blob(2);
+    std::optional<SearchRecord> search =
+        crc32c(payload) == row.column_integer(1) ? decode_search(payload) : std::nullopt;
+    if (search)
+      searches.insert_or_assign(id_of<Uuid>(row.column_blob(0)), *std::move(search));
+  }
+  return searches;
+}
+
+/// Paths and scenes by their ids, each read once, and search records by their reports.
 class Contents {
  public:
   Contents(Connection& connection, DamagedRows& noticed)
       : connection_(&connection), noticed_(&noticed) {}
 
-  /// Reads the paths and scenes of these attempts, in place of the paths read before.
+  /// Reads the paths, search records and scenes of these attempts, in place of the paths and
+  /// records read before.
   void read(std::span<const ArrivedAttempt> attempts) {
     std::vector<std::int64_t> path_ids, scene_ids;
+    std::vector<Uuid> reports;
     for (const ArrivedAttempt& arrived : attempts) {
+      reports.push_back(arrived.attempt.report_uuid);
       if (arrived.path_id)
         path_ids.push_back(*arrived.path_id);
       if (arrived.scene_id && !scenes_.contains(*arrived.scene_id))
@@ -31,8 +53,9 @@ class Contents {
     }
     read_paths(path_ids);
     read_scenes(scene_ids);
+    searches_ = select_searches(*connection_, reports);
   }
-  /// An attempt with its path and scene, if they can be read.
+  /// An attempt with its path, scene and search record, if they can be read.
   Attempt whole(ArrivedAttempt arrived) const {
     if (arrived.path_id)
       if (const auto found = paths_.find(*arrived.path_id); found != paths_.end())
@@ -40,6 +63,8 @@ class Contents {
     if (arrived.scene_id)
       if (const auto found = scenes_.find(*arrived.scene_id); found != scenes_.end())
         arrived.attempt.scene = found->second;
+    if (const auto found = searches_.find(arrived.attempt.report_uuid); found != searches_.end())
+      arrived.attempt.search = found->second;
     return std::move(arrived.attempt);
   }
 
@@ -74,6 +99,7 @@ class Contents {
   DamagedRows* noticed_;
   std::map<std::int64_t, Path> paths_;
   std::map<std::int64_t, RecordedScene> scenes_;
+  std::map<Uuid, SearchRecord> searches_;
 };
 
 bool is_exported(const ArrivedAttempt& arrived) {
@@ -120,7 +146,7 @@ class Export {
     if (attempt.path.has_value() != is_solved)
       return true;
     const BatchBytes more = batch_bytes(attempt);
-    bytes_ += more.waypoints + more.scenes;
+    bytes_ += more.waypoints + more.scenes + more.searches;
     if (page_.is_full() || (!page_.is_empty() && bytes_ > max_bytes_))
       return false;
     page_.add(std::move(attempt), arrival);

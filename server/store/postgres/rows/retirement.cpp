@@ -9,6 +9,7 @@
 
 #include "server/store/postgres/rows/arrivals.hpp"
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/searches.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -120,6 +121,7 @@ Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
     retired.paths = 1;
     add_robot(retired, reported->robot);
   }
+  drop_search_of(connection, report_uuid);
   note_act(connection, audit, AuditOutcome::Done, describe_paths(retired.task, before),
            in_number(count_paths_of(connection, retired.task), "path"));
   return retired;
@@ -143,6 +145,8 @@ std::vector<Retirement> retire_reports(Connection& connection, std::span<const U
       " SELECT DISTINCT unnest($1::bytea[]), $2::bigint ON CONFLICT (report_uuid)"
       " DO UPDATE SET retired_ms = retired_report.retired_ms",
       uuids, now_ms());
+  for (const Uuid& report : reports)
+    drop_search_of(connection, report);
   for (const Row pair : pairs) {
     const std::int64_t paths =
         retire_paths_of(connection, {pair.column_integer(0), pair.column_integer(1)}, uuids);

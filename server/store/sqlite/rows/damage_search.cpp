@@ -14,6 +14,7 @@
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
+#include "server/store/tables/searches.hpp"
 
 namespace kinship::store {
 namespace {
@@ -32,6 +33,8 @@ bool has_right_content(Database& database, const std::string& table, std::int64_
     return read_distribution(database, id).distribution.has_value();
   if (table == "rehearsal")
     return is_rehearsal_sound(database, id);
+  if (table == "search")
+    return is_search_sound(database, id);
   if (table == "robot")
     return is_robot_readable(database, id);
   return true;
@@ -144,6 +147,10 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
   return checked;
 }
 
+bool is_dropped_if_damaged(std::string_view table) {
+  return table == "rehearsal" || table == "search";
+}
+
 void DamageItem::apply(Batch& batch) {
   std::erase_if(rows_, [&](std::int64_t row) {
     return check_rows(batch.database(), table_, row - 1, 1).damaged_ids !=
@@ -154,6 +161,8 @@ void DamageItem::apply(Batch& batch) {
   for (const std::int64_t row : rows_)
     if (table_ == "rehearsal")
       drop_rehearsal(batch.database(), row);
+    else if (table_ == "search")
+      drop_search(batch.database(), row);
     else
       quarantine_row(batch.database(), table_, row);
 }

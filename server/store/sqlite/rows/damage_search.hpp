@@ -36,11 +36,15 @@ struct RowsChecked {
 RowsChecked check_rows(Database& database, const std::string& table, std::int64_t after_id,
                        std::int64_t limit);
 
-/// Quarantines damaged rows that a reader found, or drops them, if they are made anew anyhow; if it
-/// fails, the next reader finds them again.
+/// Whether damaged rows of a table are dropped: nothing refers to them, and they are made anew or
+/// explain only.
+bool is_dropped_if_damaged(std::string_view table);
+
+/// Quarantines damaged rows that a reader found, or drops them (is_dropped_if_damaged); if it fails, the
+/// next reader finds them again.
 class DamageItem : public WriteItem {
  public:
-  /// \param table  one with a quarantine, or rehearsal.
+  /// \param table  one with a quarantine, or whose damaged rows are dropped.
   DamageItem(std::string table, std::vector<std::int64_t> rows)
       : table_(std::move(table)), rows_(std::move(rows)) {}
 

@@ -13,6 +13,7 @@
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/tables/robots.hpp"
+#include "server/store/tables/searches.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
@@ -93,7 +94,8 @@ std::optional<AttemptRow> read_row(Database& database, std::int64_t id, DamagedR
   return row;
 }
 
-/// Reads the path and the scene that an attempt names; notes newly found damage.
+/// Reads the path and the scene that an attempt names, and its search record; notes newly found
+/// damage.
 void read_contents(Database& database, AttemptRow& row, DamagedRows& noted) {
   if (row.path_id) {
     PathsRead read = select_path(database, *row.path_id);
@@ -107,6 +109,7 @@ void read_contents(Database& database, AttemptRow& row, DamagedRows& noted) {
       noted.scenes.push_back(*row.scene_id);
     row.attempt.scene = std::move(read.scene);
   }
+  row.attempt.search = select_search(database, row.attempt.report_uuid);
 }
 
 bool is_whole(const Attempt& attempt) {
@@ -212,7 +215,7 @@ ExportRead export_page(Database& database, const PairFilter& filter, std::string
     for (const std::int64_t id : candidates) {
       if (std::optional<Attempt> attempt = read_candidate(database, id, read.damaged)) {
         const BatchBytes more = batch_bytes(*attempt);
-        bytes += more.waypoints + more.scenes;
+        bytes += more.waypoints + more.scenes + more.searches;
         if (read.page.rows.size() == rows || (!read.page.rows.empty() && bytes > max_bytes)) {
           read.page.next_cursor = std::to_string(last_id);
           return read;
@@ -296,7 +299,7 @@ ReplicatedRead select_replicated(Database& database, std::span<const Uuid> repor
       return read;
     if (std::optional<ReplicatedReport> shared = read_replicated(database, report, read.damaged)) {
       const BatchBytes more = batch_bytes(shared->attempt);
-      bytes += more.waypoints + more.scenes;
+      bytes += more.waypoints + more.scenes + more.searches;
       read.found.reports.push_back(std::move(*shared));
     }
     ++read.found.looked_at;

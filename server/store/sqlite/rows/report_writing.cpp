@@ -15,6 +15,7 @@
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/tables/searches.hpp"
 #include "server/store/tables/tasks.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -153,6 +154,7 @@ void write_changes(Batch& batch, const BatchChanges& changes, const ReportReadin
   for (NewAttempt attempt : changes.attempts) {
     attempt.path_id = row_of(attempt.path_id);
     const std::int64_t id = insert_attempt(database, attempt, scene_id, now_ms);
+    insert_search(database, *attempt.from, attempt.key, now_ms);
     for (const std::int64_t damaged : read.rows.damaged)
       quarantine_row(database, "attempt", damaged, id);
     if (attempt.status == AttemptStatus::DuplicateContent)

@@ -11,6 +11,7 @@
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/pages.hpp"
+#include "server/store/tables/searches.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -148,6 +149,7 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid, const Audi
     add_robot(retired, attempt.attempt.robot);
   }
   note_retired_report(database, report_uuid);
+  drop_search_of(database, report_uuid);
   if (audit != nullptr)
     note_act(database, audit, AuditOutcome::Done, describe_paths(retired.task, before),
              in_number(count_paths_of(database, retired.task), "path"));

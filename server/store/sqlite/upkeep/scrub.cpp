@@ -158,7 +158,7 @@ bool Scrub::search_rows(Database& database, const std::string& table) {
   last_id_ = part.last_id;
   for (const std::string& row : part.damaged)
     found_.push_back("row " + row + " (checksum)");
-  if ((has_quarantine(table) || table == "rehearsal") && !part.damaged_ids.empty())
+  if ((has_quarantine(table) || is_dropped_if_damaged(table)) && !part.damaged_ids.empty())
     writer_->submit(std::make_unique<DamageItem>(table, std::move(part.damaged_ids)));
   return part.is_last;
 }

@@ -148,6 +148,18 @@ TEST(PlanOptions, ScenesAreRecordedUnlessSaidOtherwise) {
   EXPECT_TRUE(parsed({"p", "--model", "m", "--record-scenes", "yes"}).options().record_scenes);
   EXPECT_FALSE(parsed({"p", "--model", "m", "--record-scenes", "no"}).options().record_scenes);
   EXPECT_EQ(parsed({"p", "--model", "m", "--record-scenes", "maybe"}).code(), 2);
+  const auto record = [&](const std::string& word) {
+    return parsed({"p", "--model", "m", "--task", "t", "--report", "--record-search", word})
+        .options()
+        .settings.record_search;
+  };
+  EXPECT_EQ(record("never"), guided::RecordSearch::Never);
+  EXPECT_EQ(record("failed"), guided::RecordSearch::Failed);
+  EXPECT_EQ(record("slow"), guided::RecordSearch::Slow);
+  EXPECT_EQ(record("all"), guided::RecordSearch::All);
+  EXPECT_EQ(parsed({"p", "--model", "m"}).options().settings.record_search,
+            guided::RecordSearch::Never)
+      << "what is not reported needs none";
 }
 
 TEST(PlanOptions, ReadsARobotFromAUrdf) {

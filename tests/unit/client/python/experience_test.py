@@ -27,6 +27,7 @@ class Experience(unittest.TestCase):
         solved.T_task_base, solved.scene = placement, scene
         unsolved = kinship.Attempt("sweep", self.panda, outcome="timeout", planning_time_s=10, collision_checks=99,
                                    processor_time_s=10.5)
+        unsolved.search = {"start": [0.5] * 7, "blockers": [{"first": "link5", "second": "table", "count": 3}]}
         kinship.write_experience(self.file, [solved, unsolved], robots=[self.panda])
 
         (robot,), (first, second) = kinship.read_experience(self.file)
@@ -37,6 +38,10 @@ class Experience(unittest.TestCase):
         self.assertEqual((first.outcome, first.collision_checks, len(first.scene)), ("solved", 1000, 1))
         self.assertEqual((second.outcome, second.waypoints, second.collision_checks), ("timeout", None, 99))
         self.assertIsNone(second.T_task_base)
+        self.assertIsNone(first.search)
+        self.assertEqual(second.search["blockers"][0]["second"], "table")
+        with self.assertRaisesRegex(kinship.InvalidInput, "search"):
+            second.search = {"goals": [[0.0] * 7], "start": [0.0]}
         self.assertEqual((first.processor_time_s, second.processor_time_s), (0, 10.5))
 
     def test_is_the_json_lines_of_the_format(self):

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "proto/types/attempt_filter.hpp"
 #include "proto/types/duration_text.hpp"
 #include "proto/types/nearest_name.hpp"
 #include "proto/types/number_text.hpp"
@@ -53,6 +54,24 @@ TEST(EnumText, RefusalListsTheAllowedWords) {
   EXPECT_EQ(outcome.error().code, ErrorCode::InvalidInput);
   EXPECT_EQ(outcome.error().message, "outcome: 'Solved' is not one of solved, timeout, failed");
   EXPECT_FALSE(parse_word<SamplingMode>(""));
+}
+
+TEST(AttemptFilter, IsReadBackFromItsText) {
+  EXPECT_EQ(to_text(AttemptFilter{}), "");
+  for (const AttemptFilter& filter :
+       {AttemptFilter{}, AttemptFilter{.outcome = OutcomeFilter::Timeout},
+        AttemptFilter{OutcomeFilter::Unsolved, 1'700'000'000'000, AttemptOrder::Slowest}})
+    EXPECT_EQ(attempt_filter_from_text(to_text(filter)).value(), filter) << to_text(filter);
+  const auto message = [](const char* text) {
+    const auto filter = attempt_filter_from_text(text);
+    return filter ? "" : filter.error().message;
+  };
+  EXPECT_EQ(message("outcome=lost"),
+            "outcome: 'lost' is not one of all, solved, unsolved, timeout, failed");
+  EXPECT_EQ(message("since_ms=-4"), "since_ms: '-4' is no time");
+  EXPECT_EQ(message("since_ms="), "since_ms: '' is no time");
+  EXPECT_EQ(message("order=newest,slow"),
+            "filter of attempts: 'slow' is not one of outcome, since_ms, order");
 }
 
 TEST(EnumText, ValueOutsideTheEnumIsACallersBug) {

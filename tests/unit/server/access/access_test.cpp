@@ -66,7 +66,8 @@ TEST(VerbRules, ARoleMayWhatItIsForAndWhatTheOneBeforeItMay) {
                                         "show_job",
                                         "cancel_job",
                                         "job_rows",
-                                        "list_attempts"};
+                                        "list_attempts",
+                                        "find_attempts"};
   EXPECT_EQ(allowed(named("r", AccessRole::Reader)), reader);
   std::set<std::string> more = reader;
   for (const char* const name :

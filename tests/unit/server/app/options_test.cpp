@@ -48,13 +48,18 @@ TEST_F(Options, WithoutArgumentsItServesTheStoreOfTheUser) {
   EXPECT_EQ(options.max_wal_mb, 512U);
   EXPECT_EQ(options.max_paths_per_pair, 20'000U);
   EXPECT_EQ(options.stored_distributions_mb, 1024U);
+  EXPECT_EQ(options.search_records_mb, 256U);
+  EXPECT_EQ(options.search_record_days, 90U);
   EXPECT_EQ(options.distribution_memory_mb, 128U);
   EXPECT_EQ(options.path_memory_mb, 64U);
 }
 
 TEST_F(Options, WhatIsKeptHasLimitsOrNone) {
   const ServerOptions options = good({"--max-paths-per-pair", "0", "--stored-distributions-mb", "0",
-                                      "--distribution-memory-mb", "1", "--path-memory-mb", "2"});
+                                      "--distribution-memory-mb", "1", "--path-memory-mb", "2",
+                                      "--search-records-mb", "0", "--search-record-days", "7"});
+  EXPECT_EQ(options.search_records_mb, 0U);
+  EXPECT_EQ(options.search_record_days, 7U);
   EXPECT_EQ(options.max_paths_per_pair, 0U);
   EXPECT_EQ(options.stored_distributions_mb, 0U);
   EXPECT_EQ(options.distribution_memory_mb, 1U);

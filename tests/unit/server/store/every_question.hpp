@@ -89,6 +89,8 @@ class EveryQuestion {
     store_->list_paths({}, "", "2", 2);
     store_->list_attempts({}, "", "", 2);
     store_->list_attempts(robot_, task_, "", 2);
+    store_->find_attempts({}, "", 2);
+    store_->find_attempts({.robot = robot_, .task = task_}, "", 2);
     store_->list_distributions({}, "", "", 2);
     store_->list_distributions(robot_, task_, "", 2);
     store_->list_distributions({}, task_, "", 2);

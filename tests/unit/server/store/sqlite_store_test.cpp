@@ -19,6 +19,7 @@ Engine sqlite_engine() {
     SqliteOptions options;
     options.max_paths_per_pair = limits.paths_per_pair;
     options.max_distribution_bytes = limits.distribution_bytes;
+    options.searches = limits.searches;
     return open_sqlite_store(directory / "store.db", options);
   };
   return {"Sqlite", open_in, Engine::BackupInstant::End};
@@ -237,7 +238,7 @@ TEST_F(SqliteStoreTest, RegisteringADamagedRobotAgainRepairsItAndKeepsItsPaths) 
 }
 
 TEST_F(SqliteStoreTest, AnswersTryAgainWhenTooMuchWaits) {
-  store_ = open_sqlite_store(file_, {.max_queued_bytes = 10'000});
+  store_ = open_sqlite_store(file_, {.max_queued_bytes = 15'000});
   ASSERT_TRUE(store_->register_robot(robot_));
   std::promise<void> busy;
   std::promise<void> go_on;

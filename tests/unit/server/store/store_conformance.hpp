@@ -21,6 +21,7 @@ namespace kinship::store {
 struct EngineLimits {
   std::uint64_t paths_per_pair = 0;
   std::uint64_t distribution_bytes = 0;
+  SearchLimits searches = {};
 };
 
 /// An engine under test: opens the store that lives in a directory, or makes it.

@@ -27,7 +27,8 @@ std::vector<Engine> postgres_engines() {
     if (const std::filesystem::path copy = directory / "store.db"; exists(copy))
       return open_sqlite_store(copy);  // a backup is one
     return open(directory, {.max_distribution_bytes = limits.distribution_bytes,
-                            .max_paths_per_pair = limits.paths_per_pair});
+                            .max_paths_per_pair = limits.paths_per_pair,
+                            .searches = limits.searches});
   };
   return {{"Postgres", open_in, Engine::BackupInstant::Begin}};
 }

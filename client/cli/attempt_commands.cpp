@@ -1,0 +1,117 @@
+#include "client/cli/attempt_commands.hpp"
+
+#include <ostream>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "client/cli/terminal.hpp"
+#include "client/link/admin_rows.hpp"
+#include "proto/files/output_file.hpp"
+#include "proto/json/attempt_json.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/json/robot_description_json.hpp"
+#include "robots/kinematics/urdf.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr const char* kExport = "attempts export";
+
+void add_query(const SearchRecord& search, Problem& problem) {
+  problem.start = search.start;
+  if (search.start.size() == 0)
+    problem.T_task_start = search.T_task_start;
+  problem.T_task_goal = search.T_task_goal;
+  if (!search.T_task_goal)
+    problem.goal_configurations = search.goals;
+  problem.seed = search.seed;
+}
+
+void add_scene(const RecordedScene& scene, const kinematics::Chain& chain, Problem& problem) {
+  problem.scene.objects = scene.objects;
+  for (SceneObject& object : problem.scene.objects)
+    object.approximate = false;  // a problem has shapes alone
+  for (const HeldObject& held : scene.held)
+    problem.attached.push_back(
+        {held.name, chain.tip_link(), held.shape, chain.T_tip_transfer() * held.T_transfer_object});
+  problem.allowed_collisions = scene.allowed_collisions;
+  problem.constraint = scene.constraint;
+}
+
+void add_pairs_of_links(const SearchRecord& search, const kinematics::Chain& chain,
+                        Problem& problem) {
+  std::set<std::string_view> names;
+  for (const SceneObject& object : problem.scene.objects)
+    names.insert(object.name);
+  for (const AttachedObject& attached : problem.attached)
+    names.insert(attached.name);
+  const auto is_known = [&](const std::string& name) {
+    return names.contains(name) || chain.find_link(name) >= 0;
+  };
+  for (const auto& [first, second] : search.allowed_collisions)
+    if (is_known(first) && is_known(second))
+      problem.allowed_collisions.emplace_back(first, second);
+}
+
+Result<kinematics::Chain> chain_of(link::Client& server, const Attempt& attempt) {
+  const Result<std::vector<std::string>> rows =
+      link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = attempt.robot.hex()});
+  if (!rows)
+    return rows.error();
+  if (rows->size() < 2)
+    return Error{ErrorCode::Internal, "the server does not describe the robot"};
+  const auto description = json::robot_description_from_json(rows->at(1));
+  return description ? kinematics::read_chain(*description) : description.error();
+}
+
+Result<Problem> fetch_problem(link::Client& server, const std::string& id) {
+  const Result<std::string> row =
+      link::first_row_of(server, {.verb = AdminVerb::ShowPath, .argument = id});
+  if (!row)
+    return row.error();
+  const auto named = json::stored_attempt_from_json(*row);
+  if (!named)
+    return link::unreadable_row(named.error());
+  const Result<kinematics::Chain> chain = chain_of(server, named->attempt);
+  return chain ? problem_of(named->attempt, *chain) : chain.error();
+}
+
+}  // namespace
+
+Result<Problem> problem_of(const Attempt& attempt, const kinematics::Chain& chain) {
+  const std::string who = "attempt " + attempt.report_uuid.text() + ": ";
+  if (!attempt.search)
+    return Error{ErrorCode::InvalidInput,
+                 who +
+                     "its report brought no search record (kinship-plan --record-search), or the "
+                     "server let it go (kinshipd --search-records-mb, --search-record-days)"};
+  Problem problem;
+  problem.name = "attempt-" + attempt.report_uuid.text();
+  problem.T_task_base = attempt.T_task_base;
+  add_query(*attempt.search, problem);
+  if (problem.start.size() == 0 && !problem.T_task_start)
+    return Error{ErrorCode::InvalidInput, who + "its record has no start"};
+  if (problem.goal_configurations.cols() == 0 && !problem.T_task_goal)
+    return Error{ErrorCode::InvalidInput, who + "its record has no goal"};
+  if (attempt.scene)
+    add_scene(*attempt.scene, chain, problem);
+  add_pairs_of_links(*attempt.search, chain, problem);
+  if (attempt.record.time_limit_s > 0)
+    problem.time_limit_s = attempt.record.time_limit_s;
+  return problem;
+}
+
+int export_attempt(link::Client& server, const AttemptExportOptions& options, std::ostream& out,
+                   std::ostream& err) {
+  const Result<Problem> problem = fetch_problem(server, options.id);
+  if (!problem)
+    return refuse(kExport, problem.error(), err);
+  files::OutputFile output(options.output, out);
+  output.stream() << json::to_json(*problem) << '\n';
+  output.keep();
+  return kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,120 @@
+#include "proto/types/search_record.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "proto/types/names.hpp"
+#include "proto/types/rules.hpp"
+
+namespace kinship {
+namespace {
+
+constexpr std::size_t kSearchRecordBytes = 128, kPoseBytes = 56, kBodyPairBytes = 24;
+
+template <typename Pairs>
+std::size_t bytes_of_bodies(const Pairs& pairs) {
+  std::size_t bytes = kBodyPairBytes * pairs.size();
+  for (const auto& pair : pairs)
+    bytes += pair.first.size() + pair.second.size();
+  return bytes;
+}
+
+template <typename Pairs>
+void check_bodies(std::string_view what, const Pairs& pairs, std::size_t limit, Rules& rules) {
+  rules.at_most(what, pairs.size(), limit);
+  const std::string name = std::string(what) + ": a name";
+  for (const auto& pair : pairs)
+    for (const std::string* body : {&pair.first, &pair.second})
+      rules.not_empty(name, *body).text(name, *body, kMaxLinkNameBytes);
+}
+
+void check_tree(const SearchTree& tree, Eigen::Index dof, Rules& rules) {
+  const auto count = static_cast<std::size_t>(tree.configurations.cols());
+  rules
+      .that(tree.configurations.rows() == dof || count == 0,
+            "search: a tree has another number of joints than the start")
+      .that(tree.configurations.allFinite(), "search: a tree has numbers that are not finite")
+      .that(tree.parents.size() == count, "search: a tree of " + std::to_string(count) +
+                                              " configurations has " +
+                                              std::to_string(tree.parents.size()) + " parents");
+  for (std::size_t i = 0; i < tree.parents.size(); ++i)
+    rules.that(tree.parents[i] >= -1 && tree.parents[i] < static_cast<std::int64_t>(i),
+               "search: a tree's parent is neither -1 nor earlier");
+}
+
+}  // namespace
+
+Eigen::Index dof_of(const SearchRecord& search) {
+  Eigen::Index dof = std::max(search.start.size(), search.last_free.size());
+  if (search.goals.cols() > 0)
+    dof = std::max(dof, search.goals.rows());
+  for (const SearchTree& tree : search.trees)
+    if (tree.configurations.cols() > 0)
+      dof = std::max(dof, tree.configurations.rows());
+  return dof;
+}
+
+std::size_t search_bytes(const SearchRecord& search) {
+  std::size_t bytes =
+      kSearchRecordBytes + search.reason.size() + bytes_of_bodies(search.blockers) +
+      bytes_of_bodies(search.goal_contacts) + bytes_of_bodies(search.allowed_collisions) +
+      sizeof(double) * static_cast<std::size_t>(search.start.size() + search.goals.size() +
+                                                search.last_free.size());
+  for (const auto* pose : {&search.T_task_start, &search.T_task_goal})
+    bytes += pose->has_value() ? kPoseBytes : 0;
+  for (const SearchTree& tree : search.trees)
+    bytes += sizeof(float) * static_cast<std::size_t>(tree.configurations.size()) +
+             sizeof(std::int32_t) * tree.parents.size();
+  return bytes;
+}
+
+std::optional<Error> check_search(const SearchRecord& search) {
+  Rules rules;
+  const Eigen::Index dof = dof_of(search);
+  rules.at_most("search: joints", static_cast<std::size_t>(dof), kMaxDof)
+      .at_most("search: goals", static_cast<std::size_t>(search.goals.cols()), kMaxSearchGoals)
+      .at_most("search: trees", search.trees.size(), kMaxSearchTrees)
+      .at_most("search (bytes)", search_bytes(search), kMaxSearchBytes);
+  const std::array<std::pair<const char*, Eigen::Index>, 3> parts = {
+      {{"start", search.start.size()},
+       {"goals", search.goals.cols() > 0 ? search.goals.rows() : 0},
+       {"last_free", search.last_free.size()}}};
+  for (const auto& [name, joints] : parts)
+    rules.that(joints == 0 || joints == dof, std::string("search: ") + name + " has " +
+                                                 std::to_string(joints) + " joints, not " +
+                                                 std::to_string(dof));
+  rules.that(search.start.allFinite() && search.goals.allFinite() && search.last_free.allFinite(),
+             "search: a configuration has numbers that are not finite");
+  if (search.T_task_start)
+    rules.pose("search: start_pose", *search.T_task_start);
+  if (search.T_task_goal)
+    rules.pose("search: goal_pose", *search.T_task_goal);
+  check_bodies("search: blockers", search.blockers, kMaxBlockers, rules);
+  check_bodies("search: goal_contacts", search.goal_contacts, kMaxGoalContacts, rules);
+  check_bodies("search: allowed_collisions", search.allowed_collisions, kMaxAllowedPairs, rules);
+  for (const GoalContact& contact : search.goal_contacts)
+    rules.that(contact.goal < search.goals.cols(), "search: goal_contacts: goal " +
+                                                       std::to_string(contact.goal) + " of " +
+                                                       std::to_string(search.goals.cols()));
+  for (const SearchTree& tree : search.trees)
+    check_tree(tree, dof, rules);
+  rules.text("search: reason", search.reason, kMaxMessageBytes);
+  return rules.broken();
+}
+
+std::string why_text(const SearchRecord& search) {
+  constexpr std::size_t kTold = 3;
+  std::string text = search.reason;
+  for (std::size_t i = 0; i < std::min(kTold, search.blockers.size()); ++i) {
+    const Blocker& blocker = search.blockers[i];
+    text += (i > 0          ? ", '"
+             : text.empty() ? "'"
+                            : "; '") +
+            blocker.first + "' touches '" + blocker.second + "' (" + std::to_string(blocker.count) +
+            ")";
+  }
+  return cut_text(text, kMaxWhyBytes);
+}
+
+}  // namespace kinship
