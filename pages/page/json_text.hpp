@@ -31,7 +31,7 @@ template <typename Values, typename ToJson>
 std::string list(const Values& values, const ToJson& each_to_json) {
   std::string json = "[";
   for (const auto& value : values)
-    json += (json.size() > 1 ? "," : "") + each_to_json(value);
+    json.append(json.size() > 1 ? "," : "").append(each_to_json(value));
   return json + "]";
 }
 

@@ -19,6 +19,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"Eigen", {"Eigen/", "unsupported/Eigen/"}},
     {"libcrypto", {"openssl/"}},
     {"Boost.Random", {"boost/random/"}},
+    {"Boost.CRC", {"boost/crc.hpp"}},
     {"Boost.Beast", {"boost/asio/", "boost/beast/"}},
     {"Cyclone DDS", {"dds/"}},
     {"nlohmann-json", {"nlohmann/"}},
@@ -60,6 +61,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string recall = "robots/recall";
   const std::string page = "pages/page";
   const std::string plots = "pages/plots";
+  const std::string mcap = "pages/mcap";
   const std::string access = "server/access";
   const std::string metrics = "server/metrics";
   const std::string store = "server/store";
@@ -104,6 +106,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {recall, {{planning, inverse, collision, kinematics, types}, {"Eigen"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
+      {mcap, {{page, geometry, kinematics, types}, {"Eigen", "Boost.CRC", "zstd"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
       {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
@@ -125,6 +128,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {"server/app",
        {{service, access, quotas, runtime, metrics, security, dds, codec, json, manual, sites,
          tables, types, store},
+        {"Boost.CRC", {"boost/crc.hpp"}},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
@@ -134,8 +138,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, page, plots, inverse, collision, geometry, kinematics,
-         models, mixture, json, manual, tables, types},
+       {{link, arguments, files, moveit, page, plots, mcap, inverse, collision, geometry,
+         kinematics, models, mixture, json, manual, tables, types},
         {"Eigen", "CLI11"}}},
       {"client/c",
        {{link, json, evidence, mixture, recall, planning, models, collision, geometry, kinematics,
