@@ -128,7 +128,6 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {"server/app",
        {{service, access, quotas, runtime, metrics, security, dds, codec, json, manual, sites,
          tables, types, store},
-        {"Boost.CRC", {"boost/crc.hpp"}},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
