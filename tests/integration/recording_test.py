@@ -137,7 +137,7 @@ class Recording(unittest.TestCase):
             free = end + REST + CHANGE
         times = [message.time for message in self.recording.messages]
         self.assertEqual(times, sorted(times))
-        self.assertGreater(len(self.recording._places[6]), 1, "more than one chunk")
+        self.assertGreater(len(self.recording.chunks), 1)
 
     def test_frames_are_those_of_forward_kinematics(self):
         for given in self.attempts[:3]:
@@ -240,6 +240,13 @@ class Recording(unittest.TestCase):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertEqual(kept.read_text(), "mine")
             self.assertFalse((self.folder / "kept.mcap.part").exists())
+
+    def test_options_that_exclude_each_other_are_refused(self):
+        file = self.folder / "refused.mcap"
+        for words in (("--output", str(self.folder / "refused.jsonl")), (self.attempts[0]["report_uuid"], "--task", "sweep"),
+                      (self.attempts[0]["report_uuid"], "--limit", "1"), ("--limit", "0")):
+            self.assertEqual(self.run_kinship("paths", "export", *words, "--mcap", str(file)).returncode, 2, words)
+            self.assertFalse(file.exists())
 
 
 if __name__ == "__main__":

@@ -76,7 +76,7 @@ class Mcap:
         require(data[:8] == MAGIC and data[-8:] == MAGIC, "magic")
         self.data = data
         self.schemas, self.channels, self.messages, self.metadata = {}, {}, [], []
-        self._places = {METADATA: [], CHUNK: []}  # what the summary's indexes must say
+        self.chunks, self._metadata_places = [], []  # what the summary's indexes must say
         self._counts = {}
         self._read_data()
         self._read_summary()
@@ -95,15 +95,15 @@ class Mcap:
             elif opcode == METADATA:
                 name = fields.text()
                 self.metadata.append((name, dict(fields.pairs(None, None))))
-                self._places[METADATA].append((place, length, name))
+                self._metadata_places.append((place, length, name))
             elif opcode == CHUNK:
                 require(not expected_indexes, "a chunk without all its message indexes")
                 expected_indexes = self._read_chunk(fields, place, length)
             elif opcode == MESSAGE_INDEX:
                 channel = fields.number(2)
                 require(expected_indexes and expected_indexes.pop(0) == (channel, fields.pairs(8, 8)), f"message index at {place}")
-                self._places[CHUNK][-1]["indexes"].append((channel, place))
-                self._places[CHUNK][-1]["index_length"] += length
+                self.chunks[-1]["indexes"].append((channel, place))
+                self.chunks[-1]["index_length"] += length
             elif opcode == DATA_END:
                 require(not expected_indexes, "a chunk without all its message indexes")
                 require(fields.number(4) == zlib.crc32(self.data[:place]), "CRC of the data section")
@@ -147,7 +147,7 @@ class Mcap:
             require(encoding == "json", f"encoding '{encoding}'")
             self.messages.append(Message(topic, time, json.loads(message.rest())))
         require((begin, end) == (min(times), max(times)), f"times of the chunk at {place}")
-        self._places[CHUNK].append({"times": (begin, end), "place": (place, length), "indexes": [], "index_length": 0,
+        self.chunks.append({"times": (begin, end), "place": (place, length), "indexes": [], "index_length": 0,
                                     "sizes": (len(packed), size)})
         return sorted(indexes.items())
 
@@ -171,13 +171,13 @@ class Mcap:
         offsets = [[f.number(1), f.number(8), f.number(8)] for _, f, _, _ in records(self.data, offset_start, footer_place)]
         require(offsets == groups, f"summary offsets {offsets}, groups {groups}")
         require(again == {SCHEMA: self.schemas, CHANNEL: self.channels}, "schemas and channels of the summary")
-        require([(f.number(8), f.number(8), f.text()) for f in found[METADATA_INDEX]] == self._places[METADATA], "metadata indexes")
+        require([(f.number(8), f.number(8), f.text()) for f in found[METADATA_INDEX]] == self._metadata_places, "metadata indexes")
         self._check_chunk_indexes(found[CHUNK_INDEX])
         self._check_statistics(*found[STATISTICS])
 
     def _check_chunk_indexes(self, indexes: "list[Fields]") -> None:
-        require(len(indexes) == len(self._places[CHUNK]), "number of chunk indexes")
-        for fields, chunk in zip(indexes, self._places[CHUNK]):
+        require(len(indexes) == len(self.chunks), "number of chunk indexes")
+        for fields, chunk in zip(indexes, self.chunks):
             require((fields.number(8), fields.number(8)) == chunk["times"], "times of a chunk index")
             require((fields.number(8), fields.number(8)) == chunk["place"], "place of a chunk index")
             require(fields.pairs(2, 8) == chunk["indexes"] and fields.number(8) == chunk["index_length"], "message indexes of a chunk")
@@ -185,7 +185,7 @@ class Mcap:
 
     def _check_statistics(self, fields: Fields) -> None:
         times = [message.time for message in self.messages] or [0]
-        expected = [len(self.messages), len(self.schemas), len(self.channels), 0, len(self.metadata), len(self._places[CHUNK]),
+        expected = [len(self.messages), len(self.schemas), len(self.channels), 0, len(self.metadata), len(self.chunks),
                     min(times), max(times)]
         require([fields.number(size) for size in (8, 2, 4, 4, 4, 4, 8, 8)] == expected, f"statistics are not {expected}")
         require(dict(fields.pairs(2, 8)) == {number: self._counts.get(number, 0) for number in self.channels}, "counts of channels")
