@@ -16,8 +16,8 @@
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 #include "server/app/database_url.hpp"
-#include "server/app/metrics_address.hpp"
 #include "server/app/password.hpp"
+#include "server/http/address.hpp"
 
 namespace kinship::app {
 namespace {
@@ -72,9 +72,9 @@ CLI::Validator is_number_up_to(int highest) {
           "FLOAT in [0 - " + range + "]"};
 }
 
-CLI::Validator is_metrics_address() {
+CLI::Validator is_port_address() {
   return {[](std::string& text) {
-            const Result<MetricsAddress> address = read_metrics_address(text);
+            const Result<http::Address> address = http::read_address(text);
             return address ? std::string() : address.error().message;
           },
           "ADDRESS:PORT"};
@@ -258,7 +258,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--metrics", options.metrics,
                  "Address and port where Prometheus reads /metrics, e.g. 127.0.0.1:9464, without "
                  "access control; default: nowhere")
-      ->check(is_metrics_address());
+      ->check(is_port_address());
   app.add_option("--metrics-host", options.metrics_hosts,
                  "A name by which /metrics may be asked for, besides addresses, localhost and this "
                  "machine's name; may be given again");

@@ -28,11 +28,11 @@
 #include "server/app/heap_trim.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
-#include "server/app/metrics_listener.hpp"
 #include "server/app/metrics_page.hpp"
 #include "server/app/revocation_watch.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
+#include "server/http/listener.hpp"
 #include "server/runtime/memory_reserve.hpp"
 #include "server/service/service.hpp"
 #include "server/store/open_store.hpp"
@@ -151,10 +151,10 @@ std::unique_ptr<RevocationWatch> watch_revocations(
       [](std::string_view line) { spdlog::warn("security: {}", line); });
 }
 
-std::optional<MetricsPort> open_metrics_port(const ServerOptions& options) {
+std::optional<http::Port> open_metrics_port(const ServerOptions& options) {
   if (options.metrics.empty())
     return std::nullopt;
-  return MetricsPort(read_metrics_address(options.metrics).value_or_throw());
+  return http::Port(http::read_address(options.metrics).value_or_throw(), {"metrics", "--metrics"});
 }
 
 ExpiryWatch watch_expiry(const dds::Participant& participant) {
@@ -233,7 +233,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   // Before the store: a server that cannot join the domain, or has no port, leaves no file behind.
   const std::shared_ptr<security::ClientDirectory> clients = clients_of(options);
   const dds::Participant participant = join_domain(options, clients);
-  std::optional<MetricsPort> metrics_port = open_metrics_port(options);
+  std::optional<http::Port> metrics_port = open_metrics_port(options);
   dds::WaitLoop loop(participant);
   const Events events(participant, loop, access::may_hear);
   const Announcements announcements(participant, loop, may_hear_announcement);
@@ -262,13 +262,13 @@ int serve(const ServerOptions& options, std::ostream& out) {
   tell_what_is_served(service.status(), options.domain, store_name);
   ExpiryWatch expiry = watch_expiry(participant);
   expiry.beat(WaitClock::now());
-  std::optional<MetricsListener> metrics;
+  std::optional<http::Listener> metrics;
   if (metrics_port) {
-    spdlog::info("metrics at {}", metrics_port->url());
-    metrics.emplace(
-        std::move(*metrics_port),
-        [&service, &endpoints] { return metrics_page(service, endpoints.clients()); },
-        MetricsLimits{.hosts = options.metrics_hosts});
+    spdlog::info("metrics at {}/metrics", metrics_port->url());
+    metrics.emplace(std::move(*metrics_port), metrics_handler([&service, &endpoints] {
+                      return metrics_page(service, endpoints.clients());
+                    }),
+                    http::Limits{.hosts = options.metrics_hosts, .host_option = "--metrics-host"});
   }
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");

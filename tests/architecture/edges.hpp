@@ -62,6 +62,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string plots = "pages/plots";
   const std::string access = "server/access";
   const std::string metrics = "server/metrics";
+  const std::string http = "server/http";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
@@ -106,6 +107,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
+      {http, {{types}, {"Boost.Beast"}}},
       {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -123,9 +125,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          inverse, evidence, types},
         {"Eigen"}}},
       {"server/app",
-       {{service, access, quotas, runtime, metrics, security, dds, codec, json, manual, sites,
+       {{service, access, quotas, runtime, metrics, http, security, dds, codec, json, manual, sites,
          tables, types, store},
-        {"Boost.Beast", "CLI11", "spdlog"}}},
+        {"CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
