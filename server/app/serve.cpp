@@ -23,6 +23,7 @@
 #include "proto/security/admin_token.hpp"
 #include "proto/types/names.hpp"
 #include "server/access/access.hpp"
+#include "server/app/console_server.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/expiry_watch.hpp"
 #include "server/app/heap_trim.hpp"
@@ -120,8 +121,11 @@ using Announcements = dds::Publisher<codec::AnnouncementPublication>;
 
 /// The service's events and announcements go to these, which outlive it.
 void publish_with(service::ServiceOptions& settings, const Events& events,
-                  const Announcements& announcements) {
-  settings.on_event = [&events](const Event& event) { events.publish(event); };
+                  const Announcements& announcements, console::Broadcast& broadcast) {
+  settings.on_event = [&events, &broadcast](const Event& event) {
+    events.publish(event);
+    broadcast.publish(event);
+  };
   settings.on_announcement = [&announcements](const Announcement& announcement) {
     announcements.publish(announcement);
   };
@@ -234,6 +238,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
   const std::shared_ptr<security::ClientDirectory> clients = clients_of(options);
   const dds::Participant participant = join_domain(options, clients);
   std::optional<http::Port> metrics_port = open_metrics_port(options);
+  std::optional<http::Port> console_port = open_console_port(options);
+  console::Broadcast broadcast;
   dds::WaitLoop loop(participant);
   const Events events(participant, loop, access::may_hear);
   const Announcements announcements(participant, loop, may_hear_announcement);
@@ -243,7 +249,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   settings.credentials_expire_ms = expiry_ms(participant);
   settings.log = [&log](std::string_view line) { log.write(line); };
   set_upstream(options, settings);
-  publish_with(settings, events, announcements);
+  publish_with(settings, events, announcements, broadcast);
   settings.wake = [&loop] { loop.wake(); };
   std::unique_ptr<store::Store> opened =
       store::open_store(options.store.string(), store_options(options));
@@ -270,12 +276,16 @@ int serve(const ServerOptions& options, std::ostream& out) {
                     }),
                     http::Limits{.hosts = options.metrics_hosts, .host_option = "--metrics-host"});
   }
+  std::optional<ConsoleServer> console;
+  if (console_port)
+    console.emplace(std::move(*console_port), options, service, broadcast);
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
   run(loop, service, expiry);
 
   notify_service_manager("STOPPING=1");
   metrics.reset();
+  console.reset();
   service.shutdown();
   spdlog::info("ended");
   return kDone;

@@ -48,6 +48,10 @@ Result<Address> read_address(std::string_view text) {
   return is_address(AF_INET, read.address) ? Result<Address>(read) : wrong;
 }
 
+bool is_loopback(const Address& address) {
+  return address.address.starts_with("127.") || address.address == "::1";
+}
+
 bool is_served_host(std::string_view host, const std::vector<std::string>& names) {
   if (host.starts_with('['))
     return host.find(']') != std::string_view::npos &&

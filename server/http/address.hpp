@@ -18,6 +18,9 @@ struct Address {
 /// Reads 127.0.0.1:9464 or [::1]:9464. Host names are refused: their address may change.
 Result<Address> read_address(std::string_view text);
 
+/// Whether only this machine reaches it.
+bool is_loopback(const Address& address);
+
 /// Whether a request for this host is answered: an address, localhost, this machine's name or one
 /// of `names`. A page of another name, which was made to lead here, is not this server's.
 /// \param host  as in a request's field Host, with or without a port.

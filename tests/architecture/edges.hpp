@@ -73,6 +73,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string rehearsal = "server/rehearsal";
   const std::string sites = "server/sites";
   const std::string service = "server/service";
+  const std::string console = "server/console";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
@@ -124,9 +125,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{access, quotas, rehearsal, sites, catalog, fitting, runtime, store, metrics, density,
          inverse, evidence, types},
         {"Eigen"}}},
+      {console, {{service, runtime, http, page, plots, evidence, json, types}, {}}},
       {"server/app",
-       {{service, access, quotas, runtime, metrics, http, security, dds, codec, json, manual, sites,
-         tables, types, store},
+       {{console, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
+         manual, sites, tables, types, store},
         {"CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},

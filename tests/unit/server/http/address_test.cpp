@@ -18,5 +18,12 @@ TEST(Address, IsAnAddressAndAPort) {
   }
 }
 
+TEST(Address, IsLoopbackWhereOnlyThisMachineReachesIt) {
+  for (const char* const own : {"127.0.0.1:1", "127.9.9.9:1", "[::1]:1"})
+    EXPECT_TRUE(is_loopback(read_address(own).value())) << own;
+  for (const char* const open : {"0.0.0.0:1", "[::]:1", "192.0.2.1:1", "12.7.0.1:1"})
+    EXPECT_FALSE(is_loopback(read_address(open).value())) << open;
+}
+
 }  // namespace
 }  // namespace kinship::http::address_test
