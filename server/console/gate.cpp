@@ -41,7 +41,7 @@ bool Gate::is_token(std::string_view text) const {
     return false;
   unsigned difference = 0;
   for (std::size_t i = 0; i < text.size(); ++i)
-    difference |= static_cast<unsigned char>(text[i]) ^ static_cast<unsigned char>(token_[i]);
+    difference |= static_cast<unsigned>(text[i] ^ token_[i]);
   return difference == 0;
 }
 

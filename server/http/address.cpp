@@ -16,11 +16,6 @@ bool is_address(int family, const std::string& text) {
   return inet_pton(family, text.c_str(), &address) == 1;
 }
 
-std::string name_of_this_machine() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
 bool are_equal(const std::string& name, const std::string& other) {
   return strcasecmp(name.c_str(), other.c_str()) == 0;
 }
@@ -46,6 +41,11 @@ Result<Address> read_address(std::string_view text) {
   }
   read.address = host;
   return is_address(AF_INET, read.address) ? Result<Address>(read) : wrong;
+}
+
+std::string name_of_this_machine() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 bool is_loopback(const Address& address) {

@@ -18,6 +18,8 @@ struct Address {
 /// Reads 127.0.0.1:9464 or [::1]:9464. Host names are refused: their address may change.
 Result<Address> read_address(std::string_view text);
 
+std::string name_of_this_machine();
+
 /// Whether only this machine reaches it.
 bool is_loopback(const Address& address);
 

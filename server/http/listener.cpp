@@ -59,7 +59,10 @@ Address Port::address() const {
 }
 
 std::string Port::url() const {
-  return (state_->tls ? "https://" : "http://") + to_text(address());
+  Address named = address();
+  if (state_->acceptor.local_endpoint().address().is_unspecified())
+    named.address = name_of_this_machine();
+  return (state_->tls ? "https://" : "http://") + to_text(named);
 }
 
 class Listener::Implementation {

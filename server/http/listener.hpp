@@ -36,7 +36,8 @@ class Port {
   Port& operator=(Port&& other) noexcept;
 
   Address address() const;  ///< with the port that it has
-  std::string url() const;  ///< http://127.0.0.1:9464 or https://...
+  /// http://127.0.0.1:9464 or https://...; with this machine's name if it serves all networks.
+  std::string url() const;
 
  private:
   friend class Listener;

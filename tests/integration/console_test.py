@@ -6,6 +6,7 @@ import pathlib
 import re
 import resource
 import socket
+import ssl
 import subprocess
 import time
 import unittest
@@ -19,7 +20,8 @@ from browser import Browser
 from kinshipd_process import Kinshipd
 
 MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
-TASK = "shelf <1> & \"2\""  # what a page must not take for HTML
+TASK = "shelf:1"
+MACHINE = "<img src=x> & \"2\""  # what a page must not take for HTML
 READY = {"panda": np.array([0, -0.785, 0, -2.356, 0, 1.571, 0.785]), "ur10e": np.array([0, -1.2, 1.8, -2.2, -1.57, 0])}
 
 
@@ -30,7 +32,7 @@ def attempt(robot: str, seed: int, task: str = TASK, **record) -> dict:
     waypoints += np.random.default_rng(seed).uniform(-0.1, 0.1, waypoints.shape)
     known = {"outcome": "solved", "planner": "birrt", "planner_options": "", "planning_time_s": 0.5, "collision_checks": 1000,
              "time_limit_s": 10, **record}
-    return {"report_uuid": str(uuid.UUID(int=seed + 1000 * sum((robot + task).encode()))), "task": task, "robot": robot, "machine": "test",
+    return {"report_uuid": str(uuid.UUID(int=seed + 1000 * sum((robot + task).encode()))), "task": task, "robot": robot, "machine": MACHINE,
             "T_task_base": [0, 0, 0, 0, 0, 0, 1], "waypoints": waypoints.tolist() if known["outcome"] == "solved" else None,
             "record": known, "scene": None}
 
@@ -70,6 +72,7 @@ class ServedConsole:
         connection.request(method, path, body, {name: value for name, value in named.items() if value})
         reply = connection.getresponse()
         reply.text = reply.read().decode()
+        connection.close()
         return reply
 
     def stream(self) -> socket.socket:
@@ -81,8 +84,8 @@ class ServedConsole:
 
 
 def processor_time_s(pid: int) -> float:
-    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    """Of all threads that live, to the nanosecond."""
+    return sum(int(file.read_text().split()[0]) for file in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat")) / 1e9
 
 
 class Pages(unittest.TestCase):
@@ -98,7 +101,8 @@ class Pages(unittest.TestCase):
         used = {"distribution_id": cls.distribution["id"], "distribution_revision": cls.distribution["revision"]}
         own = []
         for seed in range(12):
-            own.append(attempt("ur10e", 2 * seed, sampling_mode="guided", share=0.5, planning_time_s=0.2 + 0.01 * seed, **used))
+            own.append(attempt("ur10e", 2 * seed, sampling_mode="guided", share=0.5, planning_time_s=0.2 + 0.01 * seed,
+                               collision_checks=250 + 10 * seed, **used))
             own.append(attempt("ur10e", 2 * seed + 1, sampling_mode="control", planning_time_s=0.9 + 0.01 * seed, **used))
         own.append(attempt("ur10e", 50, outcome="timeout", collision_checks=5000, planning_time_s=10))
         own.append(attempt("panda", 51, task="other", planning_time_s=7.5))
@@ -163,7 +167,7 @@ class Pages(unittest.TestCase):
         saved = {row[0]: row for row in self.table("What guidance saves")}
         self.assertEqual(saved[TASK][1:4], ["ur10e", "12", "12"])
         ratio = float(saved[TASK][4].split()[0])
-        self.assertTrue(2.5 < ratio < 5.5, ratio)  # 0.955 s / 0.255 s
+        self.assertTrue(2 < ratio < 5, ratio)  # 1000 checks / 305
         self.assertAlmostEqual(float(re.match(r"[\d.]+", saved[TASK][5]).group()), 12 * (0.955 - 0.255), delta=0.011)
 
     def test_the_fleet_is_live(self):
@@ -210,10 +214,9 @@ class Pages(unittest.TestCase):
         self.open("/slow")
         self.assertEqual(self.column("Unsolved", 0), [attempt("ur10e", 50)["report_uuid"][:8]])
         dearest = self.table("Dearest of those solved")
-        self.assertEqual([dearest[0][2], dearest[0][3], dearest[0][5]], ["other", "panda", "7.50\u202fs"])
-        attempts = self.console.rows("attempts", "list") if "attempts" in self.console.kinship("--help") else []
-        if attempts:
-            self.assertEqual(self.tile("attempts"), str(len(attempts)))
+        self.assertEqual([dearest[0][2], dearest[0][3], dearest[0][5], dearest[0][9]], ["other", "panda", "7.50\u202fs", MACHINE])
+        status = json.loads(self.console.kinship("status", "--json"))
+        self.assertEqual(self.tile("attempts"), str(status["attempts"]))
         self.browser.click("[data-hours='1']")
         self.browser.wait("document.querySelector('[data-hours=\"1\"]').getAttribute('aria-pressed') === 'true'")
         self.browser.click("table[aria-label='Unsolved'] tbody a")
@@ -249,7 +252,7 @@ class Pages(unittest.TestCase):
         self.open("/")
         sizes = self.browser.run("return performance.getEntriesByType('resource').map(e => e.decodedBodySize)")
         self.assertLess(sum(sizes), 300_000)
-        paint = self.browser.run("return performance.getEntriesByName('first-contentful-paint')[0].startTime")
+        paint = self.browser.wait("(performance.getEntriesByName('first-contentful-paint')[0] || {}).startTime")
         self.assertLess(paint, 500)
 
 
@@ -314,16 +317,26 @@ class Guard(unittest.TestCase):
 
     def test_ten_open_pages_cost_little(self):
         listeners = [self.console.stream() for _ in range(10)]
+
+        def share_of_a_core(seconds: float) -> float:
+            begin, time_s = time.monotonic(), processor_time_s(self.console.server.pid)
+            time.sleep(seconds)
+            return (processor_time_s(self.console.server.pid) - time_s) / (time.monotonic() - begin)
+
         try:
-            time.sleep(1)
-            begin, took = processor_time_s(self.console.server.pid), time.monotonic()
-            time.sleep(5)
-            share = (processor_time_s(self.console.server.pid) - begin) / (time.monotonic() - took)
+            for listener in listeners:
+                while b"event: status" not in listener.recv(100_000):
+                    pass
+            with_pages = share_of_a_core(5)
+            for listener in listeners:
+                self.assertGreaterEqual(listener.recv(100_000).count(b"event: status"), 4)
         finally:
-            for each in listeners:
-                each.close()
-        print(f"ten open pages: {100 * share:.2f} % of a core")
-        self.assertLess(share, 0.02)  # with the server's own second; alone it takes less than half of that
+            for listener in listeners:
+                listener.close()
+        time.sleep(2)  # until the server has noticed
+        without = share_of_a_core(5)
+        print(f"ten open pages: {100 * with_pages:.2f} % of a core, without {100 * without:.2f} %")
+        self.assertLess(with_pages - without, 0.01)
 
 
 class Changes(unittest.TestCase):
@@ -357,6 +370,32 @@ class Changes(unittest.TestCase):
             browser.wait("!document.querySelector('dialog')")
             browser.check_console(self)
         self.assertEqual([(row["name"], row["verb"], row["target"]) for row in console.rows("audit")][-1], ("console", "reset_task", "old"))
+
+
+class Networks(unittest.TestCase):
+    def test_other_networks_are_served_over_tls_alone(self):
+        with Kinshipd() as server:
+            program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinshipd"
+            plain = subprocess.run([program, "--store", server.folder / "none.db", "--domain", str(server.domain), "--console", "0.0.0.0:0"],
+                                   capture_output=True, text=True, timeout=60)
+            self.assertEqual(plain.returncode, 2)
+            self.assertIn("--console '0.0.0.0:0' is not loopback, and without --security", plain.stderr)
+            folder = server.folder / "security"
+            subprocess.run([program, "secure", "init", folder], check=True, capture_output=True, timeout=60)
+            server.start("--security", str(folder), "--console", "0.0.0.0:0")
+            link = (server.folder / "store.db.console").read_text()
+            port, token = re.fullmatch(r"https://[^/]+:(\d+)/\?token=(\w+)\n", link).groups()
+            trusted = ssl.create_default_context(cafile=folder / "server" / "ca.pem")
+            trusted.check_hostname = False  # it names the server, no host
+            connection = http.client.HTTPSConnection("127.0.0.1", int(port), context=trusted, timeout=30)
+            connection.request("GET", "/?token=" + token)
+            reply = connection.getresponse()
+            self.assertEqual(reply.status, 200, reply.read())
+            self.assertIn("; Secure", reply.headers["Set-Cookie"])
+            connection.close()
+            with socket.create_connection(("127.0.0.1", int(port)), timeout=30) as clear:
+                clear.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+                self.assertNotIn(b"HTTP/1.1", clear.recv(1000))
 
 
 if __name__ == "__main__":

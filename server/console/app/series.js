@@ -25,7 +25,7 @@ const kinshipSeries = (() => {
   /// \return {add(seconds, [value or null, ...])}
   function show(element, {label, lines, text, least}) {
     const points = [];
-    const figure = svg("svg", {class: "series", role: "img", viewBox: `0 0 ${kWidth} ${kHeight}`, preserveAspectRatio: "none"});
+    const figure = svg("svg", {class: "series", role: "img", "aria-label": label, viewBox: `0 0 ${kWidth} ${kHeight}`, preserveAspectRatio: "none"});
     const keys = make("div", {class: "keys"}, ...lines.map((line) => make("span", {}, make("i", {style: `--hue: var(--${line.color})`}), line.name, " ", make("b", {}))));
     const scale = make("p", {class: "note"});
     element.append(keys, figure, scale);
