@@ -64,6 +64,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string mcap = "pages/mcap";
   const std::string access = "server/access";
   const std::string metrics = "server/metrics";
+  const std::string http = "server/http";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
@@ -74,6 +75,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string rehearsal = "server/rehearsal";
   const std::string sites = "server/sites";
   const std::string service = "server/service";
+  const std::string console = "server/console";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
@@ -109,6 +111,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {mcap, {{page, geometry, kinematics, types}, {"Eigen", "Boost.CRC", "zstd"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
+      {http, {{types}, {"Boost.Beast"}}},
       {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -125,10 +128,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{access, quotas, rehearsal, sites, catalog, fitting, runtime, store, metrics, density,
          inverse, evidence, types},
         {"Eigen"}}},
+      {console, {{service, runtime, http, page, plots, evidence, json, types}, {}}},
       {"server/app",
-       {{service, access, quotas, runtime, metrics, security, dds, codec, json, manual, sites,
-         tables, types, store},
-        {"Boost.Beast", "CLI11", "spdlog"}}},
+       {{console, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
+         manual, sites, tables, types, store},
+        {"CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
