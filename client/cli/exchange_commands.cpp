@@ -206,17 +206,6 @@ void print(const Counts& counts, bool json, std::ostream& out) {
 
 }  // namespace
 
-int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
-                 std::ostream& err) {
-  files::OutputFile output(options.output, out);
-  AdminRequest request;
-  request.verb = AdminVerb::ExportPaths;
-  request.robot = options.robot;
-  request.task = options.task;
-  const bool progress = options.progress && !(options.output.empty() && is_terminal(out));
-  return write_rows(server, request, {options.output, output, progress}, "paths export", err);
-}
-
 int export_configurations(link::Client& server, const ConfigurationsOptions& options,
                           std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "configurations export";

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <iosfwd>
-#include <string>
 
 #include "client/cli/distribution_query.hpp"
 #include "client/cli/job_commands.hpp"
@@ -10,16 +9,6 @@
 
 /// Commands that move experience between a server and files.
 namespace kinship::cli {
-
-struct ExportOptions {
-  std::string robot, task;       ///< filters; empty: all
-  std::filesystem::path output;  ///< empty: standard output
-  bool progress = false;         ///< on `err`, unless the rows go to a terminal themselves
-};
-
-/// `paths export`: attempts as JSON Lines, preceded by their robots.
-int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
-                 std::ostream& err);
 
 struct ConfigurationsOptions {
   DistributionQuery query;

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "client/cli/exchange_commands.hpp"
+#include "client/cli/path_export.hpp"
 #include "client/cli/plot_commands.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
@@ -10,15 +11,34 @@ namespace kinship::cli {
 namespace {
 
 void add_export(CLI::App& group, Session& session) {
+  constexpr std::size_t kMostPaths = 1'000'000'000;
   const auto options = std::make_shared<ExportOptions>();
   CLI::App* command = add_command(
-      group, "export", "Attempts and the robots they need, as JSON Lines for `paths import`",
-      "kinship paths export --task box_to_shelf --output box_to_shelf.jsonl");
-  command->add_option("--task", options->task, "Of this task (default: all)")->type_name("TASK");
+      group, "export", "Attempts and the robots they need, for `paths import` or a viewer",
+      "kinship paths export --task box_to_shelf --output box_to_shelf.jsonl\n"
+      "  kinship paths export --task box_to_shelf --limit 20 --mcap box_to_shelf.mcap");
+  CLI::Option* ids =
+      command->add_option("id", options->ids, "Only these paths: UUIDs, as paths list shows them")
+          ->type_name("PATH");
+  command->add_option("--task", options->task, "Of this task (default: all)")
+      ->type_name("TASK")
+      ->excludes(ids);
   command->add_option("--robot", options->robot, "Of this robot: label or digest prefix")
-      ->type_name("ROBOT");
-  command->add_option("--output", options->output, "File (default: standard output)")
-      ->type_name("FILE");
+      ->type_name("ROBOT")
+      ->excludes(ids);
+  command->add_option("--limit", options->limit, "Only the newest N paths that are in use")
+      ->check(CLI::Range(std::size_t{1}, kMostPaths))
+      ->excludes(ids);
+  CLI::Option* output =
+      command
+          ->add_option("--output", options->output, "File of JSON Lines (default: standard output)")
+          ->type_name("FILE");
+  command
+      ->add_option("--mcap", options->mcap,
+                   "Instead: a recording for Foxglove, in which the robots move along the paths at "
+                   "the speed limits of their URDFs; - is standard output")
+      ->type_name("FILE")
+      ->excludes(output);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->progress = session.shows_progress();
     return export_paths(server, *options, session.out, session.err);

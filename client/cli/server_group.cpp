@@ -2,6 +2,7 @@
 
 #include "client/arguments/number_range.hpp"
 #include "client/cli/backup_commands.hpp"
+#include "client/cli/console_command.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
@@ -149,6 +150,21 @@ void add_audit(CLI::App& app, Session& session) {
   });
 }
 
+void add_console(CLI::App& app, Session& session) {
+  CLI::App* command = add_command(app, "console",
+                                  "The link to the server's live console, for a browser on this "
+                                  "machine; who has it may see what the server knows",
+                                  "kinship console\n  xdg-open \"$(kinship console)\"");
+  const auto file = std::make_shared<std::filesystem::path>();
+  command
+      ->add_option("--file", *file,
+                   "File with the link; default: STORE.console of the store that the server names")
+      ->type_name("FILE");
+  on_run_with_server(*command, session, [&session, file](link::Client& server) {
+    return print_console_link(server, *file, session.out, session.err);
+  });
+}
+
 }  // namespace
 
 void add_server_commands(CLI::App& app, Session& session) {
@@ -156,6 +172,7 @@ void add_server_commands(CLI::App& app, Session& session) {
   add_backup(app, session);
   add_watch(app, session);
   add_audit(app, session);
+  add_console(app, session);
 }
 
 void add_jobs(CLI::App& app, Session& session) {

@@ -92,7 +92,8 @@ CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show s
 std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session);
 
 // The command line of each noun.
-void add_server_commands(CLI::App& app, Session& session);  ///< status, backup, watch, audit
+void add_server_commands(CLI::App& app,
+                         Session& session);  ///< status, backup, watch, audit, console
 void add_jobs(CLI::App& app, Session& session);
 void add_robots(CLI::App& app, Session& session);
 void add_problems(CLI::App& app, Session& session);

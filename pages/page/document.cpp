@@ -14,15 +14,15 @@ constexpr std::string_view kHead = R"(<!DOCTYPE html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy"
- content="default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:">
+ content="default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:">
 <title>)";
 
 /// Vega's modules, each after the ones it asks for.
 constexpr std::string_view kVegaParts[] = {
-    "util",      "time",    "format",     "loader",          "statistics",     "dataflow",
-    "scale",     "canvas",  "scenegraph", "expression",      "event-selector", "selection",
-    "functions", "runtime", "transforms", "view-transforms", "encode",         "view",
-    "parser"};
+    "util",      "time",       "format",     "loader",          "statistics",     "dataflow",
+    "scale",     "canvas",     "scenegraph", "expression",      "event-selector", "selection",
+    "functions", "runtime",    "transforms", "view-transforms", "encode",         "view",
+    "parser",    "interpreter"};
 
 std::string_view embedded(std::string_view name) { return text_of(embedded_texts(), name); }
 
@@ -44,16 +44,18 @@ void write_data(std::string_view json, std::ostream& out) {
   out << "</script>\n";
 }
 
-void write_charts(std::ostream& out) {
-  write_element("script", embedded("modules.js"), out);
-  for (const std::string_view part : kVegaParts) {
-    const std::string name = "vega-" + std::string(part);
-    write_element("script",
-                  "kinshipModules.add(\"" + name + "\", function (exports, module, require) {\n" +
-                      std::string(embedded(name + ".min.js")) + "\n});",
-                  out);
-  }
-  write_element("script", embedded("charts.js"), out);
+/// Vega's modules as one program, after modules.js.
+const std::string& vega() {
+  static const std::string kVega = [] {
+    std::string program;
+    for (const std::string_view part : kVegaParts) {
+      const std::string name = "vega-" + std::string(part);
+      program += "kinshipModules.add(\"" + name + "\", function (exports, module, require) {\n" +
+                 std::string(embedded(name + ".min.js")) + "\n});\n";
+    }
+    return program;
+  }();
+  return kVega;
 }
 
 }  // namespace
@@ -63,6 +65,22 @@ std::string_view text_of(std::span<const EmbeddedText> texts, std::string_view n
     if (text.name == name)
       return text.text;
   throw std::logic_error("no embedded text '" + std::string(name) + "'");
+}
+
+std::vector<EmbeddedText> programs(bool draws_scenes, bool draws_charts) {
+  std::vector<EmbeddedText> programs;
+  const auto add = [&](std::string_view name) { programs.push_back({name, embedded(name)}); };
+  add("page.js");
+  if (draws_scenes)
+    for (const char* name :
+         {"three.min.js", "OrbitControls.js", "solids.js", "camera.js", "view.js", "player.js"})
+      add(name);
+  if (draws_charts) {
+    add("modules.js");
+    programs.push_back({"vega.js", vega()});
+    add("charts.js");
+  }
+  return programs;
 }
 
 std::string escaped(std::string_view text) {
@@ -95,13 +113,8 @@ void write_document(const Document& document, std::ostream& out) {
     write_element("style", style, out);
   out << "</head>\n<body>\n<main>\n" << document.body << "\n</main>\n";
   write_data(document.data, out);
-  write_element("script", embedded("page.js"), out);
-  if (document.draws_scenes)
-    for (const char* name :
-         {"three.min.js", "OrbitControls.js", "solids.js", "camera.js", "view.js"})
-      write_element("script", embedded(name), out);
-  if (document.draws_charts)
-    write_charts(out);
+  for (const EmbeddedText& program : programs(document.draws_scenes, document.draws_charts))
+    write_element("script", program.text, out);
   for (const std::string_view script : document.scripts)
     write_element("script", script, out);
   out << "</body>\n</html>\n";

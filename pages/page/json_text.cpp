@@ -20,7 +20,7 @@ struct ShapeJson {
     return "\"sphere\":" + std::to_string(std::lround(sphere.radius_m * kMillimetres));
   }
   std::string operator()(const CapsuleShape& capsule) const {
-    return "\"cylinder\":" + millimetres(Eigen::Vector2d(capsule.radius_m, capsule.length_m));
+    return "\"capsule\":" + millimetres(Eigen::Vector2d(capsule.radius_m, capsule.length_m));
   }
 };
 

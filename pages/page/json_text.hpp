@@ -31,14 +31,14 @@ template <typename Values, typename ToJson>
 std::string list(const Values& values, const ToJson& each_to_json) {
   std::string json = "[";
   for (const auto& value : values)
-    json += (json.size() > 1 ? "," : "") + each_to_json(value);
+    json.append(json.size() > 1 ? "," : "").append(each_to_json(value));
   return json + "]";
 }
 
 /// A JSON object of members that are JSON themselves.
 std::string object(std::initializer_list<std::pair<std::string_view, std::string>> members);
 
-/// A solid for view.js: {"name", "pose": [7], "box" | "cylinder" | "sphere"}.
+/// A solid for view.js: {"name", "pose": [7], "box" | "cylinder" | "capsule" | "sphere"}.
 std::string json_of(const SceneObject& object);
 std::string json_of(const std::vector<SceneObject>& objects);
 

@@ -1,15 +1,18 @@
 // What every page uses: its data, elements, numbers in words.
 "use strict";
 const kinshipPage = (() => {
-  const data = JSON.parse(document.getElementById("data").textContent);
+  const embedded = document.getElementById("data"); // none where a server gives the data
+  const data = embedded && JSON.parse(embedded.textContent);
   const byId = (id) => document.getElementById(id);
   const color = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 
-  /// make("p", {class: "note"}, "text", element, ...); a property that begins with "on" listens.
+  /// make("p", {class: "note"}, "text", element, ...); a property that begins with "on" listens. A style is set as a property,
+  /// which a page's Content-Security-Policy does not forbid, as it may an attribute.
   function make(tag, properties, ...children) {
     const element = document.createElement(tag);
     for (const [name, value] of Object.entries(properties || {})) {
       if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+      else if (name === "style") element.style.cssText = value || "";
       else if (value !== null && value !== false) element.setAttribute(name, value === true ? "" : value);
     }
     element.append(...children);
@@ -45,9 +48,13 @@ const kinshipPage = (() => {
       element.append(make("div", {class: "tile"}, make("b", {}, figure), make("span", {}, text)));
   }
 
-  /// Calls `draw` when the colours change, by the reader's system.
-  function onColors(draw) {
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  /// Calls `draw` when the colours change, by the reader's system, as long as the element is in the page.
+  function onColors(element, draw) {
+    const scheme = matchMedia("(prefers-color-scheme: dark)");
+    scheme.addEventListener("change", function changed() {
+      if (element.isConnected) draw();
+      else scheme.removeEventListener("change", changed);
+    });
   }
 
   /// Calls `draw` when an element has another width or height, not at first.

@@ -5,22 +5,51 @@ const kinshipSolids = (() => {
   const ball = new THREE.SphereBufferGeometry(1, 20, 14);
   const rod = new THREE.CylinderBufferGeometry(1, 1, 1, 20, 1, true);
 
-  /// The geometry of a solid in its place.
-  function geometryOf(object) {
-    const [x, y, z, qx, qy, qz, qw] = object.pose;
-    const pose = new THREE.Matrix4().compose(new THREE.Vector3(x, y, z), new THREE.Quaternion(qx, qy, qz, qw),
-                                             new THREE.Vector3(1, 1, 1));
-    const mm = (n) => n / 1000;
-    let solid;
-    if (object.box) solid = new THREE.BoxBufferGeometry(...object.box.map(mm));
-    else if (object.cylinder)
-      solid = new THREE.CylinderBufferGeometry(mm(object.cylinder[0]), mm(object.cylinder[0]), mm(object.cylinder[1]), 28)
-                .rotateX(Math.PI / 2);
-    else solid = new THREE.SphereBufferGeometry(mm(object.sphere), 20, 14);
-    return solid.applyMatrix(pose);
+  /// [x, y, z, qx, qy, qz, qw] in m, or a matrix already.
+  function matrixOf(pose) {
+    if (pose.isMatrix4) return pose;
+    const [x, y, z, qx, qy, qz, qw] = pose;
+    return new THREE.Matrix4().compose(new THREE.Vector3(x, y, z), new THREE.Quaternion(qx, qy, qz, qw), new THREE.Vector3(1, 1, 1));
   }
 
-  const edgesOf = (object) => new THREE.EdgesGeometry(geometryOf(object), 30);
+  /// Half a circle at each end of a line, turned around it.
+  function capsuleGeometry(radius, length) {
+    const outline = [];
+    for (let i = 0; i <= 16; ++i) {
+      const angle = -Math.PI / 2 + Math.PI * i / 16;
+      outline.push(new THREE.Vector2(Math.max(1e-6, radius * Math.cos(angle)), radius * Math.sin(angle) + (i < 8 ? -1 : 1) * length / 2));
+    }
+    return new THREE.LatheBufferGeometry(outline, 24);
+  }
+
+  function newGeometry(object) {
+    const mm = (n) => n / 1000;
+    if (object.box) return new THREE.BoxBufferGeometry(...object.box.map(mm));
+    if (object.cylinder) {
+      const [radius, length] = object.cylinder.map(mm);
+      return new THREE.CylinderBufferGeometry(radius, radius, length, 28).rotateX(Math.PI / 2);
+    }
+    if (object.capsule) return capsuleGeometry(...object.capsule.map(mm)).rotateX(Math.PI / 2);
+    return new THREE.SphereBufferGeometry(mm(object.sphere), 20, 14);
+  }
+
+  /// Faces and edges of a solid in its own frame, made once for each size: solids that move take them along.
+  const shapes = new Map();
+  function shapeOf(object) {
+    const key = JSON.stringify([object.box, object.cylinder, object.capsule, object.sphere]);
+    if (!shapes.has(key)) {
+      const faces = newGeometry(object);
+      const edges = new THREE.EdgesGeometry(faces, 30);
+      faces.isShared = edges.isShared = true;
+      shapes.set(key, {faces, edges});
+    }
+    return shapes.get(key);
+  }
+
+  const inPlace = (name, object) => shapeOf(object)[name].clone().applyMatrix(matrixOf(object.pose)).attributes.position.array;
+  /// Corners of a solid in its place; pairs of points of its edges.
+  const pointsOf = (object) => inPlace("faces", object);
+  const edgesOf = (object) => inPlace("edges", object);
 
   /// Faces that let through what is behind them, unless they are to be solid; edges that clouds do not bury.
   function addObjects(group, layer) {
@@ -28,13 +57,18 @@ const kinshipSolids = (() => {
     const opacity = layer.opacity || 0.22;
     for (const object of layer.objects) {
       const isFloor = object.box && Math.max(...object.box) > 1000 && Math.min(...object.box) < 100;
-      const faces = new THREE.Mesh(geometryOf(object), new THREE.MeshLambertMaterial(
+      const shape = shapeOf(object);
+      const faces = new THREE.Mesh(shape.faces, new THREE.MeshLambertMaterial(
         {color: hue, transparent: opacity < 1, opacity: isFloor ? opacity / 3 : opacity, depthWrite: opacity >= 1, side: THREE.DoubleSide,
          polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
-      const edges = new THREE.LineSegments(edgesOf(object), new THREE.LineBasicMaterial(
+      const edges = new THREE.LineSegments(shape.edges, new THREE.LineBasicMaterial(
         {color: hue, transparent: true, opacity: opacity < 1 ? 0.85 : 0.4}));
       faces.renderOrder = opacity < 1 ? 20 : 0;
       edges.renderOrder = 21;
+      for (const drawn of [faces, edges]) {
+        drawn.matrixAutoUpdate = false;
+        drawn.matrix.copy(matrixOf(object.pose));
+      }
       group.add(faces, edges);
     }
   }
@@ -124,14 +158,14 @@ const kinshipSolids = (() => {
     if (layer.points) addPoints(group, layer);
     const hue = new THREE.Color(color(layer.color));
     (layer.arms || []).forEach((arm, i) => addArm(group, arm.bones, hue, arm.opacity || 1, 1 + (index + i) % 7));
-    for (const way of layer.ways || []) addArm(group, bonesOfWay(way), hue, 1, 0);
+    for (const way of layer.ways || []) addArm(group, bonesOfWay(way), way.color ? new THREE.Color(color(way.color)) : hue, 1, 0);
     return group;
   }
 
-  /// Gives back what a group holds of the graphics card; balls and rods are shared.
+  /// Gives back what a group holds of the graphics card; balls, rods and solids are shared.
   function dispose(group) {
     for (const drawn of group.children) {
-      if (drawn.geometry !== ball && drawn.geometry !== rod) drawn.geometry.dispose();
+      if (drawn.geometry !== ball && drawn.geometry !== rod && !drawn.geometry.isShared) drawn.geometry.dispose();
       drawn.material.dispose();
     }
   }
@@ -143,7 +177,7 @@ const kinshipSolids = (() => {
       for (let i = 0; i + 2 < positions.length; i += 3)
         balls.push([positions[i], positions[i + 1], positions[i + 2], radius]);
     };
-    for (const object of layer.objects || []) each(geometryOf(object).attributes.position.array, 0);
+    for (const object of layer.objects || []) each(pointsOf(object), 0);
     for (const lines of layer.lines || []) each(lines.positions, 0);
     for (const points of layer.points || []) each(points.positions, (points.size || 0.02) / 2);
     for (const way of layer.ways || []) each(way.positions, (way.width || 0.008) / 2);

@@ -27,7 +27,12 @@ const kinshipView = (() => {
     controls.enableZoom = false; // until the figure has the focus
     controls.screenSpacePanning = true;
     const groups = [];
-    const draw = () => renderer.render(scene, camera);
+    let replaced = []; // kept until the next are drawn, so that their programs stay compiled
+    const draw = () => {
+      renderer.render(scene, camera);
+      replaced.forEach(dispose);
+      replaced = [];
+    };
     controls.addEventListener("change", draw);
     controls.addEventListener("start", () => stage.dataset.turned = "yes");
     return {
@@ -35,11 +40,17 @@ const kinshipView = (() => {
       set(index, layer) {
         if (groups[index]) {
           scene.remove(groups[index]);
-          dispose(groups[index]);
+          replaced.push(groups[index]);
         }
         groups[index] = groupOf(layer, index);
         groups[index].visible = layer.shown;
         scene.add(groups[index]);
+      },
+      close() {
+        controls.dispose();
+        groups.forEach(dispose);
+        renderer.dispose();
+        renderer.forceContextLoss(); // a browser keeps but a few
       },
       fit(balls, anew) {
         renderer.setSize(stage.clientWidth, stage.clientHeight, false);
@@ -114,8 +125,11 @@ const kinshipView = (() => {
           pen.fillRect(x - edge / 2, y - edge / 2, edge, edge);
         }
       }
-      for (const object of layer.objects || []) stroke(edgesOf(object).attributes.position.array, 0.85, 2);
-      for (const way of layer.ways || []) strokeBones(bonesOfWay(way), 1);
+      for (const object of layer.objects || []) stroke(edgesOf(object), 0.85, 2);
+      for (const way of layer.ways || []) {
+        pen.strokeStyle = color(way.color || layer.color);
+        strokeBones(bonesOfWay(way), 1);
+      }
     };
     const draw = () => {
       pen.clearRect(0, 0, canvas.width, canvas.height);
@@ -133,6 +147,7 @@ const kinshipView = (() => {
         draw();
       },
       follow() {},
+      close() {},
       fit(balls) {
         canvas.width = 2 * stage.clientWidth;
         canvas.height = 2 * stage.clientHeight;
@@ -173,8 +188,8 @@ const kinshipView = (() => {
   function legendOf(layers, toggle) {
     const legend = make("div", {class: "legend", role: "group", "aria-label": "What is shown"});
     layers.forEach((layer, index) => {
-      if (!layer.text) return;
-      const button = make("button", {type: "button", "aria-pressed": String(layer.shown), "data-layer": layer.name,
+      if (layer.text === undefined) return;
+      const button = make("button", {type: "button", hidden: !layer.text, "aria-pressed": String(layer.shown), "data-layer": layer.name,
                                      onclick: () => button.setAttribute("aria-pressed", String(toggle(index)))},
                           make("i", {style: `--hue: var(--${layer.color})`}), make("span", {}, layer.text));
       legend.append(button);
@@ -187,11 +202,12 @@ const kinshipView = (() => {
   /// \param view.label   what a reader hears who does not see it
   /// \param view.from    direction from which one looks at first, [x, y, z]
   /// \param view.layers  each {name, color (of the style, without --), and any of: text (in the legend, which hides and
-  ///   shows the layer), shown (true), fits (true: the camera sees all of it), objects [{pose, box | cylinder | sphere}] with
-  ///   opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity}], ways [{positions: one line, width}],
+  ///   shows the layer; "": not now), shown (true), fits (true: the camera sees all of it), objects [{pose, box | cylinder | capsule |
+  ///   sphere}] with opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity}], ways [{positions: one line, width, color}],
   ///   points [{positions, size, opacity}]}. Solids and bones are those of pages/page/json_text.hpp.
   /// \return {replace(name, layer): other content, colour or text for a layer; show(name, shown); grow(name, lines, points):
-  ///   only so many segments and points of it; follow(other): turns as another figure does; fit()}
+  ///   only so many segments and points of it; follow(other): turns as another figure does; fit(); count(name): drawn solids,
+  ///   arms, ways, segments and points of a layer}. Without its figure in the page it gives back what it holds.
   function show(figure, view) {
     const layers = view.layers.map((layer) => ({shown: true, fits: true, ...layer}));
     const isTurnable = hasWebGl();
@@ -226,8 +242,8 @@ const kinshipView = (() => {
     setAll();
     refit(true);
     if (isTurnable) listen(canvas, drawing, again);
-    onSize(stage, () => refit(false));
-    onColors(() => {
+    onSize(stage, () => (stage.isConnected ? refit(false) : drawing.close()));
+    onColors(stage, () => {
       setAll();
       drawing.draw();
     });
@@ -241,6 +257,12 @@ const kinshipView = (() => {
         if (!button) return;
         button.firstChild.style.setProperty("--hue", `var(--${layers[index].color})`);
         button.lastChild.textContent = layers[index].text;
+        button.hidden = !layers[index].text;
+      },
+      count(name) {
+        const {objects = [], arms = [], ways = [], lines = [], points = []} = layers[indexOf(name)];
+        const numbers = (list) => list.reduce((sum, each) => sum + each.positions.length, 0);
+        return {objects: objects.length, arms: arms.length, ways: ways.length, segments: numbers(lines) / 6, points: numbers(points) / 3};
       },
       grow(name, lines, points) {
         grown.set(name, [lines, points]);

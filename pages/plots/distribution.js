@@ -1,7 +1,47 @@
 // A distribution: the hand over its robot, joints, components, sources.
 "use strict";
-(() => {
-  const {data, byId, color, make, count, fixed, percent, seconds, several, listed, total, metres, fillTable, fillTiles} = kinshipPage;
+kinshipFigures.distribution = (element, data) => {
+  const {color, make, count, fixed, percent, seconds, several, listed, total, metres, fillTable, fillTiles} = kinshipPage;
+  const byId = kinshipPlots.fill(element, `
+<header>
+  <p class="eyebrow">Kinship distribution</p>
+  <h1 id="title"></h1>
+  <p id="lead" class="lead"></p>
+  <div id="tiles" class="tiles"></div>
+</header>
+
+<section>
+  <h2>Where it is from</h2>
+  <dl id="facts" class="facts"></dl>
+</section>
+
+<section>
+  <h2>Where it puts the hand</h2>
+  <p id="hands-text"></p>
+  <figure id="hands"></figure>
+</section>
+
+<section>
+  <h2>Joints</h2>
+  <p id="joints-text"></p>
+  <div id="joint-keys"></div>
+  <div id="joints" class="panels"></div>
+</section>
+
+<section>
+  <h2 id="components-title"></h2>
+  <p id="components-text"></p>
+  <div class="panels" id="components"></div>
+</section>
+
+<section>
+  <h2>Sources</h2>
+  <p id="sources-text"></p>
+  <div id="source-keys"></div>
+  <div id="poses" class="chart"></div>
+  <div class="scroll"><table id="sources"></table></div>
+  <p class="note" id="sources-note"></p>
+</section>`);
   const {fillFacts, keys, panel, chart, timeText, hide} = kinshipPlots;
   const {distribution, label, components, marginals, postures} = data;
   const {sources, recommended_share: share, evidence} = distribution;
@@ -232,7 +272,7 @@
     if (sources.some((source) => source.poses > 0)) {
       byId("source-keys").append(keys(fates.map(([, text, hue]) => [hue, text, "block"])));
       chart(byId("poses"), "Poses of each source by what became of them; the numbers are in the table below.", posesSpec);
-    } else hide("poses");
+    } else hide(byId("poses"));
     fillTable(byId("sources"), [
       ["robot", "relation", "paths used", "known", "poses", "solved", "configurations", "mass", "tracks kept", "self-colliding", "in recorded scene"],
       ...sources.map((s) => [s.label, s.relation, count(s.paths_used), count(s.paths), count(s.poses), part(s.poses_solved, s.poses),
@@ -248,6 +288,4 @@
   showJoints();
   showComponents();
   showSources();
-  byId("footer").textContent = "Written by kinship distributions plot from what the server keeps. The page holds everything it needs and loads nothing. " +
-    "Drawn with three.js (MIT) and Vega (BSD 3-clause).";
-})();
+};

@@ -121,38 +121,56 @@ std::string to_json(const TaskHistory& history) {
 
 namespace {
 
-/// A page of this room: NAME.html with NAME.js, and the shared files.
-page::Document document_of(const std::string& name, std::string title, std::string data) {
-  const auto text = [](const std::string& file) { return page::text_of(plot_texts(), file); };
+std::string_view text(std::string_view file) { return page::text_of(plot_texts(), file); }
+
+/// A figure of this room, kinshipFigures.NAME of NAME.js, and the command that writes its page.
+struct FigurePage {
+  std::string name, command;
+  bool draws_scenes = false, draws_charts = false;
+};
+
+void write_figure(const FigurePage& figure, std::string title, std::string data,
+                  std::ostream& out) {
   page::Document document;
-  document.title = std::move(title);
-  document.body = text(name + ".html");
+  document.title = std::move(title) + " - Kinship";
+  document.body = "<div id=\"figure\" data-figure=\"" + figure.name +
+                  "\"></div>\n<footer>Written by kinship " + figure.command +
+                  " from what the server keeps. The page holds everything it needs and loads "
+                  "nothing." +
+                  (figure.draws_scenes ? " Scenes are drawn with three.js (MIT)." : "") +
+                  (figure.draws_charts ? " Charts are drawn with Vega (BSD 3-clause)." : "") +
+                  "</footer>";
   document.data = std::move(data);
   document.styles = {text("plots.css")};
-  document.scripts = {text("plots.js"), text(name + ".js")};
-  return document;
+  document.scripts = {text("plots.js"), text(figure.name + ".js"), text("draw.js")};
+  document.draws_scenes = figure.draws_scenes;
+  document.draws_charts = figure.draws_charts;
+  page::write_document(document, out);
 }
 
 }  // namespace
 
 void write_page(const DistributionPlot& plot, std::ostream& out) {
-  page::Document document = document_of(
-      "distribution", plot.label + " on " + plot.distribution.task + " - Kinship", to_json(plot));
-  document.draws_scenes = document.draws_charts = true;
-  page::write_document(document, out);
+  write_figure({"distribution", "distributions plot", true, true},
+               plot.label + " on " + plot.distribution.task, to_json(plot), out);
 }
 
 void write_page(const TaskHistory& history, std::ostream& out) {
-  page::Document document = document_of("task", history.task + " - Kinship", to_json(history));
-  document.draws_charts = true;
-  page::write_document(document, out);
+  write_figure({"task", "tasks plot", false, true}, history.task, to_json(history), out);
 }
 
 void write_page(const std::string& task, const std::vector<Transferability>& pairs,
                 std::ostream& out) {
-  page::write_document(
-      document_of("worths", "Experience of " + task + " - Kinship", json::to_json(task, pairs)),
-      out);
+  write_figure({"worths", "robots compare"}, "Experience of " + task, json::to_json(task, pairs),
+               out);
+}
+
+std::vector<page::EmbeddedText> figure_programs() {
+  std::vector<page::EmbeddedText> programs = page::programs(true, true);
+  for (const page::EmbeddedText& file : plot_texts())
+    if (file.name.ends_with(".js") && file.name != "draw.js")
+      programs.push_back(file);
+  return programs;
 }
 
 }  // namespace kinship::plots

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pages/page/embedded_text.hpp"
 #include "pages/plots/distribution_plot.hpp"
 #include "pages/plots/task_history.hpp"
 #include "proto/types/transferability.hpp"
@@ -24,5 +25,9 @@ void write_page(const TaskHistory& history, std::ostream& out);
 /// A matrix, a target per row. \param pairs  every target with the same sources in the same order.
 void write_page(const std::string& task, const std::vector<Transferability>& pairs,
                 std::ostream& out);
+
+/// The programs of all figures, in the order in which they run, for a server that sends them as
+/// files: each figure is kinshipFigures.NAME(element, data, {href}). Styles: page.css, plots.css.
+std::vector<page::EmbeddedText> figure_programs();
 
 }  // namespace kinship::plots

@@ -1,7 +1,15 @@
-// What the pages of plots share: facts, keys, times.
+// What the figures share: facts, keys, times. A figure is kinshipFigures.NAME(element, data, {href}): it fills an element of a page
+// of its own or of a server's console. `href(kind, name)` is the address of a robot, task, distribution, path or attempt, or null.
 "use strict";
+const kinshipFigures = {};
 const kinshipPlots = (() => {
-  const {make, byId} = kinshipPage;
+  const {make} = kinshipPage;
+
+  /// Puts HTML of this folder into an element. \return finds its parts by id.
+  function fill(element, html) {
+    element.innerHTML = html;
+    return (id) => element.querySelector("#" + id);
+  }
 
   /// A list of what is known: [[term, text or null], ...]; what is null or empty is left out.
   function fillFacts(element, facts) {
@@ -38,7 +46,10 @@ const kinshipPlots = (() => {
     return n === 1 ? "a" + (word === "hour" ? "n " : " ") + word : `${n} ${word}s`;
   };
 
-  const hide = (id) => { byId(id).hidden = true; };
+  const hide = (element) => { element.hidden = true; };
 
-  return {fillFacts, keys, panel, chart, hueOf, dashOf, timeText, dayText, lengthText, hide};
+  /// A name, as a link where there is an address.
+  const linked = (text, address) => (address ? make("a", {href: address}, text) : text);
+
+  return {fill, linked, fillFacts, keys, panel, chart, hueOf, dashOf, timeText, dayText, lengthText, hide};
 })();

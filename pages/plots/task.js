@@ -1,7 +1,54 @@
 // A task over time: experience, solved attempts, what planning cost, what guidance was worth.
 "use strict";
-(() => {
-  const {data, byId, color, count, fixed, percent, several, listed, total, fillTable, fillTiles} = kinshipPage;
+kinshipFigures.task = (element, data) => {
+  const {color, count, fixed, percent, several, listed, total, fillTable, fillTiles} = kinshipPage;
+  const byId = kinshipPlots.fill(element, `
+<header>
+  <p class="eyebrow">Kinship task</p>
+  <h1 id="title"></h1>
+  <p id="lead" class="lead"></p>
+  <div id="tiles" class="tiles"></div>
+</header>
+
+<section>
+  <h2>Experience</h2>
+  <p id="experience-text"></p>
+  <div id="experience-keys"></div>
+  <div id="experience" class="chart"></div>
+</section>
+
+<section>
+  <h2>Solved</h2>
+  <p id="solved-text"></p>
+  <div id="solved-keys"></div>
+  <div id="solved" class="chart"></div>
+</section>
+
+<section>
+  <h2>What planning cost</h2>
+  <p id="checks-text"></p>
+  <div id="checks-keys"></div>
+  <div id="checks" class="panels wide"></div>
+</section>
+
+<section>
+  <h2>What guidance was worth</h2>
+  <p id="benefit-text"></p>
+  <div id="benefit-keys"></div>
+  <div id="benefit" class="panels wide"></div>
+</section>
+
+<section>
+  <h2>Numbers</h2>
+  <div class="scroll"><table id="robots"></table></div>
+  <p class="note" id="robots-note"></p>
+</section>
+
+<section>
+  <h2>Distributions</h2>
+  <p id="revisions-text"></p>
+  <div class="scroll"><table id="revisions"></table></div>
+</section>`);
   const {keys, panel, chart, hueOf, dashOf, timeText, dayText, lengthText, hide} = kinshipPlots;
   const {robots, revisions} = data;
   const modes = [["guided", "guided"], ["control", "uniform"], ["uniform", "robot-1"]]; // by SamplingMode: word, hue
@@ -160,7 +207,7 @@
   function showBenefit() {
     if (compared.length === 0) {
       byId("benefit-text").textContent = "Not known yet: no robot has ten guided and ten control attempts, from which on they are compared.";
-      hide("benefit");
+      hide(byId("benefit"));
       return;
     }
     byId("benefit-text").textContent = "What a typical query costs in processor time (in collision checks where no time is known) without guidance, relative to one with it: above 1 guidance saves. The server\u2019s own estimate " +
@@ -187,7 +234,7 @@
     byId("robots-note").textContent = "Guided, control, uniform: attempts of each sampling mode that could be planned.";
     if (revisions.length === 0) {
       byId("revisions-text").textContent = "None was made or used.";
-      hide("revisions");
+      hide(byId("revisions"));
       return;
     }
     byId("revisions-text").textContent = "Revisions that attempts name, and those that the server keeps now. When older ones were made is not kept.";
@@ -203,5 +250,4 @@
   showChecks();
   showBenefit();
   showTables();
-  byId("footer").textContent = "Written by kinship tasks plot from what the server keeps. The page holds everything it needs and loads nothing. Drawn with Vega (BSD 3-clause).";
-})();
+};

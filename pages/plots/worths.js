@@ -1,7 +1,28 @@
 // What the experience of each robot is worth to each other one: a matrix of buttons, and a table of all its numbers.
 "use strict";
-(() => {
-  const {data, byId, make, count, fixed, listed, fillTable} = kinshipPage;
+kinshipFigures.worths = (element, data) => {
+  const {make, count, fixed, listed, fillTable} = kinshipPage;
+  const byId = kinshipPlots.fill(element, `
+<header>
+  <p class="eyebrow">Kinship transferability</p>
+  <h1 id="title"></h1>
+  <p id="lead" class="lead"></p>
+</header>
+
+<section>
+  <h2>Worth of each source's experience to each target</h2>
+  <p id="matrix-text"></p>
+  <div id="scale" class="scale" role="img"></div>
+  <div class="scroll"><table id="matrix" class="matrix"></table></div>
+  <div id="detail" aria-live="polite"></div>
+</section>
+
+<section>
+  <h2>Every pair in numbers</h2>
+  <div class="scroll"><table id="pairs"></table></div>
+  <ul class="note" id="remarks"></ul>
+  <p class="note" id="pairs-note"></p>
+</section>`);
   const {rows: pairs, task} = data;
   const targets = [...new Set(pairs.map((pair) => pair.target_label))];
   const sources = [...new Set(pairs.map((pair) => pair.source_label))];
@@ -85,5 +106,4 @@
     "fastest without experience (none, retreat) and with it (ways of the hand, mixture). By checks each side has the guide with the fewest. A rehearsal is one draw of seeds over the queries that the source recorded.";
   byId("remarks").append(...pairs.filter((pair) => pair.message).map((pair) =>
     make("li", {}, `${pair.target_label} from ${pair.source_label}: ${pair.message}`)));
-  byId("footer").textContent = "Written by kinship robots compare from the rehearsals of the server. The page holds everything it needs and loads nothing.";
-})();
+};

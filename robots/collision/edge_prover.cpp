@@ -113,6 +113,7 @@ const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen
 
 void EdgeProver::ask_lanes() {
   parts_.clear();
+  doubts_.clear();
   for (std::size_t edge = 0; edge < proofs_.size(); ++edge) {
     const auto column = static_cast<Eigen::Index>(edge);
     const double farthest_m =
@@ -123,7 +124,7 @@ void EdgeProver::ask_lanes() {
                                   " m are looked at"));
     const double count = std::max(1.0, std::ceil(farthest_m / (2 * kFirstGrowth_m)));
     for (double i = 0; i < count; ++i)
-      parts_.push_back({edge, i / count, (i + 1) / count});
+      parts_.push_back({edge, i / count, (i + 1) / count, 0, 0});
   }
   for (int level = 1; level <= kLevels && !parts_.empty(); ++level) {
     rest_.clear();
@@ -144,21 +145,47 @@ void EdgeProver::ask_parts(std::span<const Part> parts, bool is_last) {
     ++proofs_[part.edge].configurations;
     changes_.col(i) = (part.to - part.from) / 2 * change_.col(column);
   }
-  const LaneAnswer answer = world_.lanes_.ask_grown(
-      middles_.leftCols(count), changes_.leftCols(count), clearances_, LaneScope::Each);
+  const LaneAnswer answer =
+      world_.lanes_.ask_grown(middles_.leftCols(count), changes_.leftCols(count), clearances_,
+                              LaneScope::Each, pairs_of(parts));
   for (int lane = 0; lane < static_cast<int>(count); ++lane)
     if (const Part& part = parts[static_cast<std::size_t>(lane)];
         (answer.maybe >> lane & 1U) != 0 && !proofs_[part.edge].refutation)
       open_part(part, lane, (answer.surely >> lane & 1U) != 0, is_last);
 }
 
+std::span<const LaneDoubt> EdgeProver::pairs_of(std::span<const Part> parts) {
+  asked_.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].count == 0)
+      return {};
+    for (const LaneDoubt& open : std::span(doubts_).subspan(parts[i].first, parts[i].count)) {
+      const auto known = std::ranges::find_if(asked_, [&](const LaneDoubt& other) {
+        return other.body == open.body && other.obstacle == open.obstacle &&
+               other.other == open.other;
+      });
+      if (known != asked_.end()) {
+        known->lanes |= 1U << i;
+        continue;
+      }
+      if (asked_.size() == kLaneDoubts)
+        return {};
+      asked_.push_back({1U << i, open.body, open.obstacle, open.other});
+    }
+  }
+  return asked_;
+}
+
 void EdgeProver::open_part(const Part& part, int lane, bool surely, bool is_last) {
   if (surely && find_contact(part.edge, (part.from + part.to) / 2))
     return;
   if (!is_last && !surely) {
+    const std::size_t first = doubts_.size();
+    world_.lanes_.add_doubts(lane, doubts_);
     const double share = (part.to - part.from) / kCuts;
     for (int i = 0; i < kCuts; ++i)
-      rest_.push_back({part.edge, part.from + i * share, part.from + (i + 1) * share});
+      rest_.push_back({part.edge, part.from + i * share, part.from + (i + 1) * share, first,
+                       doubts_.size() - first});
     return;
   }
   const std::size_t first = open_.size();

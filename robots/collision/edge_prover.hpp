@@ -145,6 +145,7 @@ class EdgeProver {
   struct Part {
     std::size_t edge = 0;
     double from = 0, to = 0;
+    std::size_t first = 0, count = 0;  // of doubts_: the pairs that are open on it; 0: all
   };
 
   /// Checks the arguments and sets the clearances.
@@ -155,6 +156,8 @@ class EdgeProver {
   void ask_lanes();
   /// Checks at most kLanes parts. \param is_last  whether they are not cut into smaller ones
   void ask_parts(std::span<const Part> parts, bool is_last);
+  /// The pairs that are open on some parts, each on those where it is; none: all.
+  std::span<const LaneDoubt> pairs_of(std::span<const Part> parts);
   /// Cuts a part that the lanes leave open into smaller ones or makes it a piece; refutes the edge
   /// where bodies surely touch.
   void open_part(const Part& part, int lane, bool surely, bool is_last);
@@ -198,10 +201,11 @@ class EdgeProver {
   std::deque<Place> places_;
   std::size_t used_places_ = 0;
   std::vector<Piece> pieces_;
-  std::vector<std::size_t> open_;      // pairs
-  std::vector<Part> parts_, rest_;     // checked by the lanes, now and next
-  Eigen::MatrixXd motion_m_;           // moving joints + 1 x bodies: of a piece
-  Eigen::MatrixXd middles_, changes_;  // dof x kLanes: of parts; from there to their ends
+  std::vector<std::size_t> open_;          // pairs
+  std::vector<Part> parts_, rest_;         // checked by the lanes, now and next
+  std::vector<LaneDoubt> doubts_, asked_;  // pairs open on parts; those of a question
+  Eigen::MatrixXd motion_m_;               // moving joints + 1 x bodies: of a piece
+  Eigen::MatrixXd middles_, changes_;      // dof x kLanes: of parts; from there to their ends
   std::vector<BodyPair> doubtful_;
   std::vector<std::uint64_t> body_stamps_;
   std::uint64_t stamp_ = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 
 #include "proto/types/limits.hpp"
 #include "proto/types/turn.hpp"
@@ -65,17 +66,25 @@ std::span<const LaneSet> lane_sets() {
   return {kKnown.sets.data(), kKnown.count};
 }
 
-bool LaneWorld::doubtful_pairs(int lane, std::vector<BodyPair>& pairs) const {
+bool LaneWorld::add_doubts(int lane, std::vector<LaneDoubt>& doubts) const {
   if (!has_room_ || (beyond_ >> lane & 1U) != 0 || question_.doubts > kLaneDoubts)
     return false;
+  std::ranges::copy_if(std::span(question_.doubt).first(static_cast<std::size_t>(question_.doubts)),
+                       std::back_inserter(doubts),
+                       [lane](const LaneDoubt& doubt) { return (doubt.lanes >> lane & 1U) != 0; });
+  return true;
+}
+
+bool LaneWorld::doubtful_pairs(int lane, std::vector<BodyPair>& pairs) {
+  doubts_.clear();
+  if (!add_doubts(lane, doubts_))
+    return false;
   pairs.clear();
-  for (const LaneDoubt& doubt :
-       std::span(question_.doubt).first(static_cast<std::size_t>(question_.doubts)))
-    if ((doubt.lanes >> lane & 1U) != 0)
-      pairs.emplace_back(index_of_body_[static_cast<std::size_t>(doubt.body)],
-                         doubt.obstacle >= 0
-                             ? index_of_obstacle_[static_cast<std::size_t>(doubt.obstacle)]
-                             : index_of_body_[static_cast<std::size_t>(doubt.other)]);
+  for (const LaneDoubt& doubt : doubts_)
+    pairs.emplace_back(index_of_body_[static_cast<std::size_t>(doubt.body)],
+                       doubt.obstacle >= 0
+                           ? index_of_obstacle_[static_cast<std::size_t>(doubt.obstacle)]
+                           : index_of_body_[static_cast<std::size_t>(doubt.other)]);
   return true;
 }
 
@@ -89,15 +98,21 @@ LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, LaneScope
 
 LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                 const Eigen::Ref<const Eigen::MatrixXd>& changes,
-                                const LaneRoom& room, LaneScope scope) {
+                                const LaneRoom& room, LaneScope scope,
+                                std::span<const LaneDoubt> only) {
   question_.standing_room = static_cast<float>(room.standing_m * kOfFloats);
   question_.moving_room = static_cast<float>(room.moving_m * kOfFloats);
   question_.moves = changes.cols() > 0;
   if (question_.moves)
     write_changes(changes);
+  if (!only.empty()) {
+    std::ranges::copy(only, std::begin(question_.pair));
+    question_.pairs = static_cast<int>(only.size());
+  }
   const LaneAnswer said = answer(qs, fastest(qs.cols()), scope);
   question_.standing_room = question_.moving_room = 0;
   question_.moves = false;
+  question_.pairs = -1;
   return said;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "robots/collision/body.hpp"
@@ -51,9 +52,12 @@ class LaneWorld {
   /// \param changes  dof x n, of each configuration's joints, joint units, of either sign; or
   ///                 empty: none.
   /// \param room     growth of pairs.
+  /// \param only     these pairs alone are looked at, each in its lanes, kLaneDoubts at most;
+  /// empty:
+  ///                 all.
   LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                        const Eigen::Ref<const Eigen::MatrixXd>& changes, const LaneRoom& room,
-                       LaneScope scope);
+                       LaneScope scope, std::span<const LaneDoubt> only = {});
 
   /// Whether the lanes have room for the robot; else everything may collide.
   bool has_room() const noexcept { return has_room_; }
@@ -61,7 +65,10 @@ class LaneWorld {
   /// Pairs that may touch at one configuration of the last call, if that does not surely collide.
   /// \param pairs  of the constructor's bodies.
   /// \return whether they are known; else each may.
-  bool doubtful_pairs(int lane, std::vector<BodyPair>& pairs) const;
+  bool doubtful_pairs(int lane, std::vector<BodyPair>& pairs);
+
+  /// The same to ask about again: adds those of one configuration.
+  bool add_doubts(int lane, std::vector<LaneDoubt>& doubts) const;
 
  private:
   /// The conversion of a configuration for the kernels, joint by joint.
@@ -109,9 +116,10 @@ class LaneWorld {
   std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
   DistanceGrid grid_;                                           // of a point cloud
   std::vector<Place> places_;                                   // kPlaceRows a sphere
-  LaneQuestion question_;     // kept, so that asking needs no heap
-  std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
-  bool has_room_ = true;      // for all joints and bodies; else everything may collide
+  LaneQuestion question_;          // kept, so that asking needs no heap
+  std::vector<LaneDoubt> doubts_;  // of one lane
+  std::uint32_t beyond_ = 0;       // lanes that the numbers do not hold for
+  bool has_room_ = true;           // for all joints and bodies; else everything may collide
 };
 
 /// Whether a rotation maps axes to axes: a box turned by it is a box along the axes again.

@@ -256,6 +256,7 @@ class LaneWorldMaker {
       in_lanes_[index] = static_cast<int>(world_.bodies_.size());
       world_.index_of_body_.push_back(index);
       world_.bodies_.push_back({.joint = body.joint,
+                                .link = 0,
                                 .form = lane_form(body.solid.shape(), T),
                                 .is_solid = !body.solid.is_hollow(),
                                 .radius = static_cast<float>(body.solid.radius_m() + slack_m_),
@@ -269,14 +270,14 @@ class LaneWorldMaker {
   }
 
   void add_links() {
-    const std::vector<LaneBody>& bodies = world_.bodies_;
+    std::vector<LaneBody>& bodies = world_.bodies_;
     for (std::size_t first = 0, end = 0; first < bodies.size(); first = end) {
       Eigen::AlignedBox3d box;
       while (end < bodies.size() && bodies[end].joint == bodies[first].joint) {
         const Eigen::Vector3d center = center_of(bodies[end]);
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(bodies[end].radius);
         box.extend(Eigen::AlignedBox3d(center - half, center + half));
-        ++end;
+        bodies[end++].link = static_cast<int>(world_.links_.size());
       }
       LaneLink link{};
       link.joint = bodies[first].joint;
@@ -458,7 +459,7 @@ class LaneWorldMaker {
 LaneWorld::LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bodies,
                      const std::vector<BodyPair>& pairs)
     : question_() {
-  question_.likely_body = -1;
+  question_.likely_body = question_.pairs = -1;
   LaneWorldMaker(*this, chain, bodies, pairs).make();
 }
 

@@ -53,6 +53,7 @@ struct LaneForm {
 /// closely, all in the joint's moving frame.
 struct LaneBody {
   int joint;
+  int link;  ///< of LaneScene::link
   LaneForm form;
   bool is_solid;     ///< false: a surface somewhere within the form, near its spheres
   float radius;      ///< of the sphere about the form's centre
@@ -153,6 +154,9 @@ struct alignas(64) LaneQuestion {
   bool moves;
   float change[kLaneJoints][kLanes];
   LaneScope scope;
+  /// The only pairs that are looked at, each in its lanes, if `pairs` is not negative.
+  LaneDoubt pair[kLaneDoubts];
+  int pairs;
   int likely_link, likely_body,
       likely_obstacle;   ///< tried first; out: the last that surely collided
   std::uint32_t maybe;   ///< out: may collide; the others are free for sure

@@ -4,6 +4,7 @@
 #include "robots/collision/lanes.hpp"
 #include "robots/collision/simd_distance.hpp"
 #include "robots/collision/simd_floats.hpp"
+#include "robots/collision/simd_poses.hpp"
 #include "robots/collision/simd_separation.hpp"
 
 namespace kinship::collision {
@@ -16,28 +17,24 @@ struct Verdict {
   unsigned maybe = 0, surely = 0;
 };
 
-/// Configurations of one group: the poses of its joints and, as far as needed, its spheres.
-class Group {
+/// Checks the configurations of one group.
+class Group : Poses {
  public:
   /// \param first  lane of the question
   Group(const LaneScene& scene, LaneQuestion& question, int first, float* places)
-      : scene_(scene), question_(question), places_(places), first_(first) {
-    place_joints(question, first);
-    for (int i = 0; i < scene.links; ++i) {
-      const LaneLink& link = scene.link[i];
-      is_at_[i] = false;
-      for (int body = link.first; body < link.first + link.count; ++body)
-        is_placed_[body] = is_near_known_[body] = false;
-    }
+      : Poses(scene, question, first, places) {
+    for (int i = 0; i < scene.links; ++i)
+      for (int body = scene.link[i].first; body < scene.link[i].first + scene.link[i].count; ++body)
+        is_near_known_[body] = false;
   }
 
   Verdict check() {
-    for (int i = 0; i < scene_.links; ++i) {
-      const LaneLink& link = scene_.link[i];
-      link_centers_[i] = moved(frames_[link.joint], link.center);
-      if (question_.moves)
-        bound_motion(i);
+    if (question_.pairs >= 0) {
+      check_pairs();
+      return verdict_;
     }
+    for (int i = 0; i < scene_.links; ++i)
+      place_link(i);
     try_likely();
     for (int i = 0; i < scene_.links && verdict_.surely != kAllOfAGroup; ++i)
       check_link(i);
@@ -50,30 +47,27 @@ class Group {
   }
 
  private:
-  void place_joints(const LaneQuestion& question, int first) {
-    WideFrame frame = standing(scene_.joints[0].R, scene_.joints[0].p);
-    for (int j = 0; j < scene_.moving_joints; ++j) {
-      const LaneJoint& joint = scene_.joints[j];
-      if (joint.is_tilt) {
-        tilt(joint.R[7], joint.R[8], joint.p, frame);
-      } else if (joint.before >= 0) {
-        if (joint.before != j - 1)
-          frame = frames_[joint.before];
-        follow(joint.R, joint.p, frame);
-      } else if (j > 0) {
-        frame = standing(joint.R, joint.p);
+  /// Looks at the pairs of the question only.
+  void check_pairs() {
+    for (int i = 0; i < question_.pairs; ++i) {
+      const LaneDoubt& pair = question_.pair[i];
+      const unsigned open = pair.lanes >> first_ & kAllOfAGroup & ~verdict_.surely;
+      if (open == 0)
+        continue;
+      const int link = scene_.body[pair.body].link;
+      place_once(link);
+      if (pair.obstacle >= 0) {
+        check_obstacle({link, pair.body, standing_growth(link)}, pair.obstacle, centers_[pair.body],
+                       open);
+        continue;
       }
-      const Wide q = load(question.q[j] + first);
-      if (joint.slides) {
-        frame.p[0] += q * frame.R[2];
-        frame.p[1] += q * frame.R[5];
-        frame.p[2] += q * frame.R[8];
-      } else {
-        Wide sine, cosine;
-        sine_cosine(q, sine, cosine);
-        turn(sine, cosine, frame);
-      }
-      frames_[j] = frame;
+      const int other = scene_.body[pair.other].link;
+      place_once(other);
+      const LaneLink& its = scene_.link[link];
+      int k = its.first_pair;
+      while (scene_.link_pairs[k].other != other)
+        ++k;
+      compare_bodies(pair.body, pair.other, open, moving_growth(link, scene_.link_pairs[k]));
     }
   }
 
@@ -85,37 +79,6 @@ class Group {
     check_obstacle(
         {question_.likely_link, question_.likely_body, standing_growth(question_.likely_link)},
         question_.likely_obstacle, moved(frames_[body.joint], body.form.center), kAllOfAGroup);
-  }
-
-  /// Growth of a link's bodies towards standing ones.
-  Wide standing_growth(int link) const {
-    const Wide room = all(question_.standing_room);
-    return question_.moves ? room + motions_[link][0] : room;
-  }
-
-  /// Bounds the way of a link's points while the joints change, as the frame of each joint before
-  /// it sees it ([k]: of the k-th joint, counted from 1), and in the scene's ([0]): joint by joint,
-  /// a point is never farther from a joint's axis than it is here, and what it moved. Source: as
-  /// MotionBounds.
-  void bound_motion(int index) {
-    constexpr float kRounding = 1 + 1e-5F;
-    const LaneLink& link = scene_.link[index];
-    const float radius = link.radius + 4 * scene_.slack;
-    Wide motion = {};
-    for (int k = link.joint; k >= 0; k = scene_.joints[k].before) {
-      motions_[index][k + 1] = motion;
-      const Wide change = load(question_.change[k] + first_);
-      if (scene_.joints[k].slides) {
-        motion += change;
-        continue;
-      }
-      const WideFrame& frame = frames_[k];
-      const WidePoint across =
-          cross(minus(link_centers_[index], {frame.p[0], frame.p[1], frame.p[2]}, all(1)),
-                {frame.R[2], frame.R[5], frame.R[8]});
-      motion += change * (root(dot(across, across)) * kRounding + radius + motion) * kRounding;
-    }
-    motions_[index][0] = motion;
   }
 
   /// A body, its link, and how much it has grown.
@@ -150,9 +113,7 @@ class Group {
 
   /// The bodies of two links that come near each other in some lane.
   void check_link_pair(int index, const LaneLinkPair& pair) {
-    Wide growth = all(question_.moving_room);
-    if (question_.moves)
-      growth += motions_[index][pair.both + 1] + motions_[pair.other][pair.both + 1];
+    const Wide growth = moving_growth(index, pair);
     const Wide limit = pair.reach + growth;
     if ((below(distance2(link_centers_[index], link_centers_[pair.other]), limit * limit) &
          ~verdict_.surely) == 0)
@@ -176,15 +137,6 @@ class Group {
           compare_bodies(other.body, other.other, near, growth);
       }
     }
-  }
-
-  void place_bodies(int index) {
-    if (is_at_[index])
-      return;
-    is_at_[index] = true;
-    const LaneLink& link = scene_.link[index];
-    for (int body = link.first; body < link.first + link.count; ++body)
-      centers_[body] = moved(frames_[link.joint], scene_.body[body].form.center);
   }
 
   /// Obstacles of a block whose boxes overlap the box around spheres in all lanes.
@@ -258,27 +210,6 @@ class Group {
       question_.likely_link = grown.link;
       question_.likely_body = grown.body;
       question_.likely_obstacle = which;
-    }
-  }
-
-  float* place_of(int sphere) const { return places_ + kPlaceRows * KINSHIP_SIMD_WIDTH * sphere; }
-
-  WidePoint sphere(int index) const {
-    const float* const place = place_of(index);
-    return {load(place), load(place + KINSHIP_SIMD_WIDTH), load(place + 2 * KINSHIP_SIMD_WIDTH)};
-  }
-
-  void place_spheres(int index) {
-    if (is_placed_[index])
-      return;
-    is_placed_[index] = true;
-    const LaneBody& body = scene_.body[index];
-    for (int i = body.first; i < body.first + body.count; ++i) {
-      const WidePoint at = moved(frames_[body.joint], scene_.spheres[i].center);
-      float* const place = place_of(i);
-      store(place, at.x);
-      store(place + KINSHIP_SIMD_WIDTH, at.y);
-      store(place + 2 * KINSHIP_SIMD_WIDTH, at.z);
     }
   }
 
@@ -470,16 +401,8 @@ class Group {
     verdict_.surely |= surely;
   }
 
-  const LaneScene& scene_;
-  LaneQuestion& question_;
-  float* places_;
-  int first_;  // lane of the question
   Verdict verdict_;
-  WideFrame frames_[kLaneJoints];
-  WidePoint link_centers_[kLaneJoints], centers_[kLaneBodies];
-  Wide motions_[kLaneJoints][kLaneJoints + 1];  // of each link, as bound_motion() says
-  bool is_at_[kLaneJoints];
-  bool is_placed_[kLaneBodies], is_near_known_[kLaneBodies];
+  bool is_near_known_[kLaneBodies];
   Verdict near_cloud_[kLaneBodies];
 };
 

@@ -395,6 +395,17 @@ std::map<std::string, double> held_values(const RobotModel& robot) {
   return HeldJoints(tree, robot.description.held_joints, on_chain).values();
 }
 
+Eigen::VectorXd velocity_limits(const RobotModel& robot) {
+  Eigen::VectorXd limits = Eigen::VectorXd::Zero(robot.chain.dof());
+  for (Eigen::Index i = 0; i < limits.size(); ++i) {
+    const auto joint =
+        robot.urdf.tree->getJoint(robot.chain.joints()[static_cast<std::size_t>(i)].name);
+    if (joint->limits && std::isfinite(joint->limits->velocity) && joint->limits->velocity > 0)
+      limits(i) = joint->limits->velocity;
+  }
+  return limits;
+}
+
 std::string name_in_urdf(const RobotModel& robot) { return robot.urdf.tree->getName(); }
 
 Result<RobotModel> read_model(RobotDescription description, UrdfModel parsed) {

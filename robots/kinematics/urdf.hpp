@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <string>
 
@@ -32,6 +33,10 @@ Result<Chain> read_chain(const RobotDescription& description);
 /// Values of the joints of a robot that are not on its chain and do not follow it: of joints with
 /// one value, by name, joint units.
 std::map<std::string, double> held_values(const RobotModel& robot);
+
+/// Highest speeds of a chain's joints in its URDF: dof, joint units per second; 0 where it has
+/// none.
+Eigen::VectorXd velocity_limits(const RobotModel& robot);
 
 /// The robot's name in its URDF.
 std::string name_in_urdf(const RobotModel& robot);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -301,14 +302,16 @@ bool ConstrainedStepper::is_step(const Eigen::Ref<const Eigen::VectorXd>& q,
 unsigned ConstrainedStepper::advance_together(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                               const Eigen::Ref<const Eigen::MatrixXd>& targets,
                                               Eigen::Ref<Eigen::MatrixXd> next) {
+  std::array<double, kSideBySide> distances{};
   for (Eigen::Index i = 0; i < qs.cols(); ++i) {
-    const double distance = (targets.col(i) - qs.col(i)).norm();
+    double& distance = distances[static_cast<std::size_t>(i)];
+    distance = (targets.col(i) - qs.col(i)).norm();
     next.col(i) = qs.col(i) + std::min(step_ / distance, 1.0) * (targets.col(i) - qs.col(i));
   }
   constraint_.set_projections(constraint_.projections() + static_cast<std::uint64_t>(qs.cols()));
   unsigned steps = constraint_.project_together(next);
   for (Eigen::Index i = 0; i < qs.cols(); ++i) {
-    const double stride = std::min(step_, (targets.col(i) - qs.col(i)).norm());
+    const double stride = std::min(step_, distances[static_cast<std::size_t>(i)]);
     if (!is_step(qs.col(i), next.col(i), targets.col(i), stride))
       steps &= ~(1U << i);
   }

@@ -1,6 +1,8 @@
 #include "server/app/metrics_page.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "proto/dds/packet_guard.hpp"
 #include "server/app/process_metrics.hpp"
@@ -25,6 +27,27 @@ std::string metrics_page(const service::Service& service, std::size_t clients) {
   service.expose(page);
   expose_process(page);
   return page.text();
+}
+
+http::Handler metrics_handler(std::function<std::string()> page,
+                              std::chrono::milliseconds page_age) {
+  using Clock = std::chrono::steady_clock;
+  return [page = std::move(page), page_age, text = std::string(),
+          made = std::optional<Clock::time_point>()](const http::Request& request,
+                                                     const http::Answer& answer) mutable {
+    if (request.path != "/metrics")
+      return answer(http::text_reply(404, "there is /metrics only"));
+    if (request.method != "GET" && request.method != "HEAD") {
+      http::Reply reply = http::text_reply(405, "GET and HEAD only");
+      reply.fields = {{"Allow", "GET, HEAD"}};
+      return answer(std::move(reply));
+    }
+    if (!made || Clock::now() - *made >= page_age) {
+      text = page();
+      made = Clock::now();
+    }
+    answer({.type = "text/plain; version=0.0.4; charset=utf-8", .body = text});
+  };
 }
 
 }  // namespace kinship::app

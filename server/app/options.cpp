@@ -16,8 +16,8 @@
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 #include "server/app/database_url.hpp"
-#include "server/app/metrics_address.hpp"
 #include "server/app/password.hpp"
+#include "server/app/port_options.hpp"
 
 namespace kinship::app {
 namespace {
@@ -39,6 +39,7 @@ Examples:
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
   kinshipd --interface eth0 --security /etc/kinship/security      other hosts, with certificates
   kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
+  kinshipd --console 127.0.0.1:9480              pages for a browser; kinship console prints the link
   kinshipd --upstream 'postgresql://memory.example/kinship?sslmode=verify-full'    one of several sites
   kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
@@ -70,14 +71,6 @@ CLI::Validator is_number_up_to(int highest) {
                        : "'" + text + "' is not a number from 0 to " + range;
           },
           "FLOAT in [0 - " + range + "]"};
-}
-
-CLI::Validator is_metrics_address() {
-  return {[](std::string& text) {
-            const Result<MetricsAddress> address = read_metrics_address(text);
-            return address ? std::string() : address.error().message;
-          },
-          "ADDRESS:PORT"};
 }
 
 CLI::Validator is_upstream() {
@@ -265,13 +258,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "second; 0: not at all")
       ->check(is_number_up_to(kMaxScrubMbPerS))
       ->capture_default_str();
-  app.add_option("--metrics", options.metrics,
-                 "Address and port where Prometheus reads /metrics, e.g. 127.0.0.1:9464, without "
-                 "access control; default: nowhere")
-      ->check(is_metrics_address());
-  app.add_option("--metrics-host", options.metrics_hosts,
-                 "A name by which /metrics may be asked for, besides addresses, localhost and this "
-                 "machine's name; may be given again");
+  add_port_options(app, options);
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -407,8 +394,9 @@ namespace {
 
 /// The reason not to serve with these options; empty: none.
 std::string serving_fault(const ServerOptions& options) {
-  if (std::string fault = store_option_fault(options); !fault.empty())
-    return fault;
+  for (const std::string& fault : {store_option_fault(options), console_fault(options)})
+    if (!fault.empty())
+      return fault;
   const std::string insecurity = insecurity_of(options);
   if (insecurity.empty())
     return {};

@@ -64,6 +64,9 @@ struct ServerOptions {
   std::vector<std::string> upstream_tasks;  ///< patterns of tasks that always come down from it
   std::string metrics;                      ///< address and port to serve metrics at; empty: none
   std::vector<std::string> metrics_hosts;   ///< names by which they may be asked for
+  std::string console;         ///< address and port to serve the live console at; empty: none
+  bool console_admin = false;  ///< it may change something
+  std::vector<std::string> console_hosts;  ///< names by which it may be asked for
   std::string log_level = "info";
 };
 

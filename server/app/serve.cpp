@@ -23,16 +23,17 @@
 #include "proto/security/admin_token.hpp"
 #include "proto/types/names.hpp"
 #include "server/access/access.hpp"
+#include "server/app/console_server.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/expiry_watch.hpp"
 #include "server/app/heap_trim.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
-#include "server/app/metrics_listener.hpp"
 #include "server/app/metrics_page.hpp"
 #include "server/app/revocation_watch.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
+#include "server/http/listener.hpp"
 #include "server/runtime/memory_reserve.hpp"
 #include "server/service/service.hpp"
 #include "server/store/open_store.hpp"
@@ -123,8 +124,11 @@ using Announcements = dds::Publisher<codec::AnnouncementPublication>;
 
 /// The service's events and announcements go to these, which outlive it.
 void publish_with(service::ServiceOptions& settings, const Events& events,
-                  const Announcements& announcements) {
-  settings.on_event = [&events](const Event& event) { events.publish(event); };
+                  const Announcements& announcements, console::Broadcast& broadcast) {
+  settings.on_event = [&events, &broadcast](const Event& event) {
+    events.publish(event);
+    broadcast.publish(event);
+  };
   settings.on_announcement = [&announcements](const Announcement& announcement) {
     announcements.publish(announcement);
   };
@@ -154,10 +158,10 @@ std::unique_ptr<RevocationWatch> watch_revocations(
       [](std::string_view line) { spdlog::warn("security: {}", line); });
 }
 
-std::optional<MetricsPort> open_metrics_port(const ServerOptions& options) {
+std::optional<http::Port> open_metrics_port(const ServerOptions& options) {
   if (options.metrics.empty())
     return std::nullopt;
-  return MetricsPort(read_metrics_address(options.metrics).value_or_throw());
+  return http::Port(http::read_address(options.metrics).value_or_throw(), {"metrics", "--metrics"});
 }
 
 ExpiryWatch watch_expiry(const dds::Participant& participant) {
@@ -236,7 +240,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   // Before the store: a server that cannot join the domain, or has no port, leaves no file behind.
   const std::shared_ptr<security::ClientDirectory> clients = clients_of(options);
   const dds::Participant participant = join_domain(options, clients);
-  std::optional<MetricsPort> metrics_port = open_metrics_port(options);
+  std::optional<http::Port> metrics_port = open_metrics_port(options);
+  std::optional<http::Port> console_port = open_console_port(options);
+  console::Broadcast broadcast;
   dds::WaitLoop loop(participant);
   const Events events(participant, loop, access::may_hear);
   const Announcements announcements(participant, loop, may_hear_announcement);
@@ -246,7 +252,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   settings.credentials_expire_ms = expiry_ms(participant);
   settings.log = [&log](std::string_view line) { log.write(line); };
   set_upstream(options, settings);
-  publish_with(settings, events, announcements);
+  publish_with(settings, events, announcements, broadcast);
   settings.wake = [&loop] { loop.wake(); };
   std::unique_ptr<store::Store> opened =
       store::open_store(options.store.string(), store_options(options));
@@ -265,20 +271,24 @@ int serve(const ServerOptions& options, std::ostream& out) {
   tell_what_is_served(service.status(), options.domain, store_name);
   ExpiryWatch expiry = watch_expiry(participant);
   expiry.beat(WaitClock::now());
-  std::optional<MetricsListener> metrics;
+  std::optional<http::Listener> metrics;
   if (metrics_port) {
-    spdlog::info("metrics at {}", metrics_port->url());
-    metrics.emplace(
-        std::move(*metrics_port),
-        [&service, &endpoints] { return metrics_page(service, endpoints.clients()); },
-        MetricsLimits{.hosts = options.metrics_hosts});
+    spdlog::info("metrics at {}/metrics", metrics_port->url());
+    metrics.emplace(std::move(*metrics_port), metrics_handler([&service, &endpoints] {
+                      return metrics_page(service, endpoints.clients());
+                    }),
+                    http::Limits{.hosts = options.metrics_hosts, .host_option = "--metrics-host"});
   }
+  std::optional<ConsoleServer> console;
+  if (console_port)
+    console.emplace(std::move(*console_port), options, service, broadcast);
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
   run(loop, service, expiry);
 
   notify_service_manager("STOPPING=1");
   metrics.reset();
+  console.reset();
   service.shutdown();
   spdlog::info("ended");
   return kDone;

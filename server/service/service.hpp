@@ -53,6 +53,7 @@ class Service {
   void expire(TimePoint now);
 
   ServerStatus status() const;
+  const Measures& measures() const noexcept { return measures_; }
   /// All metrics, for monitoring of many servers (service_metrics.cpp). Reads the store's status;
   /// if that fails, its families are left out and one family says so. Not for the thread that waits
   /// on the network.

@@ -19,6 +19,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"Eigen", {"Eigen/", "unsupported/Eigen/"}},
     {"libcrypto", {"openssl/"}},
     {"Boost.Random", {"boost/random/"}},
+    {"Boost.CRC", {"boost/crc.hpp"}},
     {"Boost.Beast", {"boost/asio/", "boost/beast/"}},
     {"Cyclone DDS", {"dds/"}},
     {"nlohmann-json", {"nlohmann/"}},
@@ -60,8 +61,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string recall = "robots/recall";
   const std::string page = "pages/page";
   const std::string plots = "pages/plots";
+  const std::string mcap = "pages/mcap";
   const std::string access = "server/access";
   const std::string metrics = "server/metrics";
+  const std::string http = "server/http";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
@@ -72,6 +75,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string rehearsal = "server/rehearsal";
   const std::string sites = "server/sites";
   const std::string service = "server/service";
+  const std::string console = "server/console";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
@@ -104,8 +108,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {recall, {{planning, inverse, collision, kinematics, types}, {"Eigen"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
+      {mcap, {{page, geometry, kinematics, types}, {"Eigen", "Boost.CRC", "zstd"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
+      {http, {{types}, {"Boost.Beast"}}},
       {store, {{files, types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -122,10 +128,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{access, quotas, rehearsal, sites, catalog, fitting, runtime, store, metrics, density,
          inverse, evidence, types},
         {"Eigen"}}},
+      {console, {{service, runtime, http, page, plots, evidence, json, types}, {}}},
       {"server/app",
-       {{service, access, quotas, runtime, metrics, security, dds, codec, json, manual, sites,
-         tables, types, store},
-        {"Boost.Beast", "CLI11", "spdlog"}}},
+       {{console, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
+         manual, sites, tables, types, store},
+        {"CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
@@ -134,8 +141,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, page, plots, inverse, collision, geometry, kinematics,
-         models, mixture, json, manual, tables, types},
+       {{link, arguments, files, moveit, page, plots, mcap, inverse, collision, geometry,
+         kinematics, models, mixture, json, manual, tables, types},
         {"Eigen", "CLI11"}}},
       {"client/c",
        {{link, json, evidence, mixture, recall, planning, models, collision, geometry, kinematics,

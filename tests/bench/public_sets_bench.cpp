@@ -67,6 +67,9 @@ Times plan_all(const guided::PlannedRobot& robot, const fs::path& file, std::str
     times.plan_ms.push_back(1e3 * planned.result.planning_time_s);
     times.whole_ms.push_back(1e3 * whole_s);
   }
+  if (times.plan_ms.empty())
+    throw std::runtime_error(file.string() + ": none of its " + std::to_string(count) +
+                             " problems is solved; kinship-plan tells why");
   note = "solved " + std::to_string(times.plan_ms.size()) + " of " + std::to_string(count) +
          ", proven " + std::to_string(proven);
   return times;

@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import unittest
 import uuid
 
@@ -11,11 +12,15 @@ import numpy as np
 
 from browser import Browser, pixels_of, share_drawn
 from kinshipd_process import Kinshipd
+from strict_server import StrictServer, taken_apart
 
 MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
 TASK = "sweep"
 READY = {"panda": np.array([0, -0.785, 0, -2.356, 0, 1.571, 0.785]), "ur10e": np.array([0, -1.2, 1.8, -2.2, -1.57, 0])}
 GUIDED = (11, 122, 117)  # of the style, light
+# What a page shows, told by its parts and by the colours that styles give them.
+SHOWN = """return [document.querySelectorAll("canvas").length, document.querySelectorAll("svg *").length, document.querySelectorAll("td").length,
+  [...document.querySelectorAll("i, button")].map(element => getComputedStyle(element).backgroundColor)]"""
 
 
 def attempt(robot: str, seed: int, **record) -> dict:
@@ -173,6 +178,17 @@ class PlotPages(unittest.TestCase):
         rehearsal = next(row["rehearsal"] for row in data["rows"] if row["target_label"] == row["source_label"] == "ur10e")
         self.assertIn(f"{rehearsal['queries']} recorded quer", self.browser.text("#detail"))
         self.assertEqual(len(self.table("#pairs")), 1 + len(data["rows"]))
+
+    def test_figures_are_drawn_under_a_strict_content_security_policy(self):
+        for page in ("distribution.html", "task.html", "worths.html"):
+            with tempfile.TemporaryDirectory() as folder, StrictServer(pathlib.Path(folder)) as server:
+                taken_apart(self.folder / page, pathlib.Path(folder))
+                self.load(page)
+                inline = self.browser.run(SHOWN)
+                self.browser.driver.get(f"{server.address}/index.html")
+                self.browser.settle()
+                self.assertEqual(self.browser.run(SHOWN), inline, page)
+                self.browser.check_console(self)
 
     def test_pages_fit_a_phone_and_the_dark(self):
         for page in ("distribution.html", "task.html", "worths.html"):

@@ -147,9 +147,11 @@ void Database::keep_checksums() {
   execute(checksum_triggers(checked_tables_));
 }
 
-Database::CachedStatement Database::insert_into(std::string_view table) {
+Database::CachedStatement Database::insert_into(std::string_view table,
+                                                const std::vector<std::string>& columns) {
   return cached(text_of(inserts_, table, [&](const CheckedTable& checked) {
-    return insert_with_checksum(std::string(table), checked);
+    return insert_with_checksum(std::string(table), checked,
+                                columns.empty() ? checked.columns : columns);
   }));
 }
 

@@ -49,8 +49,9 @@ class Database : public Session {
   /// From now on the rows that this connection writes get their checksums.
   void keep_checksums();
   const std::map<std::string, CheckedTable, std::less<>>& checked_tables();
-  /// Inserts a row with all columns of a table with checksums, in their order.
-  CachedStatement insert_into(std::string_view table);
+  /// Inserts a row with all columns of a table with checksums.
+  /// \param columns  the same in each call; empty: in the order of the table.
+  CachedStatement insert_into(std::string_view table, const std::vector<std::string>& columns = {});
 
   void execute(const std::string& script);     ///< runs statements without parameters, drops rows
   std::int64_t integer(std::string_view sql);  ///< the first column of the first row; 0 if none

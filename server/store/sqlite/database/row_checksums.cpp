@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
@@ -160,13 +161,19 @@ std::string checksum_triggers(const std::map<std::string, CheckedTable, std::les
   return sql;
 }
 
-std::string insert_with_checksum(const std::string& name, const CheckedTable& table) {
-  const auto place = [](std::size_t column) { return "?" + std::to_string(column + 1); };
+std::string insert_with_checksum(const std::string& name, const CheckedTable& table,
+                                 const std::vector<std::string>& columns) {
+  const auto place_of = [&](const std::string& column) {
+    return "?" + std::to_string(1 + (std::ranges::find(columns, column) - columns.begin()));
+  };
+  if (!std::ranges::is_permutation(columns, table.columns))
+    throw std::logic_error("an INSERT into " + name + " has not its columns");
   std::vector<std::string> places;
-  for (std::size_t i = 0; i < table.columns.size(); ++i)
-    places.push_back(place(i));
-  return "INSERT INTO " + name + " (" + joined(table.columns) + ", row_crc32c) VALUES (" +
-         joined(places) + ", " + checksum_of(table, place) + ")";
+  for (const std::string& column : columns)
+    places.push_back(place_of(column));
+  return "INSERT INTO " + name + " (" + joined(columns) + ", row_crc32c) VALUES (" +
+         joined(places) + ", " +
+         checksum_of(table, [&](std::size_t i) { return place_of(table.columns[i]); }) + ")";
 }
 
 }  // namespace kinship::store

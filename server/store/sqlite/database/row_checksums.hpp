@@ -36,8 +36,10 @@ std::map<std::string, CheckedTable, std::less<>> read_checked_tables(sqlite3& co
 /// row (SqliteError::is_of_row()).
 std::string checksum_triggers(const std::map<std::string, CheckedTable, std::less<>>& tables);
 
-/// An INSERT of all columns of a table, with parameters in their order, and the checksum: for rows
-/// that a trigger would have to write twice.
-std::string insert_with_checksum(const std::string& name, const CheckedTable& table);
+/// An INSERT with the checksum, for rows that a trigger would have to write twice.
+/// \param columns  all of the table, in the order of the parameters.
+/// \throws std::logic_error if they are not.
+std::string insert_with_checksum(const std::string& name, const CheckedTable& table,
+                                 const std::vector<std::string>& columns);
 
 }  // namespace kinship::store

@@ -26,17 +26,11 @@ struct stat status_of(const files::File& file) {
   return status;
 }
 
-struct Id {
-  dev_t device = 0;
-  ino_t inode = 0;
-  bool operator==(const Id&) const = default;
-};
-
 /// Empty if the name leads to nothing.
-std::optional<Id> id_of(const fs::path& path) {
+std::optional<struct stat> status_of(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) == 0)
-    return Id{status.st_dev, status.st_ino};
+    return status;
   if (errno != ENOENT && errno != ENOTDIR)
     throw files::FileError(path, files::Step::Open, errno);
   return std::nullopt;
@@ -57,13 +51,19 @@ NamedStore::NamedStore(fs::path file, const files::File& open)
     : file_(std::move(file)),
       wal_(file_.string() + "-wal"),
       open_(&open),
+      id_(id_of(status_of(open))),
       folder_(file_.parent_path(), O_PATH | O_DIRECTORY),
       size_(open.size()) {}
+
+NamedStore::Id NamedStore::id_of(const struct stat& status) {
+  return {status.st_dev, status.st_ino};
+}
 
 void NamedStore::note_opened() {
   size_ = open_->size();
   try {
     log_.emplace(wal_, O_RDONLY);  // SQLite's locks are on other files
+    log_id_ = id_of(status_of(*log_));
   } catch (const files::FileError& error) {
     log_.reset();  // the next look says that it is missing
     if (error.reason() != ENOENT)
@@ -73,8 +73,7 @@ void NamedStore::note_opened() {
 
 /// Also right while another program checkpoints: that writes the first page, which says how long
 /// the file is, and last the end.
-bool NamedStore::is_truncated() {
-  const std::uint64_t size = open_->size();
+bool NamedStore::is_truncated(std::uint64_t size) {
   if (size >= size_) {
     size_ = size;
     return false;
@@ -97,19 +96,18 @@ bool NamedStore::is_truncated() {
 
 /// Whether names in the store's own folder, wherever that is now, lead to its files.
 bool NamedStore::is_whole_in_folder() const {
-  const auto leads_to = [&](const fs::path& path, const files::File& file) {
+  const auto leads_to = [&](const fs::path& path, const Id& wanted) {
     struct stat found {};
-    const struct stat wanted = status_of(file);
     return fstatat(folder_.descriptor(), path.filename().c_str(), &found, 0) == 0 &&
-           found.st_dev == wanted.st_dev && found.st_ino == wanted.st_ino;
+           id_of(found) == wanted;
   };
-  return leads_to(file_, *open_) && (!log_ || leads_to(wal_, *log_));
+  return leads_to(file_, id_) && (!log_ || leads_to(wal_, log_id_));
 }
 
 fs::path NamedStore::folder_now() const {
-  const struct stat wanted = status_of(folder_);
   const fs::path place = place_of(folder_);
-  return id_of(place) == Id{wanted.st_dev, wanted.st_ino} ? place : fs::path();
+  const auto found = status_of(place);
+  return found && id_of(*found) == id_of(status_of(folder_)) ? place : fs::path();
 }
 
 bool NamedStore::has_name() const { return status_of(*open_).st_nlink > 0; }
@@ -120,37 +118,34 @@ std::string NamedStore::open_files() const {
 }
 
 NamedStore::Finding NamedStore::look_at_file() {
-  const struct stat wanted = status_of(*open_);
-  if (const auto found = id_of(file_); found != Id{wanted.st_dev, wanted.st_ino}) {
+  const auto found = status_of(file_);
+  if (!found || id_of(*found) != id_) {
     if (is_whole_in_folder()) {
       const fs::path now = folder_now();
       return {StoreChange::FolderGone,
               now.empty() ? "another file system is mounted over its folder, it is whole below that"
                           : "its folder is '" + now.string() + "' now, it is whole there"};
     }
-    if (wanted.st_nlink == 0)
+    if (!has_name())
       return {StoreChange::FileGone,
               found ? "another file was put in its place" : "it was removed"};
     return {StoreChange::FileGone,
             (found ? "another file has its name, it is '" : "it was moved, it is '") +
                 place_of(*open_) + "' now"};
   }
-  if (is_truncated())
+  if (is_truncated(static_cast<std::uint64_t>(found->st_size)))
     return {StoreChange::Truncated,
-            "it was truncated to " + std::to_string(wanted.st_size) + " bytes"};
+            "it was truncated to " + std::to_string(found->st_size) + " bytes"};
   return {};
 }
 
 NamedStore::Finding NamedStore::look() {
   if (Finding found = look_at_file(); found.change != StoreChange::None)
     return found;
-  const auto wal = id_of(wal_);
+  const auto wal = status_of(wal_);
   if (!wal)
     return {StoreChange::WalGone, "its WAL '" + wal_.string() + "' was removed"};
-  struct stat wanted {};
-  if (log_)
-    wanted = status_of(*log_);
-  if (wal != Id{wanted.st_dev, wanted.st_ino})
+  if (!log_ || id_of(*wal) != log_id_)
     return {StoreChange::WalReplaced,
             "another file has the name of its WAL, '" + wal_.string() + "'"};
   return {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sys/stat.h>
 #include <sys/types.h>
 
 #include <cstdint>
@@ -71,16 +72,25 @@ class NamedStore {
   std::filesystem::path folder_now() const;
 
  private:
+  struct Id {
+    dev_t device = 0;
+    ino_t inode = 0;
+    bool operator==(const Id&) const = default;
+  };
+
+  static Id id_of(const struct stat& status);
   Finding look_at_file();
-  bool is_truncated();
+  bool is_truncated(std::uint64_t size);
   bool is_whole_in_folder() const;
 
   const std::filesystem::path file_;
   const std::filesystem::path wal_;
   const files::File* open_;
+  const Id id_;  // of the open file
   const files::File folder_;
   std::uint64_t size_ = 0;          // of the file, so far
   std::optional<files::File> log_;  // the WAL: while it is open no other file gets its number
+  Id log_id_;
 };
 
 }  // namespace kinship::store

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <span>
 
 namespace kinship::store {
 namespace {
@@ -38,16 +39,16 @@ void add_to(WalChecksum& sum, std::string_view bytes, bool is_swapped) {
   }
 }
 
-std::string read_at(const files::File& file, std::size_t size, std::uint64_t place) {
-  std::string bytes(size, '\0');
+/// \return what the file has of it.
+std::string_view read_at(const files::File& file, std::span<char> bytes, std::uint64_t place) {
   std::size_t done = 0;
-  while (const std::size_t got = file.read(bytes.data() + done, size - done, place + done)) {
-    done += got;
-    if (done == size)
+  while (done < bytes.size()) {
+    const std::size_t got = file.read(&bytes[done], bytes.size() - done, place + done);
+    if (got == 0)
       break;
+    done += got;
   }
-  bytes.resize(done);
-  return bytes;
+  return {bytes.data(), done};
 }
 
 std::uint64_t place_of(std::uint64_t frames, std::uint64_t page_bytes) {
@@ -59,24 +60,26 @@ std::uint64_t place_of(std::uint64_t frames, std::uint64_t page_bytes) {
 WalFrames::WalFrames(const files::File& wal, const WalIndex& index)
     : wal_(&wal), salts_(index.salts), page_bytes_(index.page_bytes) {
   constexpr std::size_t kPageBytesAt = 8, kChecksumAt = 24;
-  const std::string header = read_at(wal, kHeader, 0);
+  std::array<char, kHeader> bytes{};
+  const std::string_view header = read_at(wal, bytes, 0);
   if (header.size() < kHeader || (word_at(header, 0) & ~1U) != kMagic)
     return;
   is_swapped_ = (word_at(header, 0) & 1U) != (std::endian::native == std::endian::big ? 1U : 0U);
-  add_to(checksum_, std::string_view(header).substr(0, kChecksumAt), is_swapped_);
+  add_to(checksum_, header.substr(0, kChecksumAt), is_swapped_);
   has_header_ = checksum_ == checksum_at(header, kChecksumAt) &&
                 word_at(header, kPageBytesAt) == page_bytes_ && has_salts(header, kSaltsAt, salts_);
 }
 
 bool WalFrames::advance(std::uint64_t until, const Take& take) {
-  constexpr std::uint64_t kFramesOfAStep = 64;
   const std::size_t frame_bytes = kFrameHeader + page_bytes_;
   while (has_header_ && read_ < until) {
-    const std::uint64_t wanted = std::min(until - read_, kFramesOfAStep);
-    const std::string bytes = read_at(*wal_, wanted * frame_bytes, place_of(read_, page_bytes_));
+    const std::uint64_t wanted = std::min(until - read_, kOfAStep);
+    bytes_.resize(std::max(bytes_.size(), wanted * frame_bytes));
+    const std::string_view bytes =
+        read_at(*wal_, std::span(bytes_).first(wanted * frame_bytes), place_of(read_, page_bytes_));
     for (std::uint64_t i = 0; i < wanted; ++i)
       if (bytes.size() < (i + 1) * frame_bytes ||
-          !take_next(std::string_view(bytes).substr(i * frame_bytes, frame_bytes), take))
+          !take_next(bytes.substr(i * frame_bytes, frame_bytes), take))
         return false;
   }
   return read_ >= until;
@@ -100,12 +103,13 @@ std::uint64_t WalFrames::bytes_of(const WalIndex& index) {
   return place_of(index.frames, index.page_bytes);
 }
 
-bool WalFrames::has_ends(const files::File& wal, const WalIndex& index) {
+bool WalFrames::has_ends(const files::File& wal, std::uint64_t size, const WalIndex& index) {
   if (index.frames == 0)
     return true;
-  if (wal.size() < bytes_of(index) || !WalFrames(wal, index).has_header_)
+  if (size < bytes_of(index) || !WalFrames(wal, index).has_header_)
     return false;
-  const std::string last = read_at(wal, kFrameHeader, place_of(index.frames - 1, index.page_bytes));
+  std::array<char, kFrameHeader> bytes{};
+  const std::string_view last = read_at(wal, bytes, place_of(index.frames - 1, index.page_bytes));
   return last.size() == kFrameHeader && has_salts(last, kSaltsOfFrameAt, index.salts) &&
          checksum_at(last, kSaltsOfFrameAt + index.salts.size()) == index.checksum;
 }

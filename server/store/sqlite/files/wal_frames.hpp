@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/files/file.hpp"
 
@@ -43,6 +44,8 @@ class WalFrames {
   };
   using Take = std::function<void(const Frame&)>;
 
+  static constexpr std::uint64_t kOfAStep = 32;  ///< frames that are read at once
+
   /// \param wal  outlives the object, which reads the header.
   WalFrames(const files::File& wal, const WalIndex& index);
 
@@ -57,7 +60,7 @@ class WalFrames {
   static std::uint64_t bytes_of(const WalIndex& index);
 
   /// Whether length, header and last frame of the WAL are those of its index: a few bytes are read.
-  static bool has_ends(const files::File& wal, const WalIndex& index);
+  static bool has_ends(const files::File& wal, std::uint64_t size, const WalIndex& index);
 
  private:
   bool take_next(std::string_view frame, const Take& take);
@@ -69,6 +72,7 @@ class WalFrames {
   bool has_header_ = false;
   std::uint64_t read_ = 0;
   WalChecksum checksum_{};
+  std::vector<char> bytes_;  // of some frames
 };
 
 }  // namespace kinship::store

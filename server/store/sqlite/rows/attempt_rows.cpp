@@ -1,6 +1,7 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 
 #include <string>
+#include <vector>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
@@ -12,31 +13,32 @@
 namespace kinship::store {
 namespace {
 
-constexpr int kBeforeRecord = 10;  // columns of an attempt that are written
-
-std::string insertion() {
-  std::string places = "?";
-  for (int place = 1; place < kBeforeRecord + kRecordColumns; ++place)
-    places += ", ?";
-  return "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
-         " machine, T_task_base, received_ms, scene_id, " +
-         record_columns() + ") VALUES (" + places + ")";
+/// As they are bound; those of the record come last.
+std::vector<std::string> all_columns() {
+  std::vector<std::string> columns = {"id",          "report_uuid", "body_sha256", "task_id",
+                                      "robot_id",    "path_id",     "status",      "machine",
+                                      "T_task_base", "received_ms", "scene_id"};
+  for_each_field<PlanningRecord>(
+      [&](const auto& field) { columns.emplace_back(column_of(field.name)); });
+  return columns;
 }
 
 }  // namespace
 
 std::int64_t insert_attempt(Database& database, const NewAttempt& added,
                             std::optional<std::int64_t> scene_id, std::int64_t now_ms) {
-  static const std::string insert = insertion();
+  static const std::vector<std::string> columns = all_columns();
   const Attempt& attempt = added.from->attempt;
   const auto T_task_base = optional_pose_blob(attempt.T_task_base);
-  const auto statement = database.cached(insert);
-  statement->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(added.from->body.bytes),
+  const std::int64_t id =
+      database.query("SELECT coalesce(max(id), 0) + 1 FROM attempt").front().column_integer(0);
+  const auto statement = database.insert_into("attempt", columns);
+  statement->bind_all(id, Bytes(attempt.report_uuid.bytes), Bytes(added.from->body.bytes),
                       added.key.task_id, added.key.robot_id, added.path_id,
                       static_cast<std::int64_t>(added.status), std::string_view(attempt.machine),
                       blob_or_null(T_task_base), added.from->received_ms.value_or(now_ms),
                       scene_id);
-  int place = kBeforeRecord;
+  auto place = static_cast<int>(columns.size()) - kRecordColumns;
   for_each_field<PlanningRecord>([&](const auto& field) {
     statement->bind(++place, column_value(attempt.record.*field.member));
   });

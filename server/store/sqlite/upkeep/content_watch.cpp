@@ -100,18 +100,18 @@ bool ContentWatch::is_overwritten(const files::File& file, const WalIndex& befor
 }
 
 bool ContentWatch::has_all_frames(const files::File& wal, const WalIndex& index, LookAt what) {
-  if (!WalFrames::has_ends(wal, index))
+  const Stamp stamp = stamp_of(wal);
+  if (!WalFrames::has_ends(wal, stamp.size, index))
     return false;
   if (what == LookAt::Ends)
-    return patrol(wal, index);
+    return patrol(wal, stamp, index);
   WalFrames all(wal, index);
   return all.advance(index.frames) && (index.frames == 0 || all.checksum() == index.checksum);
 }
 
 /// Round after round over all frames, at a bounded rate, until nobody has written for a round.
-bool ContentWatch::patrol(const files::File& wal, const WalIndex& index) {
+bool ContentWatch::patrol(const files::File& wal, const Stamp& stamp, const WalIndex& index) {
   using std::chrono::steady_clock;
-  const Stamp stamp = stamp_of(wal);
   const bool is_as_in_last_look = stamp == std::exchange(wal_stamp_, stamp);
   if (index.frames == 0 || (is_wal_settled_ && is_as_in_last_look)) {
     frames_.reset();
@@ -129,7 +129,7 @@ bool ContentWatch::patrol(const files::File& wal, const WalIndex& index) {
   const auto bytes = static_cast<std::uint64_t>(std::chrono::duration<double>(passed).count() *
                                                 static_cast<double>(kPatrol_bytes_per_s));
   const std::uint64_t until = std::min(index.frames, frames_->read() + bytes / index.page_bytes);
-  if (until == frames_->read())
+  if (until < std::min(index.frames, frames_->read() + WalFrames::kOfAStep))
     return true;  // so little time passed
   patrolled_ = now;
   if (!frames_->advance(until))

@@ -44,7 +44,7 @@ class ContentWatch {
   static Stamp stamp_of(const files::File& file);
   bool is_overwritten(const files::File& file, const WalIndex& before, Database& writing);
   bool has_all_frames(const files::File& wal, const WalIndex& index, LookAt what);
-  bool patrol(const files::File& wal, const WalIndex& index);
+  bool patrol(const files::File& wal, const Stamp& stamp, const WalIndex& index);
 
   std::optional<WalIndex> index_;
   std::optional<Sample> sample_;

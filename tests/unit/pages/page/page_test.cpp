@@ -59,6 +59,7 @@ TEST(Document, NeedsNothingElse) {
   std::smatch found;
   EXPECT_FALSE(std::regex_search(html, found, loads)) << found.str();
   EXPECT_EQ(html.find("@import"), std::string::npos);
+  EXPECT_EQ(html.find("'unsafe-eval'"), std::string::npos);
 }
 
 TEST(Document, CarriesOnlyTheProgramsItAsksFor) {
@@ -141,6 +142,8 @@ TEST(JsonText, EachSolidHasItsSize) {
   EXPECT_EQ(json::parse(json_of(object))["pose"], json({0, 0, 0, 0, 0, 0, 1}));
   object.shape = BoxShape{{0.1, 0.2, 0.3}};
   EXPECT_EQ(json::parse(json_of(object))["box"], json({100, 200, 300}));
+  object.shape = CapsuleShape{0.05, 0.6};
+  EXPECT_EQ(json::parse(json_of(object))["capsule"], json({50, 600}));
   object.shape = SphereShape{0.25};
   EXPECT_EQ(json::parse(json_of(object))["sphere"], 250);
 }

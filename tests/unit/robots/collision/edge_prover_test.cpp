@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -43,6 +44,35 @@ TEST(EdgeProver, NamesWhatStandsInTheWay) {
   EXPECT_EQ(proof.refutation->second, "link2");
   EXPECT_NEAR(proof.refutation->q[0], 2 * proof.refutation->share - 1, 1e-12);
   EXPECT_LE(proof.refutation->clearance_m, EdgeProofOptions{}.clearance_m);
+}
+
+/// Balls of 4 mm on both links sweep over a grain of 2 mm, which few configurations of an edge
+/// touch.
+TEST(EdgeProver, AGrainIsFoundWhereverItLiesInTheSweep) {
+  geometry::RobotShapes shapes;
+  for (int link = 1; link <= 2; ++link)
+    shapes.shapes.push_back({link, SphereShape{0.002}, Eigen::Isometry3d::Identity()});
+  for (int place = 0; place < 300; ++place) {
+    const double angle = -0.95 + 1.9 * place / 300, radius_m = (1 + place % 2) * kLink_m;
+    CollisionWorld world(
+        toy_chain(2), shapes,
+        around(box_at("grain", radius_m * cos(angle), radius_m * sin(angle), 0.002)));
+    EdgeProver prover(world);
+    EXPECT_FALSE(prover.prove(angles({-1, 0}), angles({1, 0})).is_free()) << "at " << angle;
+  }
+}
+
+TEST(EdgeProver, AGrainOnALinkIsFoundWhereverAnotherSweepsOverIt) {
+  for (int place = 0; place < 300; ++place) {
+    const double angle = -0.95 + 1.9 * place / 300;
+    geometry::RobotShapes shapes;
+    shapes.shapes.push_back(
+        {1, SphereShape{0.001}, shift(2 * kLink_m * cos(angle), 2 * kLink_m * sin(angle))});
+    shapes.shapes.push_back({3, SphereShape{0.002}, Eigen::Isometry3d::Identity()});
+    CollisionWorld world(toy_chain(3), shapes, {});
+    EdgeProver prover(world);
+    EXPECT_FALSE(prover.prove(angles({0, -1, 0}), angles({1, 1, 0})).is_free()) << "at " << angle;
+  }
 }
 
 TEST(EdgeProver, AStandingContactRefutesEveryEdge) {

@@ -231,6 +231,11 @@ TEST(ReadChain, ChecksTheRestOfTheDescription) {
   EXPECT_EQ(message(description), "held joints: 65 exceed 64");
 }
 
+TEST(VelocityLimits, AreThoseOfTheChainAndZeroWhereThereIsNone) {
+  const RobotModel robot = read_model(large_robot()).value_or_throw();
+  EXPECT_EQ(velocity_limits(robot), Eigen::Vector2d(0, 1));
+}
+
 TEST(ReadChain, LabelsAndLinkNamesDoNotCountForTheIdentity) {
   RobotDescription description = two_joints("continuous", kAlongZ);
   const Digest digest = read_chain(description).value_or_throw().digest();

@@ -1,0 +1,51 @@
+#include "server/app/port_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "server/http/address.hpp"
+
+namespace kinship::app {
+namespace {
+
+CLI::Validator is_port_address() {
+  return {[](std::string& text) {
+            const Result<http::Address> address = http::read_address(text);
+            return address ? std::string() : address.error().message;
+          },
+          "ADDRESS:PORT"};
+}
+
+}  // namespace
+
+void add_port_options(CLI::App& app, ServerOptions& options) {
+  app.add_option("--metrics", options.metrics,
+                 "Address and port where Prometheus reads /metrics, e.g. 127.0.0.1:9464, without "
+                 "access control; default: nowhere")
+      ->check(is_port_address());
+  app.add_option("--metrics-host", options.metrics_hosts,
+                 "A name by which /metrics may be asked for, besides addresses, localhost and this "
+                 "machine's name; may be given again");
+  app.add_option("--console", options.console,
+                 "Address and port of pages for a browser, e.g. 127.0.0.1:9480, which need a token "
+                 "(kinship console); another address than loopback needs --security, whose "
+                 "certificate it then shows; default: nowhere")
+      ->check(is_port_address());
+  app.add_flag("--console-admin", options.console_admin,
+               "The console may also cancel jobs, and retire, reset and evict, each after its name "
+               "was typed; without, it only reads");
+  app.add_option("--console-host", options.console_hosts,
+                 "A name by which the console may be asked for, besides addresses, localhost and "
+                 "this machine's name; may be given again");
+}
+
+std::string console_fault(const ServerOptions& options) {
+  if (options.console.empty() || !options.security.empty())
+    return {};
+  const Result<http::Address> address = http::read_address(options.console);
+  if (!address || http::is_loopback(*address))
+    return {};
+  return "--console '" + options.console +
+         "' is not loopback, and without --security anybody on that network could read along";
+}
+
+}  // namespace kinship::app

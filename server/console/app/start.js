@@ -1,0 +1,3 @@
+// After every page is registered.
+"use strict";
+kinshipConsole.start();
