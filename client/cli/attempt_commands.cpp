@@ -17,7 +17,7 @@
 namespace kinship::cli {
 namespace {
 
-constexpr const char* kExport = "attempts export";
+constexpr const char* kAttemptExport = "attempts export";
 
 void add_query(const SearchRecord& search, Problem& problem) {
   problem.start = search.start;
@@ -107,7 +107,7 @@ int export_attempt(link::Client& server, const AttemptExportOptions& options, st
                    std::ostream& err) {
   const Result<Problem> problem = fetch_problem(server, options.id);
   if (!problem)
-    return refuse(kExport, problem.error(), err);
+    return refuse(kAttemptExport, problem.error(), err);
   files::OutputFile output(options.output, out);
   output.stream() << json::to_json(*problem) << '\n';
   output.keep();

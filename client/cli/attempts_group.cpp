@@ -7,10 +7,10 @@
 namespace kinship::cli {
 namespace {
 
-constexpr const char* kId = "UUID of the report, as attempts list shows it";
-constexpr const char* kExampleUuid = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
+constexpr const char* kAttemptId = "UUID of the report, as attempts list shows it";
+constexpr const char* kExampleAttempt = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
 
-void add_list(CLI::App& group, Session& session) {
+void add_attempt_list(CLI::App& group, Session& session) {
   struct Options : AttemptListOptions {
     std::string outcome = "all", since;
     bool is_slowest = false;
@@ -45,13 +45,13 @@ void add_list(CLI::App& group, Session& session) {
   });
 }
 
-void add_export(CLI::App& group, Session& session) {
+void add_problem_export(CLI::App& group, Session& session) {
   const auto options = std::make_shared<AttemptExportOptions>();
   CLI::App* command = add_command(
       group, "export", "The problem of an attempt, which kinship-plan plans again",
-      std::string("kinship attempts export ") + kExampleUuid + " --output query.jsonl\n" +
+      std::string("kinship attempts export ") + kExampleAttempt + " --output query.jsonl\n" +
           "  kinship-plan --problems query.jsonl --robot panda --guidance uniform");
-  command->add_option("id", options->id, kId)->required()->type_name("ID");
+  command->add_option("id", options->id, kAttemptId)->required()->type_name("ID");
   command->add_option("--output", options->output, "File (default: standard output)")
       ->type_name("FILE");
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
@@ -64,12 +64,13 @@ void add_export(CLI::App& group, Session& session) {
 void add_attempts(CLI::App& app, Session& session) {
   CLI::App* attempts =
       add_group(app, session, "attempts", "Reported queries of planners, solved or not");
-  add_list(*attempts, session);
+  add_attempt_list(*attempts, session);
   add_one(*attempts, session,
-          {"show", "id", kId, "An attempt by its report's UUID: why it failed, what was in the way",
-           std::string("kinship attempts show ") + kExampleUuid},
+          {"show", "id", kAttemptId,
+           "An attempt by its report's UUID: why it failed, what was in the way",
+           std::string("kinship attempts show ") + kExampleAttempt},
           show_attempt);
-  add_export(*attempts, session);
+  add_problem_export(*attempts, session);
 }
 
 }  // namespace kinship::cli

@@ -139,10 +139,8 @@ class Import {
       }
       named.attempt.robot = *robot;
     }
-    if (named.attempt.path)
-      bytes_ += sizeof(double) * static_cast<std::size_t>(named.attempt.path->waypoints().size());
-    if (named.attempt.scene)
-      bytes_ += scene_bytes(*named.attempt.scene);
+    const BatchBytes size = batch_bytes(named.attempt);
+    bytes_ += size.waypoints + size.scenes + size.searches;
     attempts_.push_back(std::move(named.attempt));
     numbers_.push_back(number);
     if (attempts_.size() == kMaxAttemptsPerBatch || bytes_ > kHeldBytes)

@@ -148,7 +148,7 @@ TEST(PlanOptions, ScenesAreRecordedUnlessSaidOtherwise) {
   EXPECT_TRUE(parsed({"p", "--model", "m", "--record-scenes", "yes"}).options().record_scenes);
   EXPECT_FALSE(parsed({"p", "--model", "m", "--record-scenes", "no"}).options().record_scenes);
   EXPECT_EQ(parsed({"p", "--model", "m", "--record-scenes", "maybe"}).code(), 2);
-  const auto record = [&](const std::string& word) {
+  const auto record = [&](const char* word) {
     return parsed({"p", "--model", "m", "--task", "t", "--report", "--record-search", word})
         .options()
         .settings.record_search;
