@@ -83,7 +83,7 @@ void add_explain(CLI::App& group, Session& session) {
   });
 }
 
-void add_plot(CLI::App& group, Session& session) {
+void add_distribution_plot(CLI::App& group, Session& session) {
   const auto query = std::make_shared<DistributionQuery>();
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command = add_command(
@@ -108,7 +108,7 @@ void add_distributions(CLI::App& app, Session& session) {
           show_distribution);
   add_fetch(*group, session);
   add_explain(*group, session);
-  add_plot(*group, session);
+  add_distribution_plot(*group, session);
   add_one(*group, session,
           {"evict", "id", "Four digits of it or more",
            "Forget a distribution: the next fetch has it made anew",

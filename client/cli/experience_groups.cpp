@@ -2,7 +2,6 @@
 
 #include "client/cli/exchange_commands.hpp"
 #include "client/cli/path_export.hpp"
-#include "client/cli/plot_commands.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
 #include "client/cli/upkeep_commands.hpp"
@@ -79,20 +78,6 @@ void add_experience(CLI::App& group, Session& session) {
   });
 }
 
-void add_task_plot(CLI::App& group, Session& session) {
-  const auto task = std::make_shared<std::string>();
-  const auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = add_command(
-      group, "plot", "A page that shows a task's experience and the benefit of guidance over time",
-      "kinship tasks plot box_to_shelf --output box_to_shelf.html");
-  command->add_option("task", *task, "Its name")->required()->type_name("TASK");
-  add_page_output(*command, options->output)->required();
-  on_run_with_server(*command, session, [&session, task, options](link::Client& server) {
-    options->progress = session.shows_progress();
-    return plot_task(server, *task, *options, session.out, session.err);
-  });
-}
-
 }  // namespace
 
 void add_paths(CLI::App& app, Session& session) {
@@ -103,6 +88,11 @@ void add_paths(CLI::App& app, Session& session) {
           {"show", "id", kId, "A path by its report's UUID",
            std::string("kinship paths show ") + kExampleUuid},
           show_path);
+  add_plot(*paths, session,
+           {"plot", "id", kId,
+            "A page that shows a path in its scene: the arm along it, how near it comes to what",
+            std::string("kinship paths plot ") + kExampleUuid + " --output path.html"},
+           plot_path);
   add_export(*paths, session);
   add_import(*paths, session);
   add_one(*paths, session,
@@ -118,7 +108,11 @@ void add_tasks(CLI::App& app, Session& session) {
           {"show", "task", "Its name", "A task by name", "kinship tasks show box_to_shelf"},
           show_task);
   add_experience(*tasks, session);
-  add_task_plot(*tasks, session);
+  add_plot(*tasks, session,
+           {"plot", "task", "Its name",
+            "A page that shows a task's experience and the benefit of guidance over time",
+            "kinship tasks plot box_to_shelf --output box_to_shelf.html"},
+           plot_task);
 
   struct Options {
     std::string task;

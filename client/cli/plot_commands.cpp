@@ -10,6 +10,7 @@
 #include "client/link/admin_rows.hpp"
 #include "pages/plots/plot_pages.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/types/failure.hpp"
@@ -18,6 +19,8 @@ namespace kinship::cli {
 namespace {
 
 constexpr std::string_view kPlotDistribution = "distributions plot";
+constexpr std::string_view kPlotPath = "paths plot";
+constexpr std::string_view kPlotRobot = "robots plot";
 constexpr std::string_view kPlotTask = "tasks plot";
 
 /// The distribution of a query, by its id or by the rest of the query. Empty with an exit code in
@@ -39,6 +42,23 @@ std::optional<Distribution> find_distribution(link::Client& server, const Distri
     return json::distribution_from_json(*row).value_or_throw();
   code = refuse(kPlotDistribution, row.error(), err);
   return std::nullopt;
+}
+
+struct KnownRobot {
+  RobotSummary summary;
+  RobotDescription description;
+};
+
+/// \param name  a label, or the beginning of a digest.
+/// \throws Failure for rows that cannot be read.
+Result<KnownRobot> find_robot(link::Client& server, const std::string& name) {
+  const auto rows = link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = name});
+  if (!rows)
+    return rows.error();
+  if (rows->size() < 2)
+    return Error{ErrorCode::Internal, "the server answered without a row"};
+  return KnownRobot{json::row_from_json<RobotSummary>(rows->front()).value_or_throw(),
+                    json::robot_description_from_json(rows->back()).value_or_throw()};
 }
 
 /// The rows of one task: the client that asks for them, and the stream for its messages.
@@ -73,15 +93,11 @@ int plot_distribution(link::Client& server, const DistributionQuery& query,
   auto distribution = find_distribution(server, query, options.progress, err, code);
   if (code != kDone)
     return code;
-  const auto rows =
-      link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = distribution->robot.hex()});
-  if (!rows || rows->empty())
-    return refuse(
-        kPlotDistribution,
-        rows ? Error{ErrorCode::Internal, "the server answered without a row"} : rows.error(), err);
-  const auto description = json::robot_description_from_json(rows->back()).value_or_throw();
+  const auto robot = find_robot(server, distribution->robot.hex());
+  if (!robot)
+    return refuse(kPlotDistribution, robot.error(), err);
   try {
-    plots::write_page(plots::plot_of(*std::move(distribution), description), page.stream());
+    plots::write_page(plots::plot_of(*std::move(distribution), robot->description), page.stream());
   } catch (const Failure& failure) {
     return refuse(kPlotDistribution, failure.error(), err);
   }
@@ -105,6 +121,40 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
     return refuse(kPlotTask,
                   {ErrorCode::NotFound, "nothing to plot: no attempt of task '" + task + "'"}, err);
   plots::write_page(plots::history_of(task, std::move(attempts), distributions), page.stream());
+  page.keep(err);
+  return kDone;
+}
+
+int plot_robot(link::Client& server, const std::string& name, const PlotOptions& options,
+               std::ostream& out, std::ostream& err) {
+  PageFile page(options.output, out);
+  const auto robot = find_robot(server, name);
+  if (!robot)
+    return refuse(kPlotRobot, robot.error(), err);
+  plots::write_page(plots::robot_figure(robot->summary, robot->description), page.stream());
+  page.keep(err);
+  return kDone;
+}
+
+int plot_path(link::Client& server, const std::string& id, const PlotOptions& options,
+              std::ostream& out, std::ostream& err) {
+  PageFile page(options.output, out);
+  const auto row = link::first_row_of(server, {.verb = AdminVerb::ShowPath, .argument = id});
+  if (!row)
+    return refuse(kPlotPath, row.error(), err);
+  Attempt attempt = json::stored_attempt_from_json(*row).value_or_throw().attempt;
+  if (!attempt.path)
+    return refuse(
+        kPlotPath,
+        {ErrorCode::NotFound,
+         "nothing to plot: report " + id + " has no path" +
+             (attempt.record.outcome == Outcome::Solved ? " any more" : ", as it was not solved")},
+        err);
+  const auto robot = find_robot(server, attempt.robot.hex());
+  if (!robot)
+    return refuse(kPlotPath, robot.error(), err);
+  plots::write_page(plots::attempt_figure(std::move(attempt), robot->description),
+                    std::string(kPlotPath), page.stream());
   page.keep(err);
   return kDone;
 }

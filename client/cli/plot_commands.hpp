@@ -25,6 +25,17 @@ int plot_distribution(link::Client& server, const DistributionQuery& query,
 int plot_task(link::Client& server, const std::string& task, const PlotOptions& options,
               std::ostream& out, std::ostream& err);
 
+/// `robots plot`: the solids of a robot's links, its joints to move, its transfer frame.
+/// \param name  a label, or the beginning of a digest.
+int plot_robot(link::Client& server, const std::string& name, const PlotOptions& options,
+               std::ostream& out, std::ostream& err);
+
+/// `paths plot`: a path in its recorded scene, and how near it comes to what.
+/// \param id  a report UUID.
+/// \return kNotFound for an unknown one, or one without a path.
+int plot_path(link::Client& server, const std::string& id, const PlotOptions& options,
+              std::ostream& out, std::ostream& err);
+
 /// The output of a page: a file that gets its name once it is complete, or a stream for "-".
 class PageFile {
  public:

@@ -269,6 +269,11 @@ void add_robots(CLI::App& app, Session& session) {
           {"show", "robot", "Label, or four digits of its digest or more",
            "A robot by label or beginning of its digest", "kinship robots show ur10e"},
           show_robot);
+  add_plot(*robots, session,
+           {"plot", "robot", "Label, or four digits of its digest or more",
+            "A page that shows a robot as the server sees it; its joints can be moved",
+            "kinship robots plot ur10e --output ur10e.html"},
+           plot_robot);
   add_register(*robots, session);
   add_rename(*robots, session);
   add_remove(*robots, session);

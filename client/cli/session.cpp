@@ -114,6 +114,20 @@ CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show s
   return command;
 }
 
+void add_plot(CLI::App& group, Session& session, const OneText& text, Plot plot) {
+  const auto argument = std::make_shared<std::string>();
+  const auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = add_command(group, text.name, text.what, text.example);
+  command->add_option(text.argument, *argument, text.meaning)
+      ->required()
+      ->type_name(kind_of(group, text.argument));
+  add_page_output(*command, options->output)->required();
+  on_run_with_server(*command, session, [&session, argument, options, plot](link::Client& server) {
+    options->progress = session.shows_progress();
+    return plot(server, *argument, *options, session.out, session.err);
+  });
+}
+
 std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session) {
   constexpr double kDay_s = 86'400;
   const auto wait_s = std::make_shared<double>(kDay_s);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "client/cli/job_commands.hpp"
+#include "client/cli/plot_commands.hpp"
 #include "client/link/client.hpp"
 
 /// State that the groups of commands share, during and after parsing of the command line.
@@ -86,6 +87,12 @@ struct OneText {
 
 /// A command about one item, with --json. \return it, for further options.
 CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show show);
+
+using Plot = int (*)(link::Client&, const std::string&, const PlotOptions&, std::ostream&,
+                     std::ostream&);
+
+/// A command that writes a page about one item.
+void add_plot(CLI::App& group, Session& session, const OneText& text, Plot plot);
 
 /// --wait of a command that waits for a job, a day by default.
 /// \return gives the options of the wait, once the command line is parsed.

@@ -67,7 +67,8 @@ std::string object(std::initializer_list<std::pair<std::string_view, std::string
 std::string json_of(const SceneObject& object) {
   return "{\"name\":" + json_string(object.name) +
          ",\"pose\":" + list(to_pose_array(object.T_task_object), number) + "," +
-         std::visit(ShapeJson{}, object.shape) + "}";
+         std::visit(ShapeJson{}, object.shape) +
+         (object.approximate ? ",\"approximate\":true}" : "}");
 }
 
 std::string json_of(const std::vector<SceneObject>& objects) {

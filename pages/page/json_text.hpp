@@ -38,7 +38,8 @@ std::string list(const Values& values, const ToJson& each_to_json) {
 /// A JSON object of members that are JSON themselves.
 std::string object(std::initializer_list<std::pair<std::string_view, std::string>> members);
 
-/// A solid for view.js: {"name", "pose": [7], "box" | "cylinder" | "capsule" | "sphere"}.
+/// A solid for view.js: {"name", "pose": [7], "box" | "cylinder" | "capsule" | "sphere"}, and
+/// "approximate" if it is fitted around a mesh.
 std::string json_of(const SceneObject& object);
 std::string json_of(const std::vector<SceneObject>& objects);
 

@@ -4,6 +4,7 @@ const kinshipSolids = (() => {
   const {color} = kinshipPage;
   const ball = new THREE.SphereBufferGeometry(1, 20, 14);
   const rod = new THREE.CylinderBufferGeometry(1, 1, 1, 20, 1, true);
+  const thin = [new THREE.SphereBufferGeometry(1, 8, 6), new THREE.CylinderBufferGeometry(1, 1, 1, 8, 1, true)];
 
   /// [x, y, z, qx, qy, qz, qw] in m, or a matrix already.
   function matrixOf(pose) {
@@ -33,42 +34,61 @@ const kinshipSolids = (() => {
     return new THREE.SphereBufferGeometry(mm(object.sphere), 20, 14);
   }
 
-  /// Faces and edges of a solid in its own frame, made once for each size: solids that move take them along.
+  /// Faces and edges of a solid in its own frame, made once for each size.
   const shapes = new Map();
   function shapeOf(object) {
     const key = JSON.stringify([object.box, object.cylinder, object.capsule, object.sphere]);
     if (!shapes.has(key)) {
       const faces = newGeometry(object);
       const edges = new THREE.EdgesGeometry(faces, 30);
-      faces.isShared = edges.isShared = true;
       shapes.set(key, {faces, edges});
     }
     return shapes.get(key);
   }
 
-  const inPlace = (name, object) => shapeOf(object)[name].clone().applyMatrix(matrixOf(object.pose)).attributes.position.array;
+  /// One geometry of many, each moved by a matrix: a single drawing call, which costs more than its triangles.
+  function merged(parts) {
+    const positions = [], normals = [], indices = [];
+    const at = new THREE.Vector3();
+    for (const [geometry, matrix] of parts) {
+      const {position, normal} = geometry.attributes;
+      const first = positions.length / 3;
+      const turn = new THREE.Matrix3().getNormalMatrix(matrix);
+      for (let i = 0; i < position.count; ++i) {
+        at.fromBufferAttribute(position, i).applyMatrix4(matrix);
+        positions.push(at.x, at.y, at.z);
+        if (!normal) continue;
+        at.fromBufferAttribute(normal, i).applyMatrix3(turn).normalize();
+        normals.push(at.x, at.y, at.z);
+      }
+      if (geometry.index) for (const index of geometry.index.array) indices.push(first + index);
+    }
+    const all = new THREE.BufferGeometry();
+    all.setAttribute("position", new THREE.Float32BufferAttribute(positions, 3));
+    if (normals.length) all.setAttribute("normal", new THREE.Float32BufferAttribute(normals, 3));
+    if (indices.length) all.setIndex(indices);
+    return all;
+  }
+
+  const inPlace = (name, objects) => merged(objects.map((object) => [shapeOf(object)[name], matrixOf(object.pose)]));
   /// Corners of a solid in its place; pairs of points of its edges.
-  const pointsOf = (object) => inPlace("faces", object);
-  const edgesOf = (object) => inPlace("edges", object);
+  const pointsOf = (object) => inPlace("faces", [object]).attributes.position.array;
+  const edgesOf = (object) => inPlace("edges", [object]).attributes.position.array;
 
   /// Faces that let through what is behind them, unless they are to be solid; edges that clouds do not bury.
   function addObjects(group, layer) {
     const hue = new THREE.Color(color(layer.color));
     const opacity = layer.opacity || 0.22;
-    for (const object of layer.objects) {
-      const isFloor = object.box && Math.max(...object.box) > 1000 && Math.min(...object.box) < 100;
-      const shape = shapeOf(object);
-      const faces = new THREE.Mesh(shape.faces, new THREE.MeshLambertMaterial(
-        {color: hue, transparent: opacity < 1, opacity: isFloor ? opacity / 3 : opacity, depthWrite: opacity >= 1, side: THREE.DoubleSide,
+    const isFloor = (object) => object.box && Math.max(...object.box) > 1000 && Math.min(...object.box) < 100;
+    for (const [objects, part] of [[layer.objects.filter((object) => !isFloor(object)), 1], [layer.objects.filter(isFloor), 1 / 3]]) {
+      if (!objects.length) continue;
+      const faces = new THREE.Mesh(inPlace("faces", objects), new THREE.MeshLambertMaterial(
+        {color: hue, transparent: opacity < 1, opacity: opacity < 1 ? opacity * part : 1, depthWrite: opacity >= 1, side: THREE.DoubleSide,
          polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
-      const edges = new THREE.LineSegments(shape.edges, new THREE.LineBasicMaterial(
+      const edges = new THREE.LineSegments(inPlace("edges", objects), new THREE.LineBasicMaterial(
         {color: hue, transparent: true, opacity: opacity < 1 ? 0.85 : 0.4}));
       faces.renderOrder = opacity < 1 ? 20 : 0;
       edges.renderOrder = 21;
-      for (const drawn of [faces, edges]) {
-        drawn.matrixAutoUpdate = false;
-        drawn.matrix.copy(matrixOf(object.pose));
-      }
       group.add(faces, edges);
     }
   }
@@ -112,33 +132,26 @@ const kinshipSolids = (() => {
 
   /// Capsules. A translucent arm is drawn twice: depth first, then colour where nothing of the arm is nearer, so that it does
   /// not show its own inside.
-  function addArm(group, bones, hue, opacity, order) {
+  function addArm(group, bones, hue, opacity, order, [ends, rods] = [ball, rod]) {
     const material = new THREE.MeshPhongMaterial({color: hue, transparent: opacity < 1, opacity, shininess: 18, specular: 0x222222});
     const depth = new THREE.MeshBasicMaterial({colorWrite: false, transparent: true}); // sorted with the others by renderOrder
-    const add = (geometry, place) => {
-      for (const [look, drawn] of opacity < 1 ? [[depth, order], [material, order + 0.5]] : [[material, 0]]) {
-        const mesh = new THREE.Mesh(geometry, look);
-        place(mesh);
-        mesh.renderOrder = drawn;
-        group.add(mesh);
-      }
-    };
+    const parts = [];
+    const none = new THREE.Quaternion();
     for (const [ax, ay, az, bx, by, bz, r] of bones) {
       const from = new THREE.Vector3(ax, ay, az).divideScalar(1000);
       const to = new THREE.Vector3(bx, by, bz).divideScalar(1000);
       const radius = r / 1000;
-      for (const end of [from, to])
-        add(ball, (mesh) => {
-          mesh.position.copy(end);
-          mesh.scale.setScalar(radius);
-        });
+      for (const end of [from, to]) parts.push([ends, new THREE.Matrix4().compose(end, none, new THREE.Vector3(radius, radius, radius))]);
       const length = from.distanceTo(to);
       if (length < 1e-4) continue;
-      add(rod, (mesh) => {
-        mesh.position.copy(from).lerp(to, 0.5);
-        mesh.scale.set(radius, length, radius);
-        mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), to.clone().sub(from).divideScalar(length));
-      });
+      const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), to.clone().sub(from).divideScalar(length));
+      parts.push([rods, new THREE.Matrix4().compose(from.clone().lerp(to, 0.5), turn, new THREE.Vector3(radius, length, radius))]);
+    }
+    const geometry = merged(parts);
+    for (const [look, drawn] of opacity < 1 ? [[depth, order], [material, order + 0.5]] : [[material, 0]]) {
+      const mesh = new THREE.Mesh(geometry, look);
+      mesh.renderOrder = drawn;
+      group.add(mesh);
     }
   }
 
@@ -158,14 +171,14 @@ const kinshipSolids = (() => {
     if (layer.points) addPoints(group, layer);
     const hue = new THREE.Color(color(layer.color));
     (layer.arms || []).forEach((arm, i) => addArm(group, arm.bones, hue, arm.opacity || 1, 1 + (index + i) % 7));
-    for (const way of layer.ways || []) addArm(group, bonesOfWay(way), way.color ? new THREE.Color(color(way.color)) : hue, 1, 0);
+    for (const way of layer.ways || []) addArm(group, bonesOfWay(way), way.color ? new THREE.Color(color(way.color)) : hue, 1, 0, thin);
     return group;
   }
 
-  /// Gives back what a group holds of the graphics card; balls, rods and solids are shared.
+  /// Gives back what a group holds of the graphics card.
   function dispose(group) {
     for (const drawn of group.children) {
-      if (drawn.geometry !== ball && drawn.geometry !== rod && !drawn.geometry.isShared) drawn.geometry.dispose();
+      drawn.geometry.dispose();
       drawn.material.dispose();
     }
   }
@@ -186,5 +199,5 @@ const kinshipSolids = (() => {
     return balls;
   }
 
-  return {groupOf, dispose, ballsOf, edgesOf, bonesOfWay};
+  return {groupOf, dispose, ballsOf, edgesOf, bonesOfWay, matrixOf};
 })();

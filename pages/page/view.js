@@ -28,10 +28,16 @@ const kinshipView = (() => {
     controls.screenSpacePanning = true;
     const groups = [];
     let replaced = []; // kept until the next are drawn, so that their programs stay compiled
-    const draw = () => {
+    let frame = null;
+    const render = () => {
+      cancelAnimationFrame(frame);
+      frame = null;
       renderer.render(scene, camera);
       replaced.forEach(dispose);
       replaced = [];
+    };
+    const draw = () => { // once for all that changes before the next picture
+      if (frame === null) frame = requestAnimationFrame(render);
     };
     controls.addEventListener("change", draw);
     controls.addEventListener("start", () => stage.dataset.turned = "yes");
@@ -47,6 +53,7 @@ const kinshipView = (() => {
         scene.add(groups[index]);
       },
       close() {
+        cancelAnimationFrame(frame);
         controls.dispose();
         groups.forEach(dispose);
         renderer.dispose();
@@ -57,7 +64,7 @@ const kinshipView = (() => {
         const from = anew || !stage.dataset.turned ? direction : camera.position.clone().sub(controls.target).toArray();
         controls.target.copy(kinshipCamera.fit(camera, balls, from, stage.clientWidth / stage.clientHeight));
         controls.update();
-        draw();
+        render();
       },
       grow(index, lines, points) {
         for (const drawn of groups[index].children) {

@@ -9,13 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pages/plots/drawn_robot.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/turn.hpp"
-#include "robots/geometry/known_shapes.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/urdf.hpp"
-#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::plots {
 
@@ -99,13 +97,6 @@ Eigen::MatrixXd draw_samples(const Distribution& distribution) {
   return samples;
 }
 
-models::LoadedRobot known_robot(const RobotDescription& description, std::string& shapes) {
-  kinematics::RobotModel robot = kinematics::read_model(description).value_or_throw();
-  geometry::KnownShapes known = geometry::read_known_shapes(robot).value_or_throw();
-  shapes = geometry::describe(known);
-  return {std::move(robot), std::move(known.shapes)};
-}
-
 }  // namespace
 
 std::vector<Component> heaviest_components(const Mixture& mixture) {
@@ -126,7 +117,9 @@ DistributionPlot plot_of(Distribution distribution, const RobotDescription& desc
                                            distribution.id.short_hex() +
                                            " has no mixture: " + distribution.reason);
   DistributionPlot plot;
-  const models::LoadedRobot robot = known_robot(description, plot.shapes);
+  const DrawnRobot drawn = drawn_robot(description);
+  const models::LoadedRobot& robot = drawn.robot;
+  plot.shapes = drawn.shapes;
   if (robot.chain.digest() != distribution.robot)
     throw Failure(ErrorCode::InvalidInput,
                   "robot '" + description.label + "' is " + robot.chain.digest().short_hex() +

@@ -65,8 +65,7 @@ inline constexpr std::size_t kSamplesShown = 2000;
 /// frame, or that of its base if the distribution has no placement.
 /// \param description  of the distribution's robot, as the server keeps it.
 /// \throws Failure(NotFound) if there is no mixture or none of it lies within the limits; the
-///         errors of kinematics::read_model and geometry::read_known_shapes on the description;
-///         InvalidInput if it is of another robot.
+///         errors of drawn_robot; InvalidInput if it is of another robot.
 DistributionPlot plot_of(Distribution distribution, const RobotDescription& description);
 
 }  // namespace kinship::plots

@@ -1,6 +1,6 @@
 // A page of one figure.
 "use strict";
-(() => {
+const shown = (() => {
   const figure = kinshipPage.byId("figure");
-  kinshipFigures[figure.dataset.figure](figure, kinshipPage.data);
+  return kinshipFigures[figure.dataset.figure](figure, kinshipPage.data);
 })();

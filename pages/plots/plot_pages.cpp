@@ -142,7 +142,11 @@ void write_figure(const FigurePage& figure, std::string title, std::string data,
                   "</footer>";
   document.data = std::move(data);
   document.styles = {text("plots.css")};
-  document.scripts = {text("plots.js"), text(figure.name + ".js"), text("draw.js")};
+  document.scripts = {text("plots.js")};
+  if (figure.draws_scenes)
+    document.scripts.push_back(text("chain.js"));
+  for (const std::string& file : {figure.name + ".js", std::string("draw.js")})
+    document.scripts.push_back(text(file));
   document.draws_scenes = figure.draws_scenes;
   document.draws_charts = figure.draws_charts;
   page::write_document(document, out);
@@ -157,6 +161,16 @@ void write_page(const DistributionPlot& plot, std::ostream& out) {
 
 void write_page(const TaskHistory& history, std::ostream& out) {
   write_figure({"task", "tasks plot", false, true}, history.task, to_json(history), out);
+}
+
+void write_page(const RobotFigure& figure, std::ostream& out) {
+  write_figure({"robot", "robots plot", true}, figure.summary.label, to_json(figure), out);
+}
+
+void write_page(const AttemptFigure& figure, const std::string& command, std::ostream& out) {
+  write_figure({"attempt", command, true, true},
+               figure.drawn.robot.description.label + " on " + figure.attempt.task, to_json(figure),
+               out);
 }
 
 void write_page(const std::string& task, const std::vector<Transferability>& pairs,

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "pages/page/embedded_text.hpp"
+#include "pages/plots/attempt_figure.hpp"
 #include "pages/plots/distribution_plot.hpp"
+#include "pages/plots/robot_figure.hpp"
 #include "pages/plots/task_history.hpp"
 #include "proto/types/transferability.hpp"
 
@@ -21,6 +23,10 @@ std::string to_json(const TaskHistory& history);
 
 void write_page(const DistributionPlot& plot, std::ostream& out);
 void write_page(const TaskHistory& history, std::ostream& out);
+void write_page(const RobotFigure& figure, std::ostream& out);
+
+/// \param command  that writes it: `paths plot` or `attempts plot`.
+void write_page(const AttemptFigure& figure, const std::string& command, std::ostream& out);
 
 /// A matrix, a target per row. \param pairs  every target with the same sources in the same order.
 void write_page(const std::string& task, const std::vector<Transferability>& pairs,

@@ -27,8 +27,8 @@ const kinshipPlots = (() => {
     return {panel: make("figure", {}, make("h3", {}, title), chart, make("p", {class: "note"}, note || "")), chart};
   }
 
-  /// Draws what `spec()` says, a Vega specification without a width, as wide as the element.
-  const chart = (element, label, spec) => kinshipCharts.show(element, label, (width) => ({width, ...spec()}));
+  /// Draws what `spec()` says, a Vega specification without a width, as wide as the element. See kinshipCharts.show.
+  const chart = (element, label, spec, onPoint) => kinshipCharts.show(element, label, (width) => ({width, ...spec()}), onPoint);
 
   const hueOf = (index) => "robot-" + index % 4;
   const dashOf = (index) => (index < 4 ? [1, 0] : index < 8 ? [6, 3] : [2, 3]);

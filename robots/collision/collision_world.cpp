@@ -1,6 +1,7 @@
 #include "robots/collision/collision_world.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -105,6 +106,27 @@ std::set<std::pair<std::string, std::string>> CollisionWorld::find_contacts(
     if (touching(pair))
       found.insert(names(pair));
   return found;
+}
+
+CollisionWorld::NearestPairs CollisionWorld::find_nearest(
+    const Eigen::Ref<const Eigen::VectorXd>& q) {
+  place(q);
+  NearestPairs nearest;
+  for (const BodyPair& pair : pairs_) {
+    const auto [a, b] = pair;
+    const bool is_own =
+        bodies_[a].kind != BodyKind::Obstacle && bodies_[b].kind != BodyKind::Obstacle;
+    std::optional<NearestPair>& known = is_own ? nearest.own : nearest.obstacle;
+    const double enough_m = known ? known->distance_m : std::numeric_limits<double>::infinity();
+    if (cheap_distance_m(bodies_[a].solid, T_base_bodies_[a], bodies_[b].solid,
+                         T_base_bodies_[b]) >= enough_m)
+      continue;
+    const double distance_m = close_distance_m(bodies_[a].solid, T_base_bodies_[a],
+                                               bodies_[b].solid, T_base_bodies_[b], enough_m);
+    if (distance_m < enough_m)
+      known = {bodies_[a].name, bodies_[b].name, distance_m};
+  }
+  return nearest;
 }
 
 std::vector<CollisionWorld::Enclosed> CollisionWorld::find_enclosed(

@@ -54,6 +54,20 @@ class CollisionWorld {
   std::set<std::pair<std::string, std::string>> find_contacts(
       const Eigen::Ref<const Eigen::VectorXd>& q);
 
+  /// Two bodies and a lower bound of their distance, as close as Solid's; 0: they touch.
+  struct NearestPair {
+    std::string first, second;
+    double distance_m = 0;
+  };
+  /// Of the checked pairs that joints move, the nearest with an obstacle and the nearest without
+  /// one. None where no such pair is checked.
+  struct NearestPairs {
+    std::optional<NearestPair> obstacle, own;
+  };
+
+  /// The nearest pairs at q. Counts no check.
+  NearestPairs find_nearest(const Eigen::Ref<const Eigen::VectorXd>& q);
+
   /// A body wholly within a closed mesh, which no check notices.
   struct Enclosed {
     std::string inner, mesh;  ///< names of links, attachments, obstacles

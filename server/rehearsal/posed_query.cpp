@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "proto/types/split_mix.hpp"
+#include "robots/collision/recorded_surroundings.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/planning_bounds.hpp"
-#include "server/transfer/scene_filter.hpp"
 
 namespace kinship::rehearsal {
 namespace {
@@ -94,9 +94,10 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
   const Eigen::Isometry3d T_task_base =
       recorded.own ? recorded.T_task_base : recorded.T_task_drawn_base.value_or(T_task_base_today);
   const collision::RobotSolids solids(robot.chain, robot.shapes);
-  posed.surroundings = recorded.scene
-                           ? transfer::recorded_surroundings(solids, *recorded.scene, T_task_base)
-                           : collision::Surroundings{T_task_base, {}, {}, {}};
+  posed.surroundings =
+      recorded.scene
+          ? collision::recorded_surroundings(solids, *recorded.scene, T_task_base).surroundings
+          : collision::Surroundings{T_task_base, {}, {}, {}};
   posed.world = std::make_unique<collision::CollisionWorld>(solids, posed.surroundings);
   const Eigen::Isometry3d T_base_task = T_task_base.inverse();
   const std::optional<TaskSpaceRegion> region =

@@ -11,15 +11,6 @@
 
 namespace kinship::transfer {
 
-/// Surroundings of a robot among the recorded objects, with the held objects in its transfer frame.
-/// Pairs that touch in at least 38 of 40 random configurations within the limits may touch, such as
-/// a base and the table below it (seeded: equal input, equal answers); pairs of links are not
-/// tested.
-/// \param scene  keeps the rules of check_scene().
-collision::Surroundings recorded_surroundings(const collision::RobotSolids& robot,
-                                              const RecordedScene& scene,
-                                              const Eigen::Isometry3d& T_task_base);
-
 /// A filter made of a recorded scene for one robot.
 struct SceneFilter {
   /// Empty if no contact is possible: no shapes of the robot, or no object.
@@ -33,8 +24,8 @@ struct SceneFilter {
 /// objects in its transfer frame, touches no object, and the held objects touch neither an object
 /// nor the robot. Self-collision is left to another filter. The scene's constraint is ignored.
 ///
-/// Pairs that touch in at least 38 of 40 random configurations within the limits are left out
-/// (seeded: equal input, equal answers). Not shared between threads.
+/// Pairs that touch in almost every configuration are left out (collision::recorded_surroundings).
+/// Not shared between threads.
 /// \param scene        keeps the rules of check_scene().
 /// \param T_task_base  placement of the robot; identity if it is missing.
 SceneFilter scene_filter(const collision::RobotSolids& robot, const RecordedScene& scene,

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "proto/types/failure.hpp"
+#include "robots/collision/edge_prover.hpp"
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/robots.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision::collision_world_test {
@@ -45,6 +48,46 @@ TEST(CollisionWorld, AnArmTouchesWhatLiesInItsWay) {
   EXPECT_FALSE(world.collides(kTurned));
   EXPECT_EQ(world.find_contact(kStraight), (Names{"link3", "post"}));
   EXPECT_EQ(world.find_contact(kTurned), std::nullopt);
+}
+
+TEST(CollisionWorld, TheNearestPairsAreNamedWithTheirDistances) {
+  Surroundings surroundings = with_object(box_at("post", 1.2, 0));
+  surroundings.scene.objects.push_back(box_at("far", 5, 0));
+  CollisionWorld world = make_world(surroundings);
+  const CollisionWorld::NearestPairs touching = world.find_nearest(kStraight);
+  ASSERT_TRUE(touching.obstacle);
+  EXPECT_EQ(Names(touching.obstacle->first, touching.obstacle->second), (Names{"link3", "post"}));
+  EXPECT_EQ(touching.obstacle->distance_m, 0);
+  const CollisionWorld::NearestPairs apart = world.find_nearest(kTurned);
+  ASSERT_TRUE(apart.obstacle);
+  EXPECT_EQ(apart.obstacle->second, "post");
+  const auto near = EdgeProver(world).find_near(kTurned, {.clearance_m = kLargestRoom_m});
+  EXPECT_TRUE(near.empty()) << "farther than that prover looks";
+  EXPECT_GT(apart.obstacle->distance_m, kLargestRoom_m);
+  EXPECT_LT(apart.obstacle->distance_m, 1.2);
+  EXPECT_FALSE(make_world({}).find_nearest(kTurned).obstacle);
+  EXPECT_EQ(world.checks(), 0U);
+}
+
+/// The nearest of all pairs is the one that the prover finds, at its distance.
+TEST(CollisionWorld, TheNearestPairIsTheProvers) {
+  const kinematics::Chain chain = toy_chain(kJoints);
+  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0.4)));
+  EdgeProver prover(world);
+  std::mt19937_64 generator(5);
+  int compared = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::VectorXd q = kinship::test::random_configuration(chain, generator);
+    const auto nearest = world.find_nearest(q).obstacle;
+    double least_m = kLargestRoom_m;
+    for (const NearPair& near : prover.find_near(q, {.clearance_m = kLargestRoom_m}))
+      if (near.second == "post")
+        least_m = std::min(least_m, near.clearance_m);
+    ASSERT_TRUE(nearest);
+    EXPECT_NEAR(std::min(nearest->distance_m, kLargestRoom_m), least_m, 0.01 * least_m + 1e-4);
+    compared += least_m < kLargestRoom_m ? 1 : 0;
+  }
+  EXPECT_GT(compared, 20);
 }
 
 /// The first joint turns from `first` by `stride` a column.

@@ -1,0 +1,200 @@
+"""The pages of `robots plot` and `paths plot`, of a real kinshipd, in a browser: what is drawn, and where it stands."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+import uuid
+
+import numpy as np
+
+from browser import Browser, share_drawn, touches_border
+from kinshipd_process import Kinshipd
+from strict_server import StrictServer, taken_apart
+
+MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
+TASK = "reach"
+BASE = [0.3, -0.2, 0.5, 0, 0, np.sin(0.4), np.cos(0.4)]
+SOLVED = str(uuid.UUID(int=1))
+UNSOLVED = str(uuid.UUID(int=2))
+SCENE = {"boxes": [{"name": "shelf", "size": [0.2, 0.8, 0.02], "pose": [0.95, -0.2, 0.9, 0, 0, 0, 1]},
+                   {"name": "table", "size": [2, 2, 0.1], "pose": [0.3, -0.2, 0.3, 0, 0, 0, 1]}],
+         "spheres": [{"name": "ball", "radius": 0.1, "center": [0.8, 0.6, 0.8]}],
+         "held": [{"name": "part", "shape": {"box": [0.05, 0.05, 0.1]}, "T_transfer_object": [0, 0, 0.05, 0, 0, 0, 1]}]}
+START, GOAL = [0.1, -0.6, 0.2, -2.1, 0.1, 1.6, 0.8], [0.9, -0.2, -0.3, -1.8, 0.2, 1.9, 0.6]
+
+
+def attempts() -> "list[dict]":
+    """A solved one among obstacles, and one without a path."""
+    record = {"outcome": "solved", "planner": "birrt", "planning_time_s": 0.5, "collision_checks": 1234}
+    of = {"task": TASK, "robot": "panda", "machine": "test", "T_task_base": BASE}
+    middle = (0.5 * (np.array(START) + GOAL) + 0.1).tolist()
+    return [{**of, "report_uuid": SOLVED, "waypoints": [START, middle, GOAL], "record": record, "scene": SCENE},
+            {**of, "report_uuid": UNSOLVED, "waypoints": None, "record": {**record, "outcome": "timeout"}, "scene": None}]
+
+
+class Figures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Kinshipd()
+        cls.addClassCleanup(cls.server.__exit__, None, None, None)
+        cls.server.start()
+        cls.folder = cls.server.folder
+        for robot in ("panda", "panda_lift"):
+            cls.kinship("robots", "register", str(MODELS / robot))
+        given = cls.folder / "given.jsonl"
+        given.write_text("".join(json.dumps(each) + "\n" for each in attempts()))
+        cls.kinship("paths", "import", str(given))
+        for robot in ("panda", "panda_lift"):
+            cls.kinship("robots", "plot", robot, "--output", str(cls.folder / f"{robot}.html"))
+        cls.kinship("paths", "plot", SOLVED, "--output", str(cls.folder / "path.html"))
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
+
+    @classmethod
+    def run_kinship(cls, *words: str) -> subprocess.CompletedProcess:
+        program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship"
+        return subprocess.run([program, "--domain", str(cls.server.domain), "--timeout", "30", *words], capture_output=True, text=True)
+
+    @classmethod
+    def kinship(cls, *words: str) -> str:
+        done = cls.run_kinship(*words)
+        if done.returncode != 0:
+            raise AssertionError(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr}")
+        return done.stdout
+
+    def setUp(self):
+        self.browser.resize(1280, 900)
+        self.browser.prefer("light")
+
+    def tearDown(self):
+        self.browser.check_console(self)
+
+    def load(self, page: str) -> dict:
+        """\\return  the data that the page carries."""
+        self.browser.load(self.folder / page)
+        self.browser.settle()
+        return self.browser.run("return kinshipPage.data")
+
+    def count(self, layer: str) -> dict:
+        return self.browser.run("return shown.count(arguments[0])", layer)
+
+    def set_slider(self, selector: str, value: float) -> None:
+        self.browser.run("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))", self.browser.element(selector), value)
+        self.browser.settle()
+
+    def forward(self, robot: str, q: "list[float]") -> dict:
+        """What the program's own forward kinematics say."""
+        return json.loads(self.kinship("robots", "fk", str(MODELS / robot), "--q", " ".join(map(repr, q)), "--json"))
+
+    def test_a_page_places_links_and_transfer_frame_as_the_program_does(self):
+        for robot in ("panda", "panda_lift"):
+            data = self.load(f"{robot}.html")["robot"]
+            generator = np.random.default_rng(1)
+            for _ in range(20):
+                q = [generator.uniform(joint["lower"], joint["upper"]) for joint in data["joints"]]
+                here = self.browser.run("return kinshipChain.poseOf(kinshipChain.posesOf(kinshipPage.data.robot, arguments[0]).transfer)", q)
+                there = self.forward(robot, q)["transfer"]
+                np.testing.assert_allclose(here[:3], there[:3], atol=1e-6)
+                self.assertAlmostEqual(abs(np.dot(here[3:], there[3:])), 1, places=6)
+            frames = json.loads(self.kinship("robots", "frames", str(MODELS / robot), "--q", " ".join(map(repr, q)), "--json"))
+            poses = self.browser.run("return kinshipChain.posesOf(kinshipPage.data.robot, arguments[0]).links.map(kinshipChain.originOf)", q)
+            known = {link["link"]: link["pose"][:3] for link in frames["links"]}
+            for link, origin in zip(data["links"], poses):
+                np.testing.assert_allclose(origin, known[link["name"]], atol=1e-6)
+
+    def test_a_robot_is_drawn_and_its_joints_move_it(self):
+        data = self.load("panda.html")
+        solids = sum(len(link["solids"]) for link in data["robot"]["links"])
+        self.assertGreater(solids, 8)
+        self.assertEqual(self.count("links")["objects"], solids)
+        self.assertEqual(self.count("transfer")["ways"], 3)
+        self.assertFalse(data["touches_itself"])
+        self.assertEqual(len(self.browser.elements("#joints input")), 7)
+        before, pose = self.browser.picture("#robot canvas"), self.browser.text("#pose")
+        self.assertGreater(share_drawn(before), 0.02)
+        self.set_slider("[data-joint=panda_joint2]", 1.2)
+        self.assertGreater(np.mean(self.browser.picture("#robot canvas") != before), 0.01, "moved")
+        self.assertNotEqual(self.browser.text("#pose"), pose)
+        self.browser.click("#again")
+        self.assertEqual(self.browser.text("#pose"), pose)
+
+    def test_a_path_is_drawn_in_its_scene(self):
+        data = self.load("path.html")
+        solids = sum(len(link["solids"]) for link in data["robot"]["links"])
+        self.assertEqual(self.count("scene")["objects"], 3)
+        self.assertEqual(self.count("arm")["objects"], solids)
+        self.assertEqual(self.count("held")["objects"], 1)
+        for ghost in ("start", "goal"):
+            self.assertEqual(self.count(ghost)["objects"], solids + 1)
+        self.assertEqual(self.count("way")["ways"], 1)
+        self.assertFalse(touches_border(self.browser.picture("#scene canvas")))
+        at_start, at_goal = (self.forward("panda", q)["transfer"][:3] for q in (START, GOAL))
+        turn, base = 0.8, np.array(BASE[:3])
+        for hand, column in ((at_start, data["path"]["hand"][:3]), (at_goal, data["path"]["hand"][-3:])):
+            x, y, z = hand
+            placed = base + [x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn), z]
+            np.testing.assert_allclose(np.array(column) / 1000, placed, atol=1e-3)
+
+    def test_the_arm_goes_along_the_path_and_says_how_near_it_is(self):
+        data = self.load("path.html")
+        slider = "#player input"
+        self.set_slider(slider, 0)
+        self.assertIn("at the start", self.browser.text("#player output"))
+        first = self.browser.picture("#scene canvas")
+        self.set_slider(slider, 1)
+        self.assertGreater(np.mean(self.browser.picture("#scene canvas") != first), 0.005, "moved")
+        least = data["path"]["obstacle"]["least"]
+        self.set_slider(slider, least / 200)
+        names = data["path"]["obstacle"]["pairs"][least]
+        self.assertIn(f"\u201c{names[0]}\u201d", self.browser.text("#place"))
+        self.assertIn(f"\u201c{names[1]}\u201d", self.browser.text("#place"))
+        self.set_slider(slider, 0)
+        self.browser.click("#player button")
+        self.browser.wait("document.querySelector('#player input').value > 0.1")
+        self.browser.click("#player button")
+        self.assertEqual(len(self.browser.elements("#clearance svg .mark-line path")), 2)
+        self.assertEqual(len(self.browser.elements("#clearance svg .mark-symbol path")), 2)
+
+    def test_a_click_on_the_curve_goes_there(self):
+        self.load("path.html")
+        self.browser.run("document.querySelector('#clearance').scrollIntoView({block: 'center', behavior: 'instant'})")
+        plot = self.browser.run("const r = document.querySelector('#clearance svg .mark-group.role-frame').getBoundingClientRect();"
+                                "const line = [...document.querySelectorAll('#clearance svg .mark-line path')][0].getBoundingClientRect();"
+                                "return [line.left + 0.75 * line.width, r.top + r.height / 2]")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, "x": plot[0], "y": plot[1], "button": "left", "clickCount": 1})
+        self.browser.settle()
+        self.assertAlmostEqual(float(self.browser.run("return document.querySelector('#player input').value")), 0.75, delta=0.02)
+
+    def test_pages_fit_their_widths_and_the_dark(self):
+        for page, figure in (("panda.html", "#robot"), ("path.html", "#scene")):
+            for width in (400, 800, 1920):
+                self.browser.resize(width, 900)
+                self.load(page)
+                self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width, page)
+                self.assertGreater(share_drawn(self.browser.picture(f"{figure} canvas")), 0.02)
+            self.browser.prefer("dark")
+            self.assertLess(np.median(self.browser.picture(f"{figure} canvas")), 60, page)
+            self.browser.prefer("light")
+
+    def test_figures_are_drawn_under_a_strict_content_security_policy(self):
+        for page in ("panda.html", "path.html"):
+            with tempfile.TemporaryDirectory() as folder, StrictServer(pathlib.Path(folder)) as server:
+                taken_apart(self.folder / page, pathlib.Path(folder))
+                self.browser.driver.get(f"{server.address}/index.html")
+                self.browser.settle()
+                self.assertGreater(share_drawn(self.browser.picture("canvas")), 0.02)
+                self.browser.check_console(self)
+
+    def test_what_is_not_there_is_code_three(self):
+        for words in (("robots", "plot", "nobody"), ("paths", "plot", UNSOLVED), ("paths", "plot", str(uuid.UUID(int=9)))):
+            done = self.run_kinship(*words, "--output", str(self.folder / "none.html"))
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn(" ".join(words[:2]), done.stderr)
+            self.assertFalse((self.folder / "none.html").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
