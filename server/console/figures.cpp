@@ -30,12 +30,29 @@ std::string task_figure(Questions& questions, const std::string& task) {
   return plots::to_json(plots::history_of(task, std::move(attempts), distributions));
 }
 
+std::string robot_figure(Questions& questions, const std::string& label) {
+  const AdminRequest request{.verb = AdminVerb::ShowRobot, .argument = label};
+  return plots::to_json(plots::robot_figure(questions.row<RobotSummary>(request),
+                                            questions.row<RobotDescription>(request)));
+}
+
+/// Of a path, or of an attempt that found none.
+std::string attempt_figure(Questions& questions, const std::string& report) {
+  auto attempt = questions.row<Attempt>({.verb = AdminVerb::ShowPath, .argument = report});
+  const auto description = questions.row<RobotDescription>(
+      {.verb = AdminVerb::ShowRobot, .argument = attempt.robot.hex()});
+  return plots::to_json(plots::attempt_figure(std::move(attempt), description));
+}
+
 struct Maker {
   std::string_view kind;
   FigureMaker make;
 };
 
 constexpr std::array kMakers = {
+    Maker{"robot", robot_figure},
+    Maker{"path", attempt_figure},
+    Maker{"attempt", attempt_figure},
     Maker{"distribution", distribution_figure},
     Maker{"task", task_figure},
     Maker{"savings", savings_figure},
