@@ -212,8 +212,8 @@ KINSHIP_API kinship_code kinship_report(kinship_client* client, const kinship_at
 
 /** The same of a line of an experience file, as `kinship paths export` writes them: what
  * kinship_attempt has no member for can be said there: the region that the hand had to stay in, and
- * what explains a failure ("search", see proto/FORMATS.md: start, goals, bodies in the way, reason).
- * The robot stands there as digest, 64 hexadecimal digits.
+ * what explains a failure ("search", see proto/FORMATS.md: start, goals, bodies in the way,
+ * reason). The robot stands there as digest, 64 hexadecimal digits.
  *
  *   {"report_uuid": "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "task": "carry", "robot": "30a1...",
  *    "machine": "cell 3", "T_task_base": [0, 0, 0, 0, 0, 0, 1],

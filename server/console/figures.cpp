@@ -50,12 +50,9 @@ struct Maker {
 };
 
 constexpr std::array kMakers = {
-    Maker{"robot", robot_figure},
-    Maker{"path", attempt_figure},
-    Maker{"attempt", attempt_figure},
-    Maker{"distribution", distribution_figure},
-    Maker{"task", task_figure},
-    Maker{"savings", savings_figure},
+    Maker{"robot", robot_figure},     Maker{"path", attempt_figure},
+    Maker{"attempt", attempt_figure}, Maker{"distribution", distribution_figure},
+    Maker{"task", task_figure},       Maker{"savings", savings_figure},
     Maker{"slow", slow_figure},
 };
 

@@ -40,8 +40,8 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
 /// explain only.
 bool is_dropped_if_damaged(std::string_view table);
 
-/// Quarantines damaged rows that a reader found, or drops them (is_dropped_if_damaged); if it fails, the
-/// next reader finds them again.
+/// Quarantines damaged rows that a reader found, or drops them (is_dropped_if_damaged); if it
+/// fails, the next reader finds them again.
 class DamageItem : public WriteItem {
  public:
   /// \param table  one with a quarantine, or whose damaged rows are dropped.
