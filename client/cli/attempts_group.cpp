@@ -1,5 +1,6 @@
 #include "client/cli/attempt_commands.hpp"
 #include "client/cli/listings.hpp"
+#include "client/cli/plot_commands.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
 #include "proto/types/attempt_filter.hpp"

@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::string_view kPlotDistribution = "distributions plot";
 constexpr std::string_view kPlotPath = "paths plot";
+constexpr std::string_view kPlotAttempt = "attempts plot";
 constexpr std::string_view kPlotRobot = "robots plot";
 constexpr std::string_view kPlotTask = "tasks plot";
 
@@ -136,27 +137,42 @@ int plot_robot(link::Client& server, const std::string& name, const PlotOptions&
   return kDone;
 }
 
-int plot_path(link::Client& server, const std::string& id, const PlotOptions& options,
-              std::ostream& out, std::ostream& err) {
+namespace {
+
+int plot_report(link::Client& server, const std::string& id, std::string_view command,
+                const PlotOptions& options, std::ostream& out, std::ostream& err) {
   PageFile page(options.output, out);
   const auto row = link::first_row_of(server, {.verb = AdminVerb::ShowPath, .argument = id});
   if (!row)
-    return refuse(kPlotPath, row.error(), err);
+    return refuse(command, row.error(), err);
   Attempt attempt = json::stored_attempt_from_json(*row).value_or_throw().attempt;
-  if (!attempt.path)
+  if (command == kPlotPath && !attempt.path)
     return refuse(
-        kPlotPath,
-        {ErrorCode::NotFound,
-         "nothing to plot: report " + id + " has no path" +
-             (attempt.record.outcome == Outcome::Solved ? " any more" : ", as it was not solved")},
+        command,
+        {ErrorCode::NotFound, "nothing to plot: report " + id + " has no path" +
+                                  (attempt.record.outcome == Outcome::Solved
+                                       ? " any more"
+                                       : "; kinship attempts plot shows what was in the way")},
         err);
   const auto robot = find_robot(server, attempt.robot.hex());
   if (!robot)
-    return refuse(kPlotPath, robot.error(), err);
+    return refuse(command, robot.error(), err);
   plots::write_page(plots::attempt_figure(std::move(attempt), robot->description),
-                    std::string(kPlotPath), page.stream());
+                    std::string(command), page.stream());
   page.keep(err);
   return kDone;
+}
+
+}  // namespace
+
+int plot_path(link::Client& server, const std::string& id, const PlotOptions& options,
+              std::ostream& out, std::ostream& err) {
+  return plot_report(server, id, kPlotPath, options, out, err);
+}
+
+int plot_attempt(link::Client& server, const std::string& id, const PlotOptions& options,
+                 std::ostream& out, std::ostream& err) {
+  return plot_report(server, id, kPlotAttempt, options, out, err);
 }
 
 PageFile::PageFile(const std::filesystem::path& file, std::ostream& otherwise)

@@ -36,6 +36,11 @@ int plot_robot(link::Client& server, const std::string& name, const PlotOptions&
 int plot_path(link::Client& server, const std::string& id, const PlotOptions& options,
               std::ostream& out, std::ostream& err);
 
+/// `attempts plot`: the same of any attempt; of a failed one what was in the way, as far as it was
+/// recorded.
+int plot_attempt(link::Client& server, const std::string& id, const PlotOptions& options,
+                 std::ostream& out, std::ostream& err);
+
 /// The output of a page: a file that gets its name once it is complete, or a stream for "-".
 class PageFile {
  public:

@@ -106,10 +106,21 @@ PathPlaces places_of(const Eigen::MatrixXd& waypoints, const collision::RobotSol
   return places;
 }
 
+/// \return the origin of the transfer frame at each node of a tree, in the task frame, m.
+Eigen::Matrix3Xd hands_of(const SearchTree& tree, const kinematics::Chain& chain,
+                          const Eigen::Isometry3d& T_task_base) {
+  Eigen::Matrix3Xd hands(3, tree.configurations.cols());
+  for (Eigen::Index i = 0; i < hands.cols(); ++i)
+    hands.col(i) =
+        T_task_base *
+        kinematics::T_base_transfer(chain, tree.configurations.col(i).cast<double>()).translation();
+  return hands;
+}
+
 }  // namespace
 
 AttemptFigure attempt_figure(Attempt attempt, const RobotDescription& description) {
-  AttemptFigure figure{std::move(attempt), drawn_robot(description), {}, {}};
+  AttemptFigure figure{std::move(attempt), drawn_robot(description), {}, {}, {}};
   const kinematics::Chain& chain = figure.drawn.robot.chain;
   const Attempt& known = figure.attempt;
   if (chain.digest() != known.robot || (known.path && known.path->dof() != chain.dof()))
@@ -123,6 +134,9 @@ AttemptFigure attempt_figure(Attempt attempt, const RobotDescription& descriptio
   figure.always_touching = recorded.always_touching;
   if (known.path)
     figure.path = places_of(known.path->waypoints(), solids, recorded.surroundings);
+  if (known.search)
+    for (const SearchTree& tree : known.search->trees)
+      figure.tree_hands.push_back(hands_of(tree, chain, T_task_base));
   return figure;
 }
 
@@ -169,6 +183,32 @@ std::string json_of(const PathPlaces& places, const Eigen::MatrixXd& waypoints) 
        {"hand_length_m", number(places.hand_length_m)}});
 }
 
+std::string json_of(const SearchRecord& search, const std::vector<Eigen::Matrix3Xd>& tree_hands) {
+  std::vector<std::string> trees;
+  for (std::size_t i = 0; i < search.trees.size(); ++i)
+    trees.push_back(object({{"hand", page::millimetres(tree_hands[i])},
+                            {"parents", list(search.trees[i].parents,
+                                             [](int parent) { return std::to_string(parent); })}}));
+  const auto contact = [](const GoalContact& each) {
+    return object({{"goal", std::to_string(each.goal)},
+                   {"first", json_string(each.first)},
+                   {"second", json_string(each.second)}});
+  };
+  const auto blocker = [](const Blocker& each) {
+    return object({{"first", json_string(each.first)},
+                   {"second", json_string(each.second)},
+                   {"count", std::to_string(each.count)}});
+  };
+  return object({{"start", list(search.start, number)},
+                 {"goals", list(search.goals.colwise(),
+                                [](const auto& q) { return list(Eigen::VectorXd(q), number); })},
+                 {"blockers", list(search.blockers, blocker)},
+                 {"goal_contacts", list(search.goal_contacts, contact)},
+                 {"last_free", list(search.last_free, number)},
+                 {"trees", list(trees, [](const std::string& tree) { return tree; })},
+                 {"reason", json_string(search.reason)}});
+}
+
 /// Held objects as solids of the transfer frame.
 std::vector<SceneObject> held_solids(const std::optional<RecordedScene>& scene) {
   std::vector<SceneObject> solids;
@@ -184,6 +224,7 @@ std::string to_json(const AttemptFigure& figure) {
   Attempt record = figure.attempt;
   record.path.reset();
   record.scene.reset();
+  record.search.reset();
   const std::optional<RecordedScene>& scene = figure.attempt.scene;
   return object(
       {{"attempt", json::to_json(record)},
@@ -193,6 +234,8 @@ std::string to_json(const AttemptFigure& figure) {
        {"is_constrained", scene && scene->constraint ? "true" : "false"},
        {"always_touching",
         list(figure.always_touching, [](const auto& names) { return json_of(names); })},
+       {"search",
+        figure.attempt.search ? json_of(*figure.attempt.search, figure.tree_hands) : "null"},
        {"path", figure.path ? json_of(*figure.path, figure.attempt.path->waypoints()) : "null"}});
 }
 

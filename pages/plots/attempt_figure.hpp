@@ -30,11 +30,12 @@ struct PathPlaces {
   double hand_length_m = 0;                                  ///< of the hand's way
 };
 
-/// An attempt in its recorded scene: its path, if it has one.
+/// An attempt in its recorded scene: its path, if it has one, or what was in the way.
 struct AttemptFigure {
   Attempt attempt;
   DrawnRobot drawn;
   std::optional<PathPlaces> path;
+  std::vector<Eigen::Matrix3Xd> tree_hands;  ///< of each tree of its search record, as PathPlaces
   /// Pairs of names that are not compared, because they touch almost everywhere.
   std::vector<std::pair<std::string, std::string>> always_touching;
 };
