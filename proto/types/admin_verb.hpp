@@ -117,7 +117,7 @@ inline constexpr auto kVerbRules = [] {
       VerbRule{HashBackup, "hash_backup", "digest backups", kOperator, Is::Other, Changes | OfAll},
       VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::Other,
                Changes | OfAll},
-      VerbRule{FindAttempts, "find_attempts", "list attempts", kReader, Is::Other,
+      VerbRule{FindAttempts, "find_attempts", "find attempts", kReader, Is::Other,
                Lists | Filters}};
 }();
 
