@@ -91,6 +91,8 @@ namespace {
 
 /// The kind of value that an argument takes, for completions.
 std::string kind_of(const CLI::App& group, const std::string& argument) {
+  if (argument == "id" && group.get_name() == "attempts")
+    return "ID";  // completion knows no name of those that failed
   if (argument == "id")
     return group.get_name() == "paths" ? "PATH" : "DISTRIBUTION";
   std::string kind = argument;
