@@ -71,6 +71,11 @@ void add_attempts(CLI::App& app, Session& session) {
            "An attempt by its report's UUID: why it failed, what was in the way",
            std::string("kinship attempts show ") + kExampleAttempt},
           show_attempt);
+  add_plot(*attempts, session,
+           {"plot", "id", kAttemptId,
+            "A page of an attempt in its scene: its path, or what was in the way",
+            std::string("kinship attempts plot ") + kExampleAttempt + " --output attempt.html"},
+           plot_attempt);
   add_problem_export(*attempts, session);
 }
 
