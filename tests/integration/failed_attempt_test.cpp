@@ -38,10 +38,10 @@ Problem turn_through_a_wall() {
 class FailedAttempt : public testing::Test {
  protected:
   ProblemResult plan(const std::string& file, const std::string& more) {
-    const test::Answer answer =
-        cell_.run("kinship-plan", (directory_.path() / file).string() + " --model " + test::source_dir() +
-                                      "/robots/models/panda --label panda --guidance none --json" +
-                                      " --max-checks 1000 " + more);
+    const test::Answer answer = cell_.run(
+        "kinship-plan", (directory_.path() / file).string() + " --model " + test::source_dir() +
+                            "/robots/models/panda --label panda --guidance none --json" +
+                            " --max-checks 1000 " + more);
     EXPECT_EQ(answer.code, 0) << answer.err;
     return json::problem_result_from_json(answer.out.substr(0, answer.out.find('\n')))
         .value_or_throw();
@@ -74,6 +74,12 @@ TEST_F(FailedAttempt, NamesTheBodyInTheWayAndIsPlannedAgainFromOneFile) {
   const test::Answer shown = cell_.kinship("attempts show " + id);
   EXPECT_NE(shown.out.find("why         " + first.reason), std::string::npos) << shown.out;
   EXPECT_NE(shown.out.find("touches 'wall' in "), std::string::npos) << shown.out;
+
+  const std::string page = (directory_ / "attempt.html").string();
+  const test::Answer plotted = cell_.kinship("attempts plot " + id + " --output " + page);
+  ASSERT_EQ(plotted.code, 0) << plotted.err;
+  EXPECT_NE(test::read_text(page).find(R"("second":"wall")"), std::string::npos);
+  EXPECT_EQ(cell_.kinship("paths plot " + id + " --output -").code, 3);
 
   const std::string file = (directory_ / "again.jsonl").string();
   const test::Answer exported = cell_.kinship("attempts export " + id + " --output " + file);

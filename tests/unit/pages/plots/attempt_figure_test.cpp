@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "proto/types/failure.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -52,6 +53,35 @@ TEST(AttemptFigure, PlacesAreAtEqualPartsOfThePathsLength) {
     EXPECT_TRUE(path.hand.col(i).isApprox(hand_at(static_cast<double>(i) / 200), 1e-9)) << i;
   const double radius = (hand_at(0) - kPlacement.translation()).head<2>().norm();
   EXPECT_NEAR(path.hand_length_m, radius, 1e-4) << "an arc of 1 rad";
+}
+
+TEST(AttemptFigure, AFailedOneShowsWhatWasInTheWayAndTheHandsOfItsTrees) {
+  Attempt attempt = turning();
+  const Eigen::MatrixXd waypoints = attempt.path->waypoints();
+  attempt.path.reset();
+  attempt.record.outcome = Outcome::Failed;
+  SearchRecord& search = attempt.search.emplace();
+  search.start = waypoints.col(0);
+  search.goals = waypoints.rightCols<1>();
+  search.blockers = {{"hand", "wall", 7}};
+  search.goal_contacts = {{0, "hand", "table"}};
+  search.trees.push_back({waypoints.cast<float>(), {-1, 0, 1}});
+  search.reason = "no way";
+  const json drawn = json::parse(to_json(figure_of(attempt)));
+  EXPECT_TRUE(drawn["path"].is_null());
+  EXPECT_FALSE(drawn["attempt"].contains("search"));
+  const json& shown = drawn["search"];
+  EXPECT_EQ(shown["blockers"], json::parse(R"([{"first": "hand", "second": "wall", "count": 7}])"));
+  EXPECT_EQ(shown["goal_contacts"][0]["second"], "table");
+  EXPECT_EQ(shown["start"].size(), 6U);
+  EXPECT_EQ(shown["goals"].size(), 1U);
+  EXPECT_TRUE(shown["last_free"].empty());
+  EXPECT_EQ(shown["reason"], "no way");
+  ASSERT_EQ(shown["trees"].size(), 1U);
+  EXPECT_EQ(shown["trees"][0]["parents"], json({-1, 0, 1}));
+  const auto hand = shown["trees"][0]["hand"].get<std::vector<double>>();
+  ASSERT_EQ(hand.size(), 9U);
+  EXPECT_TRUE(Eigen::Map<const Eigen::Vector3d>(&hand[6]).isApprox(1000 * hand_at(1), 1e-3));
 }
 
 /// A ball at the height of the hand where it is halfway.
