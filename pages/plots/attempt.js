@@ -41,6 +41,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
   const {record} = attempt;
   const base = attempt.T_task_base || [0, 0, 0, 0, 0, 0, 1];
   const scene = data.scene || [];
+  const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : "");
   const millimetresText = (metre) => `${fixed(1000 * metre, metre < 0.01 ? 1 : 0)}\u2009mm`;
 
   function configurationAt(place) {
@@ -217,7 +218,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     if (!search || record.outcome === "solved") return;
     byId("why").hidden = false;
     const most = search.blockers[0];
-    byId("why-text").textContent = [search.reason, most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${several(most.count, "configuration")} not free, more than any other pair.` : "",
+    byId("why-text").textContent = [sentence(search.reason), most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${several(most.count, "configuration")} not free, more than any other pair.` : "",
                                     search.goal_contacts.length ? `${several(new Set(search.goal_contacts.map((contact) => contact.goal)).size, "goal configuration")} of ${count(search.goals.length)} touched something.` : ""]
       .filter(Boolean).join(" ") || "Nothing was recorded of it.";
     byId("blockers").hidden = search.blockers.length === 0;
