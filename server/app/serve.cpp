@@ -215,6 +215,19 @@ std::unique_ptr<security::AdminTokenCheck> check_of_token(const ServerOptions& o
                                                      std::chrono::steady_clock::now());
 }
 
+/// \param port  is taken. \return null without one.
+std::unique_ptr<http::Listener> serve_metrics(std::optional<http::Port>& port,
+                                              const ServerOptions& options,
+                                              service::Service& service,
+                                              const Endpoints& endpoints) {
+  if (!port)
+    return nullptr;
+  spdlog::info("metrics at {}/metrics", port->url());
+  return std::make_unique<http::Listener>(
+      *std::move(port), metrics_handler([&] { return metrics_page(service, endpoints.clients()); }),
+      http::Limits{.hosts = options.metrics_hosts, .host_option = "--metrics-host"});
+}
+
 /// Serves until the loop is stopped.
 void run(dds::WaitLoop& loop, service::Service& service, ExpiryWatch& expiry) {
   Watchdog watchdog;
@@ -271,14 +284,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   tell_what_is_served(service.status(), options.domain, store_name);
   ExpiryWatch expiry = watch_expiry(participant);
   expiry.beat(WaitClock::now());
-  std::optional<http::Listener> metrics;
-  if (metrics_port) {
-    spdlog::info("metrics at {}/metrics", metrics_port->url());
-    metrics.emplace(std::move(*metrics_port), metrics_handler([&service, &endpoints] {
-                      return metrics_page(service, endpoints.clients());
-                    }),
-                    http::Limits{.hosts = options.metrics_hosts, .host_option = "--metrics-host"});
-  }
+  auto metrics = serve_metrics(metrics_port, options, service, endpoints);
   std::optional<ConsoleServer> console;
   if (console_port)
     console.emplace(std::move(*console_port), options, service, broadcast);
