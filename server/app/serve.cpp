@@ -224,7 +224,9 @@ std::unique_ptr<http::Listener> serve_metrics(std::optional<http::Port>& port,
     return nullptr;
   spdlog::info("metrics at {}/metrics", port->url());
   return std::make_unique<http::Listener>(
-      *std::move(port), metrics_handler([&] { return metrics_page(service, endpoints.clients()); }),
+      *std::move(port), metrics_handler([&service, &endpoints] {
+        return metrics_page(service, endpoints.clients());
+      }),
       http::Limits{.hosts = options.metrics_hosts, .host_option = "--metrics-host"});
 }
 
