@@ -290,7 +290,6 @@ class LaneWorldMaker {
       link.first = static_cast<int>(first);
       link.count = static_cast<int>(end - first);
       world_.links_.push_back(link);
-      link_of_body_.resize(end, world_.links_.size() - 1);
     }
   }
 
@@ -385,7 +384,7 @@ class LaneWorldMaker {
   }
 
   const LaneBody& body_at(int body) const { return world_.bodies_[static_cast<std::size_t>(body)]; }
-  std::size_t link_of(int body) const { return link_of_body_[static_cast<std::size_t>(body)]; }
+  std::size_t link_of(int body) const { return static_cast<std::size_t>(body_at(body).link); }
 
   void add_obstacle_of(int body, int obstacle) {
     for (const int first : {body_at(body).first_reach, world_.links_[link_of(body)].first_reach})
@@ -452,7 +451,6 @@ class LaneWorldMaker {
   double cube_m_ = 0;
   Eigen::Isometry3d T_scene_grid_ = Eigen::Isometry3d::Identity();
   std::size_t blocks_ = 0;                 // of kLanes obstacles
-  std::vector<std::size_t> link_of_body_;  // of the lane's
   std::vector<int> in_lanes_;  // of each body: the lane's body or obstacle; -1: it is in no pair
 };
 
