@@ -450,7 +450,7 @@ class LaneWorldMaker {
   std::string cloud_;
   double cube_m_ = 0;
   Eigen::Isometry3d T_scene_grid_ = Eigen::Isometry3d::Identity();
-  std::size_t blocks_ = 0;                 // of kLanes obstacles
+  std::size_t blocks_ = 0;     // of kLanes obstacles
   std::vector<int> in_lanes_;  // of each body: the lane's body or obstacle; -1: it is in no pair
 };
 
