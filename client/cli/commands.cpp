@@ -31,7 +31,8 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       ->envname("KINSHIP_TOKEN")
       ->type_name("FILE");
   app.add_option("--timeout", session.timeout_s, "Seconds to wait for an answer (default 5)")
-      ->check(arguments::between(0.01, 86'400.0));
+      ->check(arguments::between(0.01, 86'400.0))
+      ->envname("KINSHIP_TIMEOUT");
   app.add_flag("--progress", session.is_verbose,
                "Tell on stderr how far long work is, also where that is no terminal");
   add_server_commands(app, session);
@@ -46,7 +47,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_outbox(app, session);
   add_completion(app, session);
   try {
-    app.parse(argc, argv);
+    manual::parse(app, argc, argv);
     tables::set_table_layout(
         out, {&out == &std::cout ? tables::width_of_terminal() : tables::TableLayout().width,
               session.is_wide});

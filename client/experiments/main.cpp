@@ -190,7 +190,7 @@ int run(int argc, char** argv) {
   add_page_command(app, line.page);
   add_study_commands(app, line.study);
   try {
-    app.parse(argc, argv);
+    manual::parse(app, argc, argv);
     if (!line.placement.empty())
       read_placement(line.placement);  // a wrong one is wrong usage
   } catch (const CLI::ParseError& error) {

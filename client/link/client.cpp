@@ -169,8 +169,8 @@ Client::OutboxState Client::outbox() const {
   if (!line_->outbox)
     return {};
   ReportSender::Counts counts = line_->sender->counts();
-  return {line_->outbox->pending_count(), counts.accepted, counts.refused,
-          std::move(counts.problem), counts.set_aside};
+  return {line_->outbox->pending_count(), counts.accepted,  counts.refused,
+          std::move(counts.problem),      counts.set_aside, std::move(counts.last_refusal)};
 }
 
 Client::OutboxState Client::flush(milliseconds deadline) {

@@ -67,11 +67,12 @@ class Client {
   void report(const Attempt& attempt);
 
   struct OutboxState {
-    std::size_t pending = 0;    ///< not yet acknowledged
-    std::size_t accepted = 0;   ///< since this client started: stored, duplicate or recorded
-    std::size_t refused = 0;    ///< since this client started; kept in the rejected folder
-    std::string problem;        ///< why sending fails; empty: no known problem
-    std::size_t set_aside = 0;  ///< since this client started; see 'kinship outbox'
+    std::size_t pending = 0;        ///< not yet acknowledged
+    std::size_t accepted = 0;       ///< since this client started: stored, duplicate or recorded
+    std::size_t refused = 0;        ///< since this client started; kept in the rejected folder
+    std::string problem;            ///< why sending fails; empty: no known problem
+    std::size_t set_aside = 0;      ///< since this client started; see 'kinship outbox'
+    std::string last_refusal = {};  ///< why the last of the refused is; empty: none is
   };
   OutboxState outbox() const;  ///< zeros without an outbox
 

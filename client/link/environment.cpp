@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,32 +12,51 @@ namespace kinship::link {
 namespace {
 
 constexpr std::uint32_t kMaxDomain = 230;  // DDS has no ports for higher ones
+constexpr double kMinTimeout_s = 0.01, kMaxTimeout_s = 86'400;
+
+/// \return what a variable says; empty: it is not set, or empty.
+std::string_view text_of(const char* variable) {
+  const char* const text = std::getenv(variable);
+  return text != nullptr ? text : "";
+}
+
+/// \return the number that a text is, within a range; nothing: it is none.
+template <typename Number>
+std::optional<Number> number_in(std::string_view text, Number min, Number max) {
+  Number number{};
+  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || stopped != text.data() + text.size() ||
+      !(number >= min && number <= max))
+    return std::nullopt;
+  return number;
+}
 
 }  // namespace
 
-std::filesystem::path security_from_environment() {
-  const char* const folder = std::getenv("KINSHIP_SECURITY");
-  return folder != nullptr ? folder : "";
-}
+std::filesystem::path security_from_environment() { return text_of("KINSHIP_SECURITY"); }
 
-std::filesystem::path token_from_environment() {
-  const char* const file = std::getenv("KINSHIP_TOKEN");
-  return file != nullptr ? file : "";
-}
+std::filesystem::path token_from_environment() { return text_of("KINSHIP_TOKEN"); }
 
 ClientOptions options_from_environment() {
   ClientOptions options;
-  if (const char* const text = std::getenv("KINSHIP_DOMAIN"); text != nullptr && *text != '\0') {
-    const std::string_view digits = text;
-    const char* const end = digits.data() + digits.size();
-    const auto [stopped, error] = std::from_chars(digits.data(), end, options.domain);
-    if (error != std::errc() || stopped != end || options.domain > kMaxDomain)
-      throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(digits) +
+  if (const std::string_view text = text_of("KINSHIP_DOMAIN"); !text.empty()) {
+    const auto domain = number_in<std::uint32_t>(text, 0, kMaxDomain);
+    if (!domain)
+      throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(text) +
                                                  "' is not a domain from 0 to " +
                                                  std::to_string(kMaxDomain));
+    options.domain = *domain;
   }
-  if (const char* const host = std::getenv("KINSHIP_SERVER"); host != nullptr && *host != '\0')
+  if (const std::string_view host = text_of("KINSHIP_SERVER"); !host.empty())
     options.server = host;
+  if (const std::string_view text = text_of("KINSHIP_TIMEOUT"); !text.empty()) {
+    const auto seconds = number_in(text, kMinTimeout_s, kMaxTimeout_s);
+    if (!seconds)
+      throw Failure(ErrorCode::InvalidInput,
+                    "KINSHIP_TIMEOUT '" + std::string(text) + "' is no time from 0.01 to 86400 s");
+    options.timeout = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(*seconds));
+  }
   options.security = security_from_environment();
   return options;
 }

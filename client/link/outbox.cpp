@@ -151,12 +151,31 @@ std::vector<Uuid> Outbox::reports_in(std::string_view part) const {
 
 std::vector<Uuid> Outbox::reports_set_aside() const { return reports_in(kSetAside); }
 
+std::vector<Uuid> Outbox::reports_rejected() const { return reports_in(kRejected); }
+
 bool Outbox::resend(const Uuid& report_uuid) {
-  if (!move_file(file(kSetAside, report_uuid), file(kPending, report_uuid)))
-    return false;
-  std::error_code error;  // a reason without its report is not looked at
-  fs::remove(reason_file(kSetAside, report_uuid), error);
-  return true;
+  for (const std::string_view part : {kSetAside, kRejected})
+    if (move_file(file(part, report_uuid), file(kPending, report_uuid))) {
+      std::error_code error;  // a reason without its report is not looked at
+      fs::remove(reason_file(part, report_uuid), error);
+      return true;
+    }
+  return false;
+}
+
+bool Outbox::drop(const Uuid& report_uuid) {
+  for (const std::string_view part : {kSetAside, kRejected}) {
+    std::error_code error;
+    if (!fs::remove(file(part, report_uuid), error)) {
+      if (error)
+        throw Failure(ErrorCode::Storage,
+                      file(part, report_uuid).string() + ": cannot be deleted: " + error.message());
+      continue;
+    }
+    fs::remove(reason_file(part, report_uuid), error);
+    return true;
+  }
+  return false;
 }
 
 std::vector<OutboxEntry> Outbox::entries() const {

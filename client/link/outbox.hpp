@@ -51,8 +51,11 @@ class Outbox {
   void set_aside(const Uuid& report_uuid, std::string_view reason);  ///< the same
 
   std::vector<Uuid> reports_set_aside() const;
-  /// Makes a report that is set aside pending again. \return false if it is gone.
+  std::vector<Uuid> reports_rejected() const;
+  /// Makes a report that is set aside or rejected pending again. \return false if it is neither.
   bool resend(const Uuid& report_uuid);
+  /// Deletes a report that is set aside or rejected, for good. \return false if it is neither.
+  bool drop(const Uuid& report_uuid);
 
   /// Reports that wait or are kept apart, by folder and file. Reads all pending ones.
   std::vector<OutboxEntry> entries() const;

@@ -184,6 +184,7 @@ bool ReportSender::send_all_pending() {
   ReportRequest batch;
   BatchBytes bytes;
   unknown_.clear();
+  refused_.clear();
   for (const Uuid& uuid : in_turn()) {
     if (is_stopped())
       return false;
@@ -196,6 +197,10 @@ bool ReportSender::send_all_pending() {
       apply({uuid, ReceiptStatus::Refused, attempt.error().message});
     if (!attempt || unknown_.contains(attempt->robot))
       continue;
+    if (const auto refused = refused_.find(attempt->robot); refused != refused_.end()) {
+      apply({uuid, ReceiptStatus::Refused, refused->second});
+      continue;
+    }
     read_on(uuid);
     const BatchBytes size = batch_bytes(*attempt);
     if (batch.attempts.size() == kMaxAttemptsPerBatch || !(bytes + size).fits()) {
@@ -238,14 +243,17 @@ Result<ReportReply> ReportSender::exchange(ReportRequest& batch) {
 }
 
 /// Sends a batch, if need be once more after registering robots, and empties it. Reports of robots
-/// that stay unknown do not hold up others.
+/// that stay unknown do not hold up others; those of robots that are refused for good are rejected.
 /// \return false if nothing more should be sent in this round.
 bool ReportSender::deliver(ReportRequest& batch) {
   bool gets_on = send_batch(batch);
   if (gets_on && register_robots(batch))
     gets_on = send_batch(batch);
   for (const Attempt& attempt : batch.attempts)
-    unknown_.insert(attempt.robot);
+    if (const auto refused = refused_.find(attempt.robot); refused != refused_.end())
+      apply({attempt.report_uuid, ReceiptStatus::Refused, refused->second});
+    else
+      unknown_.insert(attempt.robot);
   batch.attempts.clear();
   return gets_on;
 }
@@ -315,7 +323,8 @@ std::map<Uuid, Receipt> ReportSender::final_receipts(const ReportReply& reply,
   return receipts;
 }
 
-/// Registers the robots of a batch as the outbox describes them.
+/// Registers the robots of a batch as the outbox describes them. A refusal without a time to ask
+/// again is final.
 /// \return true if the server knows one now.
 bool ReportSender::register_robots(const ReportRequest& batch) {
   std::set<Digest> robots;
@@ -331,11 +340,16 @@ bool ReportSender::register_robots(const ReportRequest& batch) {
       continue;
     }
     const Result<RegisterReply> reply = register_robot_(*description);
-    if (!reply || reply->status == RegisterStatus::Refused)
-      report_problem("robot '" + description->label + "' (" + robot.short_hex() +
-                     ") not registered: " + (reply ? reply->message : reply.error().message));
-    else
+    if (reply && reply->status != RegisterStatus::Refused) {
       is_registered = true;
+      continue;
+    }
+    const std::string problem =
+        "robot '" + description->label + "' (" + robot.short_hex() +
+        ") not registered: " + (reply ? reply->message : reply.error().message);
+    report_problem(problem);
+    if (reply && reply->retry_after == 0ms)
+      refused_[robot] = problem;
   }
   return is_registered;
 }
@@ -358,6 +372,8 @@ void ReportSender::apply(const Receipt& receipt) {
   tries_.forget(uuid);
   const std::lock_guard lock(mutex_);
   ++(is_refused ? counts_.refused : is_set_aside ? counts_.set_aside : counts_.accepted);
+  if (is_refused)
+    counts_.last_refusal = receipt.message;
   if (is_set_aside)
     last_set_aside_ = uuid.text() + ": " + receipt.message;
 }

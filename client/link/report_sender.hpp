@@ -41,6 +41,7 @@ class ReportSender {
   struct Counts {
     std::size_t accepted = 0;   ///< receipts stored, duplicate or recorded
     std::size_t refused = 0;    ///< refused by the server or damaged on disk
+    std::string last_refusal;   ///< why; empty: none was
     std::size_t set_aside = 0;  ///< put off by the server again and again (SetAsideRule)
     std::size_t passed_by = 0;  ///< on disk, but they cannot be read; others go
     std::string problem;        ///< why sending fails; empty: no known problem
@@ -98,9 +99,10 @@ class ReportSender {
   std::optional<std::chrono::steady_clock::time_point> aged_;
   std::optional<std::chrono::steady_clock::time_point> probed_;  // the last reply, also a receipt's
   std::uint64_t servers_probed_ = 0;
-  bool is_resending_ = false;  // sent reports are pending again
-  RetryAfter retry_after_{0};  // requested by the server in this round
-  std::set<Digest> unknown_;   // robots whose reports wait for the next round
+  bool is_resending_ = false;              // sent reports are pending again
+  RetryAfter retry_after_{0};              // requested by the server in this round
+  std::set<Digest> unknown_;               // robots whose reports wait for the next round
+  std::map<Digest, std::string> refused_;  // robots that the server will not have, and why
   PutOffTries tries_;
   std::uint64_t round_ = 0;
   // Reports that the server put off when they were sent last, and the round of that: the others go

@@ -199,6 +199,7 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   arguments::add_server_address(app, {options.server, options.domain, options.security});
   app.add_option("--timeout", raw.timeout_s, "seconds to wait for a server")
       ->check(between(0.01, 3600.0))
+      ->envname("KINSHIP_TIMEOUT")
       ->capture_default_str();
   app.add_option("--outbox", options.outbox, "folder of reports not yet acknowledged")
       ->type_name("FOLDER");

@@ -204,6 +204,8 @@ void ServerLine::flush() {
             << state.refused << " refused";
   if (state.set_aside > 0)
     messages_ << ", " << state.set_aside << " set aside ('kinship outbox list')";
+  if (state.refused > 0)
+    messages_ << " ('kinship outbox list'), the last because " << state.last_refusal;
   if (state.pending > 0)
     messages_ << " (pending reports are sent when the outbox is next used)";
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/link/environment.hpp"
 #include "client/python/administration.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
@@ -183,9 +184,16 @@ void bind_answers(py::module_& module) {
       .def_readonly("pending", &OutboxState::pending, "Not yet acknowledged by the server.")
       .def_readonly("accepted", &OutboxState::accepted, "Since this client started.")
       .def_readonly("refused", &OutboxState::refused, "Since this client started.")
+      .def_readonly("last_refusal", &OutboxState::last_refusal,
+                    "Why the last of the refused is, or empty.")
       .def_readonly("problem", &OutboxState::problem, "Why sending does not get on, or empty.")
       .def_readonly("set_aside", &OutboxState::set_aside,
-                    "Since this client started; see 'kinship outbox'.");
+                    "Since this client started; see 'kinship outbox'.")
+      .def("__repr__", [](const OutboxState& self) {
+        return "<kinship.OutboxState " + std::to_string(self.pending) + " pending, " +
+               std::to_string(self.accepted) + " accepted, " + std::to_string(self.refused) +
+               " refused, " + std::to_string(self.set_aside) + " set aside>";
+      });
   py::class_<Receipt>(module, "Receipt", "The server's answer to one attempt.")
       .def_property_readonly(
           "report_uuid", [](const Receipt& self) { return self.report_uuid.text(); },
@@ -205,8 +213,11 @@ void bind_answers(py::module_& module) {
       .def_readonly("message", &RegisterReply::message, "A warning; mostly empty.")
       .def_readonly("same_arms", &RegisterReply::same_arms,
                     "Labels of known robots that are the same arm.")
-      .def_readonly("geometry", &RegisterReply::geometry,
-                    "What the server filters with, in words.");
+      .def_readonly("geometry", &RegisterReply::geometry, "What the server filters with, in words.")
+      .def("__repr__", [](const RegisterReply& self) {
+        return "<kinship.Registration " + self.robot.short_hex() +
+               (self.status == RegisterStatus::Registered ? ", new" : ", known") + ">";
+      });
 }
 
 void bind_follower(py::module_& module) {
@@ -238,30 +249,34 @@ void bind_follower(py::module_& module) {
 
 void bind_life(ClientClass& client) {
   client
-      .def(py::init([](std::uint32_t domain, const std::string& server,
-                       const std::optional<std::filesystem::path>& outbox, bool has_outbox,
-                       double timeout, const std::optional<std::filesystem::path>& security) {
-             auto handle = std::make_unique<ClientHandle>(
-                 link::ClientOptions{.domain = domain,
-                                     .server = server,
-                                     .security = security.value_or(std::filesystem::path()),
-                                     .outbox = outbox.value_or(std::filesystem::path()),
-                                     .has_outbox = has_outbox,
-                                     .timeout = to_milliseconds(timeout, "timeout")});
-             if (const auto warning = handle->line()->expiry_warning())
-               warn("CredentialsExpire", *warning);
-             return handle;
-           }),
-           py::kw_only(), py::arg("domain") = 0, py::arg("server") = "127.0.0.1",
-           py::arg("outbox") = py::none(), py::arg("has_outbox") = true, py::arg("timeout") = 5.0,
-           py::arg("security") = py::none(),
-           R"(Opens a line to a server; the server need not be there.
+      .def(
+          py::init([](std::optional<std::uint32_t> domain, const std::optional<std::string>& server,
+                      const std::optional<std::filesystem::path>& outbox, bool has_outbox,
+                      std::optional<double> timeout,
+                      const std::optional<std::filesystem::path>& security) {
+            link::ClientOptions options = link::options_from_environment();
+            options.domain = domain.value_or(options.domain);
+            options.server = server.value_or(options.server);
+            options.security = security.value_or(options.security);
+            options.outbox = outbox.value_or(options.outbox);
+            options.has_outbox = has_outbox;
+            if (timeout)
+              options.timeout = to_milliseconds(*timeout, "timeout");
+            auto handle = std::make_unique<ClientHandle>(options);
+            if (const auto warning = handle->line()->expiry_warning())
+              warn("CredentialsExpire", *warning);
+            return handle;
+          }),
+          py::kw_only(), py::arg("domain") = py::none(), py::arg("server") = py::none(),
+          py::arg("outbox") = py::none(), py::arg("has_outbox") = true,
+          py::arg("timeout") = py::none(), py::arg("security") = py::none(),
+          R"(Opens a line to a server; the server need not be there.
 
-domain      of DDS, as kinshipd's
-server      its host
+domain      of DDS, as kinshipd's; by default what KINSHIP_DOMAIN says, or 0
+server      its host; by default what KINSHIP_SERVER says, or 127.0.0.1
 outbox      folder where reports wait for their receipts; by default one for this server
 has_outbox  False: delivers nothing that waits there, and report() is not allowed
-timeout     of register, deliver and listings, s
+timeout     of register, deliver and listings, s; by default what KINSHIP_TIMEOUT says, or 5
 security    folder of credentials; by default what KINSHIP_SECURITY says, or none
 
 Warns (CredentialsExpire) of credentials that are valid for less than 30 days.)")

@@ -6,6 +6,7 @@
 
 PYBIND11_MODULE(_kinship, module) {
   using namespace kinship::python;  // NOLINT(google-build-using-namespace): its functions alone
+  module.attr("__version__") = KINSHIP_VERSION;
   module.doc() = "The C++ libraries of Kinship; import kinship instead.";
   translate_failures();
   bind_robots(module);

@@ -243,6 +243,8 @@ GuidanceClass bind_guidance(py::module_& module) {
           py::arg("robot"), py::arg("guide") = "retreat",
           "By the robot alone, without experience and server: guide 'retreat', or 'none'.")
       .def_property_readonly("message", &GuidanceHandle::message, "What it is made of, for people.")
+      .def("__repr__",
+           [](const GuidanceHandle& self) { return "<kinship.Guidance " + self.message() + ">"; })
       .def_property_readonly(
           "guide",
           [](const GuidanceHandle& self) { return std::string(to_text(self.guidance().guide)); },
@@ -346,7 +348,14 @@ void bind_guided(py::class_<Plan>& plan) {
       .def_property_readonly("guidance_reason", result(&ProblemResult::guidance_reason),
                              "Why it was not guided, or less than wanted.")
       .def("attempt", attempt_for, py::arg("task"), py::arg("machine") = "",
-           "What the server is to be told of it, with its scene: for Client.report().");
+           "What the server is to be told of it, with its scene: for Client.report().")
+      .def("__repr__", [](const Plan& self) {
+        const ProblemResult& result = self.planned.result;
+        return "<kinship.Plan '" + self.problem.name + "' " +
+               (result.solved ? "solved, " + std::to_string(result.waypoints->cols()) + " waypoints"
+                              : "not solved: " + result.reason) +
+               ", " + std::to_string(result.collision_checks) + " checks>";
+      });
 }
 
 }  // namespace

@@ -25,6 +25,14 @@ models::PackageFolders folders_of(const Packages& packages) {
   return {packages.begin(), packages.end()};
 }
 
+std::size_t obstacle_count(const Scene& scene) {
+  return scene.objects.size() + scene.meshes.size() + scene.clouds.size();
+}
+
+std::string obstacles_text(const Scene& scene) {
+  return std::to_string(obstacle_count(scene)) + " obstacles";
+}
+
 void add_solid(Scene& scene, const std::string& name, const Array& pose, const Shape& shape) {
   scene.objects.push_back({.name = name, .shape = shape, .T_task_object = read_pose(pose, name)});
 }
@@ -165,7 +173,10 @@ array([0. , 0.5]))");
           "Where the robot stands in the task's frame: (4, 4), or None: not said.")
       .def_readonly("scene", &Problem::scene, "What is around the robot.")
       .def_readonly("time_limit_s", &Problem::time_limit_s, "Of wall-clock time.")
-      .def_readonly("seed", &Problem::seed, "Of the planner.");
+      .def_readonly("seed", &Problem::seed, "Of the planner.")
+      .def("__repr__", [](const Problem& self) {
+        return "<kinship.Problem '" + self.name + "' among " + obstacles_text(self.scene) + ">";
+      });
 }
 
 }  // namespace
@@ -181,6 +192,8 @@ void bind_scenes(py::module_& module) {
 >>> len(scene)
 1)")
       .def(py::init<>(), "An empty scene.")
+      .def("__repr__",
+           [](const Scene& self) { return "<kinship.Scene of " + obstacles_text(self) + ">"; })
       .def(
           "add_box",
           [](Scene& self, const std::string& name, const Array& pose, const Array& size) {
@@ -214,12 +227,7 @@ void bind_scenes(py::module_& module) {
            py::arg("scale") = ones, py::arg("packages") = Packages(),
            "Reads a surface of triangles (STL, OBJ, DAE). What lies wholly inside does not touch "
            "it.")
-      .def(
-          "__len__",
-          [](const Scene& self) {
-            return self.objects.size() + self.meshes.size() + self.clouds.size();
-          },
-          "Number of obstacles.");
+      .def("__len__", obstacle_count, "Number of obstacles.");
   bind_problem(module);
   module.def("read_problems", read_problems, py::arg("file"), py::arg("packages") = Packages(),
              "Reads a problem file, JSON Lines as kinship-plan takes them, with its meshes.\n\n"

@@ -1,9 +1,11 @@
 #include "proto/manual/manual.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "proto/manual/completion.hpp"
 #include "proto/manual/help_text.hpp"
@@ -34,6 +36,10 @@ std::string others_than(const std::string& program) {
 void add_manual(CLI::App& app, int section) {
   constexpr const char* kGroup = "Manual";
   app.formatter(help_formatter());
+  app.failure_message([](const CLI::App* program, const CLI::Error& error) {
+    return program->get_name() + ": " + error.what() + " (see: " + program->get_name() +
+           " --help)\n";
+  });
   app.set_version_flag("--version", app.get_name() + " " + KINSHIP_VERSION);
   app.add_option_function<std::string>(
          "--completion",
@@ -53,6 +59,18 @@ void add_manual(CLI::App& app, int section) {
          "Print the manual page, for man, and end")
       ->configurable(false)
       ->group(kGroup);
+}
+
+void parse(CLI::App& app, int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  } else if (words.size() == 1 && words.front() == "version") {
+    words.front() = "--version";
+  }
+  std::ranges::reverse(words);  // as CLI11 takes them
+  app.parse(std::move(words));
 }
 
 }  // namespace kinship::manual

@@ -11,24 +11,42 @@
 
 namespace kinship::manual {
 
+namespace {
+
+/// The deepest verb that was recognised.
+const CLI::App& last_verb(const CLI::App& app) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty())
+    verb = verb->get_subcommands().front();
+  return *verb;
+}
+
+/// For a long name that does not exist: the short option that begins alike, as in `--output`, `-o`.
+std::string short_option_for(const CLI::App& verb, const std::string& word) {
+  for (const CLI::Option* const option : verb.get_options())
+    for (const std::string& letter : option->get_snames())
+      if (word.substr(2, 1) == letter)
+        return " (did you mean '-" + letter + "'?)";
+  return "";
+}
+
+}  // namespace
+
 std::string suggestion_for(const CLI::App& app, const std::string& word) {
   std::vector<std::string> candidates;
-  const CLI::App* verb = &app;
-  for (;;) {
-    if (word.starts_with("--"))
-      for (const CLI::Option* const option : verb->get_options())
-        std::ranges::transform(option->get_lnames(), std::back_inserter(candidates),
-                               [](const std::string& name) { return "--" + name; });
-    const auto understood = verb->get_subcommands();
-    if (understood.empty())
-      break;
-    verb = understood.front();
-  }
-  if (!word.starts_with("--"))
-    for (const CLI::App* const other : verb->get_subcommands([](const CLI::App*) { return true; }))
+  const CLI::App& last = last_verb(app);
+  if (!word.starts_with("--")) {
+    for (const CLI::App* const other : last.get_subcommands([](const CLI::App*) { return true; }))
       if (!other->get_group().empty())  // not a hidden one
         candidates.push_back(other->get_name());
-  return suggestion(word.substr(0, word.find('=')), candidates);
+    return suggestion(word, candidates);
+  }
+  for (const CLI::App* verb = &last; verb != nullptr; verb = verb->get_parent())
+    for (const CLI::Option* const option : verb->get_options())
+      std::ranges::transform(option->get_lnames(), std::back_inserter(candidates),
+                             [](const std::string& name) { return "--" + name; });
+  const std::string near = suggestion(word.substr(0, word.find('=')), candidates);
+  return near.empty() ? short_option_for(last, word) : near;
 }
 
 int explain(const CLI::App& app, const CLI::ParseError& error, std::ostream& out,
@@ -39,12 +57,22 @@ int explain(const CLI::App& app, const CLI::ParseError& error, std::ostream& out
         << suggestion_for(app, unknown.front()) << " (see: " << app.get_name() << " --help)\n";
     return kWrongUsage;
   }
-  const int code = app.exit(error, out, err);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
-    for (const std::string& word : unknown)
-      if (const std::string near = suggestion_for(app, word); !near.empty())
-        err << word << near << '\n';
-  return code == 0 ? kDone : kWrongUsage;
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
+      last_verb(app).get_require_subcommand_min() > 0) {
+    err << app.help();
+    return kWrongUsage;
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    bool is_value = false;  // of an option that is told already
+    for (const std::string& word : unknown) {
+      if (!is_value || word.starts_with("-"))
+        err << app.get_name() << ": unknown argument '" << word << "'" << suggestion_for(app, word)
+            << '\n';
+      is_value = word.starts_with("--") && word.find('=') == std::string::npos;
+    }
+    return kWrongUsage;
+  }
+  return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
 }
 
 }  // namespace kinship::manual

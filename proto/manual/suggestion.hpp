@@ -16,7 +16,7 @@ namespace kinship::manual {
 std::string suggestion_for(const CLI::App& app, const std::string& word);
 
 /// Writes the fault of a command line with corrections of misspelt words, or the text of --help and
-/// --version.
+/// --version; to a line that ends where a verb is wanted, the help of what is there.
 /// \return an exit code (proto/types/exit_code.hpp).
 int explain(const CLI::App& app, const CLI::ParseError& error, std::ostream& out,
             std::ostream& err);

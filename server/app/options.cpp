@@ -300,20 +300,6 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
       "kinshipd migrate --store fleet.db              as it was: fleet.db.backup-<version>");
 }
 
-/// The names that may have been meant by words that the command line does not know.
-void suggest_words(const CLI::App& app, const std::vector<std::string>& words, std::ostream& err) {
-  for (const std::string& word : words)
-    if (word.starts_with("--"))
-      if (const std::string near =
-              suggestion(word.substr(2, word.find('=') - 2), option_names(app));
-          !near.empty() && app.get_option_no_throw(word) == nullptr)
-        err << word << near << '\n';
-  for (const std::string& word : app.remaining(true))
-    if (const std::string near = manual::suggestion_for(app, word);
-        !word.starts_with("-") && !near.empty())
-      err << word << near << '\n';
-}
-
 /// The fault of the store's place; empty: none.
 std::string store_fault(const CLI::App& app, const std::filesystem::path& store) {
   const bool is_offline = !app.get_subcommands().empty();
@@ -436,15 +422,11 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   std::optional<CheckSitesOptions> sites;
   add_check_sites(app, sites);
   try {
-    app.parse(argc, argv);
+    manual::parse(app, argc, argv);
   } catch (const CLI::ConfigError& error) {  // says which option of it, but not where
     const std::string what = error.what();
     err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>() << "': " << what
         << suggestion(what.substr(what.find_last_of(" .") + 1), option_names(app)) << '\n';
-    return kWrongUsage;
-  } catch (const CLI::ExtrasError& error) {
-    app.exit(error, out, err);
-    suggest_words(app, std::vector<std::string>(argv + 1, argv + argc), err);
     return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     return manual::explain(app, error, out, err);

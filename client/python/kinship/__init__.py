@@ -50,6 +50,7 @@ from ._kinship import (
     Sampler,
     Scene,
     World,
+    __version__,
     plan,
     read_experience,
     read_problems,

@@ -332,6 +332,8 @@ class Events:
     def __enter__(self) -> "Events": ...
     def __exit__(self, *exception: Any) -> None: ...
 
+__version__: str
+
 class OutboxState:
     @property
     def pending(self) -> int: ...
@@ -339,6 +341,8 @@ class OutboxState:
     def accepted(self) -> int: ...
     @property
     def refused(self) -> int: ...
+    @property
+    def last_refusal(self) -> str: ...
     @property
     def problem(self) -> str: ...
     @property
@@ -383,11 +387,11 @@ class Client:
     def __init__(
         self,
         *,
-        domain: int = 0,
-        server: str = "127.0.0.1",
+        domain: Optional[int] = None,
+        server: Optional[str] = None,
         outbox: Optional[_Path] = None,
         has_outbox: bool = True,
-        timeout: float = 5.0,
+        timeout: Optional[float] = None,
         security: Optional[_Path] = None,
     ) -> None: ...
     @property

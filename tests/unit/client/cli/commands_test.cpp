@@ -94,10 +94,24 @@ TEST(Commands, AMisspeltWordIsAnsweredWithTheNearestOne) {
   EXPECT_NE(error({"robtos"}).find("'robtos' (did you mean 'robots'?)"), std::string::npos);
   EXPECT_NE(error({"paths", "lsit"}).find("'lsit' (did you mean 'list'?)"), std::string::npos)
       << error({"paths", "lsit"});
-  EXPECT_NE(error({"paths", "list", "--tsk", "pick"}).find("--tsk (did you mean '--task'?)"),
+  EXPECT_NE(error({"paths", "list", "--tsk", "pick"}).find("'--tsk' (did you mean '--task'?)"),
             std::string::npos)
       << error({"paths", "list", "--tsk", "pick"});
   EXPECT_EQ(error({"frobnicate"}).find("did you mean"), std::string::npos);
+  EXPECT_NE(error({"paths", "list", "--output", "json"}).find("(did you mean '-o'?)"),
+            std::string::npos)
+      << error({"paths", "list", "--output", "json"});
+}
+
+TEST(Commands, HelpAndVersionAreWordsToo) {
+  EXPECT_EQ(run_command({"help", "paths", "list"}).out,
+            run_command({"paths", "list", "--help"}).out);
+  EXPECT_EQ(run_command({"help"}).out, run_command({"--help"}).out);
+  EXPECT_EQ(run_command({"version"}).out, run_command({"--version"}).out);
+  EXPECT_NE(run_command({"version"}).out, "");
+  const Answer group = run_command({"paths"});
+  EXPECT_EQ(group.code, kWrongUsage);
+  EXPECT_NE(group.err.find("  retire "), std::string::npos) << group.err;
 }
 
 TEST(Commands, AHostThatNobodyKnowsIsNamedAtOnce) {

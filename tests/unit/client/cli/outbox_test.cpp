@@ -65,6 +65,24 @@ TEST_F(OutboxCommands, ResendOffersAllOrTheNamedOnesAgain) {
   EXPECT_EQ(outbox_.pending_count(), 3U);
 }
 
+TEST_F(OutboxCommands, RejectedOnesAreOfferedAgainOrDeletedOnceThatIsConfirmed) {
+  const Attempt attempt = values_.attempt(5), other = values_.attempt(5);
+  for (const Attempt& each : {attempt, other}) {
+    outbox_.add(each);
+    outbox_.reject(each.report_uuid, "'arm_7' may not register it");
+  }
+  EXPECT_EQ(run_outbox({"resend"}), kDone);
+  EXPECT_EQ(outbox_.pending_count(), 0U) << "only what is set aside";
+  EXPECT_EQ(run_outbox({"drop", other.report_uuid.text()}), kDone);
+  EXPECT_NE(out_.str().find("1 report would be deleted"), std::string::npos) << out_.str();
+  EXPECT_EQ(outbox_.reports_rejected().size(), 2U);
+  EXPECT_EQ(run_outbox({"drop", Uuid::random().text()}), kNotFound);
+  EXPECT_EQ(run_outbox({"drop", other.report_uuid.text(), "--yes"}), kDone);
+  EXPECT_EQ(outbox_.reports_rejected(), std::vector{attempt.report_uuid});
+  EXPECT_EQ(run_outbox({"resend", "--rejected"}), kDone);
+  EXPECT_EQ(outbox_.pending(), std::vector{attempt.report_uuid});
+}
+
 TEST_F(OutboxCommands, ALookMakesNoOutbox) {
   const std::filesystem::path none = folder_.path() / "none";
   std::ostringstream out, err;

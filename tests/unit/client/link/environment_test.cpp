@@ -20,6 +20,7 @@ class Environment : public testing::Test {
   static void clear() {
     unsetenv("KINSHIP_DOMAIN");
     unsetenv("KINSHIP_SERVER");
+    unsetenv("KINSHIP_TIMEOUT");
   }
 };
 
@@ -46,6 +47,15 @@ TEST_F(Environment, ADomainThatIsNoneIsRefusedByName) {
       EXPECT_EQ(std::string(failure.what()),
                 "KINSHIP_DOMAIN '" + std::string(text) + "' is not a domain from 0 to 230");
     }
+  }
+}
+
+TEST_F(Environment, ATimeoutIsTakenOrRefusedByName) {
+  setenv("KINSHIP_TIMEOUT", "0.25", 1);
+  EXPECT_EQ(options_from_environment().timeout, std::chrono::milliseconds(250));
+  for (const char* const text : {"0", "-1", "5s", "nan", "86401"}) {
+    setenv("KINSHIP_TIMEOUT", text, 1);
+    EXPECT_THROW(options_from_environment(), Failure) << text;
   }
 }
 

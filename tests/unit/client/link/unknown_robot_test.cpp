@@ -121,13 +121,47 @@ TEST_F(UnknownRobot, WithoutADescriptionItsReportsStayAndDoNotHoldUpOthers) {
   EXPECT_NE(sender.counts().problem.find(robot.short_hex()), std::string::npos);
 }
 
-TEST_F(UnknownRobot, RefusedRegistrationIsToldAndItsReportsStay) {
+TEST_F(UnknownRobot, WhoseRegistrationIsRefusedHasItsReportsRejectedUntilTheyAreOfferedAgain) {
   RobotDescription description = values.robot_description();
   description.label = "ur5e_3";
   outbox.keep_robot(robot, description);
+  for (int i = 0; i < 260; ++i)  // more than a batch
+    add(robot);
+  const Digest known = values.digest();
+  store.add_robot(known);
+  add(known);
+  {
+    ReportSender sender(outbox, send(), [](const RobotDescription&) {
+      return RegisterReply{RegisterStatus::Refused, {}, 0, "", "'arm_7' may not register it"};
+    });
+    sender.wait_until_empty(in(20s));
+    EXPECT_EQ(outbox.pending_count(), 0U);
+    EXPECT_EQ(sender.counts().refused, 260U);
+    EXPECT_EQ(sender.counts().accepted, 1U);
+    EXPECT_NE(sender.counts().last_refusal.find("'arm_7' may not"), std::string::npos)
+        << sender.counts().last_refusal;
+  }
+  const std::vector<Uuid> refused = outbox.reports_rejected();
+  ASSERT_EQ(refused.size(), 260U);
+  EXPECT_TRUE(outbox.drop(refused[0]));
+  EXPECT_FALSE(outbox.drop(refused[0]));
+  EXPECT_FALSE(outbox.resend(refused[0]));
+  for (const Uuid& uuid : outbox.reports_rejected())
+    EXPECT_TRUE(outbox.resend(uuid));
+  EXPECT_EQ(rejected(), 0U) << "reasons go with their reports";
+  ReportSender admitted(outbox, send(), registers(robot));
+  admitted.wait_until_empty(in(20s));
+  EXPECT_EQ(admitted.counts().accepted, 259U);
+}
+
+TEST_F(UnknownRobot, WhoseRegistrationIsRefusedForNowKeepsItsReports) {
+  outbox.keep_robot(robot, values.robot_description());
   add(robot);
   ReportSender sender(outbox, send(), [](const RobotDescription&) {
-    return RegisterReply{RegisterStatus::Refused, {}, 0, "", "label 'ur5e_3' is taken"};
+    RegisterReply busy;
+    busy.message = "busy";
+    busy.retry_after = RetryAfter(100);
+    return busy;
   });
   store.wait_for_batches(2);
   EXPECT_EQ(outbox.pending_count(), 1U);

@@ -56,6 +56,15 @@ class Paths(OfAUr10e):
         self.assertTrue(kinship.World.of_problem(self.robot, self.problem).free(np.concatenate(steps)).all())
         self.assertFalse(kinship.World.of_problem(self.robot, self.problem).free(np.linspace(START, GOAL, 40)).all())
 
+    def test_and_what_leads_to_them_say_what_they_are(self):
+        self.assertRegex(repr(kinship.plan(self.robot, self.problem)),
+                         r"<kinship.Plan 'around' solved, \d+ waypoints, \d+ checks>")
+        self.assertRegex(repr(kinship.plan(self.robot, self.problem, max_checks=1)), "'around' not solved: .+, 1 checks>")
+        self.assertEqual(repr(self.problem), "<kinship.Problem 'around' among 1 obstacles>")
+        self.assertEqual(repr(post()), "<kinship.Scene of 1 obstacles>")
+        self.assertIn("retreat", repr(kinship.Guidance.alone(self.robot)))
+        self.assertRegex(kinship.__version__, r"^\d+\.\d+\.\d+$")
+
     def test_are_measured_however_they_were_planned(self):
         problem = kinship.Problem("around", START, GOAL, scene=post(0.33), seed=5)
         for how in ({}, {"resolution": 0.05}):

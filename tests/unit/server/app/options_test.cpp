@@ -304,7 +304,7 @@ TEST_F(Options, AMisspeltNameIsAnsweredWithTheNearestOne) {
   EXPECT_EQ(code({"--config", file.c_str()}), kWrongUsage);
   EXPECT_NE(err_.str().find("(did you mean 'store'?)"), std::string::npos) << err_.str();
   EXPECT_EQ(code({"--wrokers", "3"}), kWrongUsage);
-  EXPECT_NE(err_.str().find("--wrokers (did you mean 'workers'?)"), std::string::npos)
+  EXPECT_NE(err_.str().find("'--wrokers' (did you mean '--workers'?)"), std::string::npos)
       << err_.str();
   EXPECT_EQ(code({"--workers", "3", "--utterly-else"}), kWrongUsage);
   EXPECT_EQ(err_.str().find("did you mean"), std::string::npos) << err_.str();
