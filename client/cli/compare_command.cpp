@@ -10,6 +10,7 @@
 #include "client/cli/terminal.hpp"
 #include "client/cli/value_text.hpp"
 #include "client/link/admin_rows.hpp"
+#include "client/link/reported_placement.hpp"
 #include "client/link/robot_names.hpp"
 #include "pages/plots/plot_pages.hpp"
 #include "proto/json/admin_rows_json.hpp"
@@ -21,6 +22,7 @@
 namespace kinship::cli {
 namespace {
 
+using link::ReportedPlacement;
 using tables::Column;
 using tables::Fit;
 using tables::Table;
@@ -30,15 +32,10 @@ constexpr std::string_view kCompare = "robots compare";
 /// Placements of robots from the command line, by label.
 using Placements = std::map<std::string, Eigen::Isometry3d>;
 
-struct Placement {
-  bool is_known = false;
-  std::optional<Eigen::Isometry3d> T_task_base;  ///< known and missing: reported without one
-};
-
 struct Target {
   Digest robot;
   std::string label;
-  Placement placement;
+  ReportedPlacement placement;
 };
 
 Result<Placements> parse_placements(const std::vector<std::string>& texts) {
@@ -57,24 +54,13 @@ Result<Placements> parse_placements(const std::vector<std::string>& texts) {
   return placements;
 }
 
-/// The newest placement that a robot reported for the task; unknown if it has no path of it.
-Placement reported_placement(link::Client& server, const std::string& task,
-                             const std::string& robot, std::ostream& err) {
-  Placement placement;
-  std::int64_t newest_ms = -1;
-  const auto error =
-      link::for_each_row(server, {.verb = AdminVerb::ListPaths, .robot = robot, .task = task},
-                         [&](const std::string& row) {
-                           const auto path = json::row_from_json<PathSummary>(row);
-                           if (path && path->received_ms > newest_ms) {
-                             newest_ms = path->received_ms;
-                             placement = {true, path->T_task_base};
-                           }
-                           return true;
-                         });
-  if (error)
-    refuse(kCompare, *error, err);
-  return placement;
+/// Where a robot stands, as it last reported the task; unknown if it has not.
+ReportedPlacement reported(link::Client& server, const std::string& task, const std::string& robot,
+                           std::ostream& err) {
+  const auto placement = link::reported_placement(server, task, robot);
+  if (!placement)
+    refuse(kCompare, placement.error(), err);
+  return placement ? *placement : ReportedPlacement();
 }
 
 /// The robots that are asked about. Empty with an exit code in `code` if something is wrong.
@@ -84,9 +70,8 @@ std::vector<Target> find_targets(link::Client& server, const CompareOptions& opt
   const auto add = [&](const Digest& robot, const std::string& label) {
     const auto told = placements.find(label);
     targets.push_back({robot, label,
-                       told != placements.end()
-                           ? Placement{true, told->second}
-                           : reported_placement(server, options.task, label, err)});
+                       told != placements.end() ? ReportedPlacement{true, told->second}
+                                                : reported(server, options.task, label, err)});
   };
   std::vector<std::pair<Digest, std::string>> robots;
   if (options.targets.empty()) {

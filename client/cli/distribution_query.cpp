@@ -4,6 +4,7 @@
 
 #include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/link/reported_placement.hpp"
 #include "client/link/robot_names.hpp"
 #include "robots/models/robot_arguments.hpp"
 
@@ -17,7 +18,27 @@ Error with_advice(Error error) {
   return error;
 }
 
-Result<FetchRequest> request_for(link::Client& server, const DistributionQuery& query) {
+/// Where the robot stood when it last reported the task, told on `err`; missing: it has not, or the
+/// server does not tell.
+std::optional<Eigen::Isometry3d> known_placement(link::Client& server, const std::string& task,
+                                                 const std::string& robot, std::string_view command,
+                                                 std::ostream& err) {
+  const auto known = link::reported_placement(server, task, robot);
+  err << command << ": ";
+  if (known && known->T_task_base)
+    err << "placement " << pose_text(*known->T_task_base) << ", of the newest attempt of '" << robot
+        << "'; --placement names another\n";
+  else
+    err << "no --placement, taken as 0 0 0 0 0 0 1: "
+        << (!known            ? known.error().message
+            : known->is_known ? "the newest attempt of '" + robot + "' has none"
+                              : "'" + robot + "' has not reported the task")
+        << '\n';
+  return known ? known->T_task_base : std::nullopt;
+}
+
+Result<FetchRequest> request_for(link::Client& server, const DistributionQuery& query,
+                                 std::string_view command, std::ostream& err) {
   FetchRequest request;
   request.task = query.task;
   request.profile = query.profile;
@@ -33,10 +54,12 @@ Result<FetchRequest> request_for(link::Client& server, const DistributionQuery& 
   if (!selection)
     return selection.error();
   request.selection = *selection;
-  const auto robot = link::resolve_robots(server, {query.robot});
+  const auto robot = link::find_robot(server, query.robot);
   if (!robot)
     return with_advice(robot.error());
-  request.robot = robot->front();
+  request.robot = robot->robot;
+  if (!request.T_task_base)
+    request.T_task_base = known_placement(server, query.task, robot->label, command, err);
   if (!query.selection.sources.empty()) {
     const auto names = arguments::parse_robot_names(query.selection.sources);
     if (!names)
@@ -90,7 +113,7 @@ int judge(const Result<FetchReply>& reply, const DistributionQuery& query, std::
 std::optional<Distribution> fetch_query(link::Client& server, const DistributionQuery& query,
                                         std::string_view command, bool allow_failed,
                                         std::ostream& err, int& code) {
-  const Result<FetchRequest> request = request_for(server, query);
+  const Result<FetchRequest> request = request_for(server, query, command, err);
   if (!request) {
     code = refuse(command, request.error(), err);
     return std::nullopt;

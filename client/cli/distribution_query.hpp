@@ -17,7 +17,7 @@ namespace kinship::cli {
 struct DistributionQuery {
   std::string task;
   std::string robot;      ///< a label, or the beginning of a digest
-  std::string placement;  ///< T_task_base, "x y z qx qy qz qw"; empty: missing
+  std::string placement;  ///< T_task_base, "x y z qx qy qz qw"; empty: the robot's newest
   std::string profile = "default";
   arguments::SelectionArguments selection;
   std::chrono::milliseconds wait{30000};

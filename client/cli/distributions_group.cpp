@@ -18,7 +18,8 @@ std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query)
       command.add_option("--robot", query.robot, "Label, or beginning of its digest")
           ->type_name("ROBOT");
   command.add_option("--placement", query.placement,
-                     "Robot's base in the task frame, \"x y z qx qy qz qw\"");
+                     "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: as the robot "
+                     "last reported the task)");
   arguments::add_profile_options(command, query.profile);
   arguments::add_selection_options(command, query.selection);
   command

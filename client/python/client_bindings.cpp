@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "client/link/environment.hpp"
+#include "client/link/reported_placement.hpp"
 #include "client/python/administration.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
@@ -34,6 +35,16 @@ struct Wish {
   std::int64_t since_ms = 0;
 };
 
+/// Where the robot stood when it last reported the task; missing: that is not known.
+std::optional<Eigen::Isometry3d> known_placement(const ClientHandle& client,
+                                                 const std::string& task, const Digest& robot) {
+  const auto known =
+      client.wait_for<Result<link::ReportedPlacement>>([task, robot](link::Client& line) {
+        return link::reported_placement(line, task, robot.hex());
+      });
+  return known ? known->T_task_base : std::nullopt;
+}
+
 FetchRequest request_of(const ClientHandle& client, const Wish& wish) {
   FetchRequest request;
   request.task = wish.task;
@@ -43,6 +54,8 @@ FetchRequest request_of(const ClientHandle& client, const Wish& wish) {
   if (!wish.weighting.empty())
     request.selection.weighting = parse_word<Weighting>(wish.weighting).value_or_throw();
   request.robot = client.find(wish.robot);
+  if (!request.T_task_base)
+    request.T_task_base = known_placement(client, request.task, request.robot);
   std::vector<Digest>& sources = request.selection.sources;
   for (const RobotName& source : wish.sources)
     sources.push_back(client.find(source));
@@ -121,7 +134,8 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
   guided::GuidanceAnswer answer = guided::fetch_guidance(fetch, wanted, request.T_task_base);
   if (!answer.guidance)
     raise_status(status, request, answer.message);
-  return std::make_shared<GuidanceHandle>(robot.digest(), std::move(answer), robot.chain());
+  return std::make_shared<GuidanceHandle>(robot.digest(), std::move(answer), robot.chain(),
+                                          request.T_task_base);
 }
 
 RegisterReply register_robot(const ClientHandle& client, const Robot& robot) {
@@ -341,7 +355,8 @@ void bind_fetching(ClientClass& client) {
 
 robot        a Robot, its digest, or the label by which the server knows it
 deadline     so long it may be waited for, s; 0: what is there already
-T_task_base  where the robot stands in the task's frame: (4, 4) or (7,)
+T_task_base  where the robot stands in the task's frame: (4, 4) or (7,); by default where it stood when it
+             last reported the task, which Distribution.T_task_base and Guidance.T_task_base tell
 profile      parameters of transfer and fit
 sources      the robots whose experience counts; empty: all
 weighting    'sources' or 'paths'; empty: the profile's

@@ -19,10 +19,15 @@ namespace kinship::python {
 class GuidanceHandle {
  public:
   /// \param answer  with guidance.
-  /// \param chain   of the robot; missing: the guidance has no paths to recall.
+  /// \param chain        of the robot; missing: the guidance has no paths to recall.
+  /// \param T_task_base  where the robot stands for which it was made; missing: as identity.
   GuidanceHandle(const Digest& robot, guided::GuidanceAnswer answer,
-                 std::optional<kinematics::Chain> chain = std::nullopt)
-      : robot_(robot), chain_(std::move(chain)), answer_(std::move(answer)) {}
+                 std::optional<kinematics::Chain> chain = std::nullopt,
+                 std::optional<Eigen::Isometry3d> T_task_base = std::nullopt)
+      : robot_(robot),
+        chain_(std::move(chain)),
+        T_task_base_(std::move(T_task_base)),
+        answer_(std::move(answer)) {}
 
   /// A distribution alone: without stored ways, and without control.
   /// \throws Failure(InvalidInput) if it can guide no robot.
@@ -33,8 +38,13 @@ class GuidanceHandle {
   static std::shared_ptr<GuidanceHandle> of_robot(const Robot& robot, Guide guide);
 
   const Digest& robot() const noexcept { return robot_; }
+  const std::optional<Eigen::Isometry3d>& T_task_base() const noexcept { return T_task_base_; }
   const guided::Guidance& guidance() const noexcept { return *answer_.guidance; }
   const std::string& message() const noexcept { return answer_.message; }
+
+  /// \throws Failure(InvalidInput) if a problem places the robot elsewhere, by more than 1 mm or
+  ///         1 mrad, than the experience was made for.
+  void require_placement(const Problem& problem) const;
 
   double guided_part() const;
   SamplingMode choose(const Problem& problem) const;
@@ -51,6 +61,7 @@ class GuidanceHandle {
  private:
   const Digest robot_;
   const std::optional<kinematics::Chain> chain_;
+  const std::optional<Eigen::Isometry3d> T_task_base_;
   recall::RecallTrust recall_trust_;
   guided::GuidanceAnswer answer_;  // but for its chooser never changed
   mutable std::mutex mutex_;       // guards chooser and trust

@@ -119,6 +119,8 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
   if (seed)
     made.problem.seed = *seed;
   const SharedGuidance guidance = guidance_for(*robot, guided_by);
+  if (guidance)
+    guidance->require_placement(made.problem);
   const guided::QueryGuidance query = query_of(guidance, made.problem, sampling_mode);
   std::vector<std::string> doubts;
   {
@@ -243,6 +245,9 @@ GuidanceClass bind_guidance(py::module_& module) {
           py::arg("robot"), py::arg("guide") = "retreat",
           "By the robot alone, without experience and server: guide 'retreat', or 'none'.")
       .def_property_readonly("message", &GuidanceHandle::message, "What it is made of, for people.")
+      .def_property_readonly(
+          "T_task_base", [](const GuidanceHandle& self) { return to_matrix(self.T_task_base()); },
+          "Where the robot stands for which it was made: (4, 4), or None: not told.")
       .def("__repr__",
            [](const GuidanceHandle& self) { return "<kinship.Guidance " + self.message() + ">"; })
       .def_property_readonly(

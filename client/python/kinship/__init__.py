@@ -8,7 +8,8 @@
         distribution = client.fetch("box_to_shelf", robot, deadline=60)
         guidance = client.guidance("box_to_shelf", robot)
     q = distribution.sample(1000, seed=1)          # (1000, dof)
-    path = kinship.plan(robot, kinship.Problem("mine", q[0], q[1]), guidance).waypoints
+    problem = kinship.Problem("mine", q[0], q[1], T_task_base=guidance.T_task_base)
+    path = kinship.plan(robot, problem, guidance).waypoints
 
 Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as
 (4, 4) matrices and are taken as these or as x y z qx qy qz qw. What goes wrong is an exception of kinship.errors.

@@ -149,11 +149,25 @@ class Planning(WithServer):
         plan = kinship.plan(self.ur10e, kinship.Problem("post", self.START, self.GOAL, scene=scene), guidance)
         self.assertTrue(plan.solved, plan.reason)
         self.assertEqual((plan.sampling_mode, plan.guide), ("guided", guidance.guide))
+        with self.assertRaisesRegex(kinship.InvalidInput, "T_task_base is 1 0 0 0 0 0 1, the guidance was made for not given"):
+            kinship.plan(self.ur10e, kinship.Problem("off", self.START, self.GOAL, T_task_base=[1, 0, 0, 0, 0, 0, 1]), guidance)
         self.client.report(plan.attempt("planned"))
         state = self.client.flush(60)
         self.assertEqual((state.pending, state.refused), (0, 0), state.problem)
         task, = [row for row in self.client.tasks() if row["task"] == "planned"]
         self.assertEqual((task["paths"], len(task["robots"])), (7, 2))
+
+    def test_a_robot_stands_where_it_stood_when_it_last_reported(self):
+        here = [0.1, 0.2, 0, 0, 0, 0, 1]
+        self.client.register(self.panda)
+        placed = attempt(self.panda, "placed", 1)
+        placed.T_task_base = here
+        self.client.report(placed)
+        self.assertEqual(self.client.flush(60).accepted, 1)
+        guidance = self.client.guidance("placed", self.panda, deadline=120)
+        np.testing.assert_allclose(guidance.T_task_base[:3, 3], here[:3])
+        with self.assertRaisesRegex(kinship.InvalidInput, "T_task_base is not given, so identity, the guidance was made for 0.1"):
+            kinship.plan(self.panda, kinship.Problem("forgotten", placed.waypoints[0], placed.waypoints[-1]), guidance)
 
     def test_a_rehearsal_is_waited_for(self):
         self.report_sweeps("rehearsed", range(200))

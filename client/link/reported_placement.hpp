@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "client/link/client.hpp"
+#include "proto/types/result.hpp"
+
+namespace kinship::link {
+
+/// Where a robot stood when it last reported a task.
+struct ReportedPlacement {
+  bool is_known = false;                         ///< whether it has reported the task
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< known and missing: reported without one
+};
+
+/// Asks the server, in two requests, each up to the client's timeout.
+/// \param robot  its label.
+/// \return Unavailable, or InvalidInput if the server does not tell this client of attempts.
+Result<ReportedPlacement> reported_placement(Client& client, const std::string& task,
+                                             const std::string& robot);
+
+}  // namespace kinship::link
