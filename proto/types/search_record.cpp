@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <string_view>
 
 #include "proto/types/names.hpp"
@@ -106,13 +107,20 @@ std::optional<Error> check_search(const SearchRecord& search) {
 std::string why_text(const SearchRecord& search) {
   constexpr std::size_t kTold = 3;
   std::string text = search.reason;
+  const auto add = [&text](const char* between, const std::string& part) {
+    text += (text.empty() ? "" : between) + part;
+  };
   for (std::size_t i = 0; i < std::min(kTold, search.blockers.size()); ++i) {
     const Blocker& blocker = search.blockers[i];
-    text += (i > 0          ? ", '"
-             : text.empty() ? "'"
-                            : "; '") +
-            blocker.first + "' touches '" + blocker.second + "' (" + std::to_string(blocker.count) +
-            ")";
+    add(i > 0 ? ", " : "; ", "'" + blocker.first + "' touches '" + blocker.second + "' (" +
+                                 std::to_string(blocker.count) + ")");
+  }
+  const Eigen::VectorXd& free = search.last_free;
+  if (free.size() > 0 && search.goals.cols() > 0 && search.goals.rows() == free.size()) {
+    std::array<char, 64> distance{};
+    std::snprintf(distance.data(), distance.size(), "%.2f from a goal",
+                  (search.goals.colwise() - free).colwise().norm().minCoeff());
+    add("; ", std::string("last free configuration ") + distance.data());
   }
   return cut_text(text, kMaxWhyBytes);
 }
