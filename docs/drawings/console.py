@@ -70,19 +70,16 @@ class FilledConsole:
         self.run("kinship-plan", str(file), "--robot", str(ROBOTS[robot][0]), "--task", TASK, "--machine", f"cell of the {robot}", "--report",
                  "--outbox", str(self.server.folder / "outbox"), "--output", str(self.server.folder / "results.jsonl"), *options)
 
-    def newest(self, *words: str) -> str:
-        """The newest attempt's UUID."""
-        return json.loads(self.run("kinship", "attempts", "list", "--json", "--limit", "1", *words))["rows"][0]["report_uuid"]
-
-    def guided(self) -> str:
-        rows = json.loads(self.run("kinship", "attempts", "list", "--json", "--outcome", "solved"))["rows"]
-        return next(row["report_uuid"] for row in rows if row["record"]["sampling_mode"] == "guided")
+    def attempts(self, *words: str) -> "list[dict]":
+        """Of the task, the newest first."""
+        return json.loads(self.run("kinship", "attempts", "list", "--json", "--limit", "0", "--task", TASK, *words))["rows"]
 
 
 def main(folder: pathlib.Path) -> None:
     console = FilledConsole()
     try:
-        names = {"failed": console.newest("--outcome", "unsolved"), "guided": console.guided()}
+        guided = (row["report_uuid"] for row in console.attempts("--outcome", "solved") if row["record"]["sampling_mode"] == "guided")
+        names = {"failed": console.attempts("--outcome", "unsolved")[-1]["report_uuid"], "guided": next(guided)}
         with Browser(WIDTH, 900) as browser:
             browser.prefer("light")
             browser.driver.get(console.link)

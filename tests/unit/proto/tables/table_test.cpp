@@ -51,7 +51,8 @@ TEST(Table, GoesOnInASecondLineWhereItIsTooWideAndCutsWhatMayBeCut) {
   EXPECT_EQ(uncut.str(),
             "ID        ROBOT                MADE OF\n"
             "3f9a0c11  a_robot_with_a_name  default,\n"
-            "                               only panda\n"
+            "                               only\n"
+            "                               panda\n"
             "                               iiwa14\n");
   std::ostringstream wide;
   set_table_layout(wide, {36, true});
