@@ -22,11 +22,12 @@ ROBOTS = {"my_arm": (ROOT / "docs/tutorial/my_arm", "-0.35 0 0 0 0 0 1"), "ur10e
 WIDTH = 1100  # of a window, CSS pixels
 # Each: file, part of the page that is shown (its height), condition that the page is complete
 PICTURES = {
-    "fleet": ("/", 760, "document.querySelector('table[aria-label=\"What guidance saves\"] tbody').rows.length"),
-    "slow": ("/slow", 620, "document.querySelector('table[aria-label=\"Unsolved\"] tbody').rows.length"),
+    "fleet": ("/", 700, "document.querySelectorAll('.series path').length === 4 && document.querySelectorAll('.events .report').length > 9"),
+    "slow": ("/slow", 700, "document.querySelector('table[aria-label=\"Unsolved\"] tbody').rows.length"),
     "failed": ("/attempts/{failed}", 900, "document.querySelector('.figure canvas')"),
-    "beside": ("/attempts/{guided}", 900, "document.querySelector('#beside canvas')"),
+    "beside": ("/attempts/{guided}", 720, "document.querySelector('#beside canvas')"),
 }
+SCROLLED = {"failed": "#player", "beside": "#beside"}  # the parts whose ends are shown
 
 
 class FilledConsole:
@@ -87,9 +88,12 @@ def main(folder: pathlib.Path) -> None:
             for name, (path, height, condition) in PICTURES.items():
                 browser.resize(WIDTH, height)
                 browser.driver.get(f"http://{console.host}{path.format(**names)}")
+                if name == "fleet":
+                    browser.wait("document.querySelector('#live').dataset.state === 'live'")
+                    console.plan("my_arm", "--guidance", "none")
                 browser.wait(condition)
-                if name == "beside":
-                    browser.run("document.querySelector('#beside').scrollIntoView()")
+                if name in SCROLLED:
+                    browser.run("document.querySelector(arguments[0]).scrollIntoView({block: 'end'})", SCROLLED[name])
                 browser.settle()
                 Image.fromarray(browser.picture()).save(folder / f"console_{name}.webp", quality=80, method=6)
     finally:

@@ -247,7 +247,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     if (known.length) choose(byId("places").lastChild, known[known.length - 1]);
     if (!search || record.outcome === "solved") return;
     byId("why").hidden = false;
-    const most = search.blockers[0];
+    const most = search.last_free.length ? search.blockers[0] : null; // else no search was begun, and the reason names them
     byId("why-text").textContent = [sentence(search.reason), most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${several(most.count, "configuration")} not free, more than any other pair.` : "",
                                     search.goal_contacts.length ? `${several(new Set(search.goal_contacts.map((contact) => contact.goal)).size, "goal configuration")} of ${count(search.goals.length)} touched something.` : ""]
       .filter(Boolean).join(" ") || "Nothing was recorded of it.";

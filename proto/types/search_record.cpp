@@ -110,12 +110,14 @@ std::string why_text(const SearchRecord& search) {
   const auto add = [&text](const char* between, const std::string& part) {
     text += (text.empty() ? "" : between) + part;
   };
-  for (std::size_t i = 0; i < std::min(kTold, search.blockers.size()); ++i) {
+  const Eigen::VectorXd& free = search.last_free;
+  const bool names_them = !text.empty() && free.size() == 0;  // no search was begun
+  const std::size_t told = names_them ? 0 : std::min(kTold, search.blockers.size());
+  for (std::size_t i = 0; i < told; ++i) {
     const Blocker& blocker = search.blockers[i];
     add(i > 0 ? ", " : "; ", "'" + blocker.first + "' touches '" + blocker.second + "' (" +
                                  std::to_string(blocker.count) + ")");
   }
-  const Eigen::VectorXd& free = search.last_free;
   if (free.size() > 0 && search.goals.cols() > 0 && search.goals.rows() == free.size()) {
     std::array<char, 64> distance{};
     std::snprintf(distance.data(), distance.size(), "%.2f from a goal",

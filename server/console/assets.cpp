@@ -17,8 +17,8 @@ namespace {
 constexpr std::string_view kShell = "shell.html";
 constexpr std::array kStyles = {"page.css", "plots.css", "console.css"};
 /// Those that every page needs, in the order in which they run.
-constexpr std::array kScripts = {"page.js",     "console.js", "tables.js",  "series.js", "fleet.js",
-                                 "listings.js", "slow.js",    "figures.js", "start.js"};
+constexpr std::array kScripts = {"page.js", "console.js",  "tables.js",  "series.js", "fleet.js",
+                                 "slow.js", "listings.js", "figures.js", "start.js"};
 
 std::string type_of(std::string_view name) {
   if (name.ends_with(".css"))

@@ -3,12 +3,10 @@ import json
 import os
 import pathlib
 import re
-import statistics
 import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "docs" / "drawings"))
@@ -111,7 +109,7 @@ class Attempts(unittest.TestCase):
                          [row["report_uuid"][:8] for row in sorted((r for r in self.rows if r["record"]["outcome"] == "solved"),
                                                                    key=lambda r: -r["record"]["planning_time_s"])[:3]])
         self.assertEqual(len(slowest), min(200, len(times)))
-        self.assertTrue(any(row["samples"].startswith("guided, ") for row in slowest))
+        self.assertTrue(any(row["sampling"].startswith("guided, ") for row in slowest))
 
     def test_rows_are_of_a_robot_and_a_link_keeps_that(self):
         self.open("/slow")

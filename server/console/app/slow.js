@@ -8,11 +8,16 @@
   const timeText = (ms) => new Date(ms).toISOString().slice(0, 19).replace("T", " ");
   const isSolved = (a) => a.record.outcome === "solved";
 
-  /// What the planner's options say of the gate that turns guidance off, and of a plan begun anew without it.
+  /// What the planner's options say of the gate, which draws uniformly where a distribution is far from the query.
   const gateText = (options) => (/\bgate=fired\b/.test(options) ? ", by its gate uniform" : "");
   const samplingText = ({sampling_mode: mode, share, planner_options: options}) =>
     (mode === "guided" ? `guided, ${percent(share)}` : mode) + gateText(options);
   const timeOf = ({planning_time_s: time, time_limit_s: limit}) => seconds(time) + (limit ? ` of ${fixed(limit, limit < 10 ? 1 : 0)}\u202fs` : "");
+
+  function checksOf({collision_checks: checks, planner_options: options}) {
+    const [, most] = /\bmax_checks=(\d+)/.exec(options) || [];
+    return count(checks) + (most ? ` of ${count(Number(most))}` : "");
+  }
 
   /// Why an attempt failed, or took long: its search record's words, else what is known without one.
   function whyOf(a, meanOf) {
@@ -24,12 +29,12 @@
 
   const columns = (meanOf) => [
     {title: "attempt", of: (a) => a.report_uuid, show: (a) => link("attempt", a.report_uuid, a.report_uuid.slice(0, 8)), kind: "text"},
-    {title: "why", of: (a) => whyOf(a, meanOf), kind: "long"},
+    {title: "why", of: (a) => whyOf(a, meanOf), kind: "reason"},
     {title: "task", of: (a) => a.task, show: (a) => link("task", a.task), kind: "text"},
     {title: "robot", of: (a) => a.label, show: (a) => link("robot", a.label || a.robot, a.label || a.robot.slice(0, 12)), kind: "text"},
     {title: "time", of: (a) => a.record.planning_time_s, show: (a) => timeOf(a.record)},
-    {title: "checks", of: (a) => a.record.collision_checks},
-    {title: "samples", of: (a) => samplingText(a.record), kind: "text"},
+    {title: "checks", of: (a) => a.record.collision_checks, show: (a) => checksOf(a.record)},
+    {title: "sampling", of: (a) => samplingText(a.record), kind: "text"},
     {title: "received, UTC", of: (a) => a.received_ms, show: (a) => timeText(a.received_ms), kind: "text"},
     {title: "planner", of: (a) => a.record.planner, kind: "text"},
     {title: "machine", of: (a) => a.machine, kind: "text"}];
