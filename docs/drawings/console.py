@@ -22,7 +22,7 @@ ROBOTS = {"my_arm": (ROOT / "docs/tutorial/my_arm", "-0.35 0 0 0 0 0 1"), "ur10e
 WIDTH = 1100  # of a window, CSS pixels
 # Each: file, part of the page that is shown (its height), condition that the page is complete
 PICTURES = {
-    "fleet": ("/", 700, "document.querySelectorAll('.series path').length === 4 && document.querySelectorAll('.events .report').length > 9"),
+    "fleet": ("/", 700, "[...document.querySelectorAll('.tile')].some(tile => tile.textContent === '561attempts')"),
     "slow": ("/slow", 700, "document.querySelector('table[aria-label=\"Unsolved\"] tbody').rows.length"),
     "failed": ("/attempts/{failed}", 900, "document.querySelector('.figure canvas')"),
     "beside": ("/attempts/{guided}", 720, "document.querySelector('#beside canvas')"),
@@ -90,10 +90,11 @@ def main(folder: pathlib.Path) -> None:
                 browser.driver.get(f"http://{console.host}{path.format(**names)}")
                 if name == "fleet":
                     browser.wait("document.querySelector('#live').dataset.state === 'live'")
-                    console.plan("my_arm", "--guidance", "none")
+                    for _ in range(20):
+                        console.plan("my_arm", "--guidance", "none")
                 browser.wait(condition)
                 if name in SCROLLED:
-                    browser.run("document.querySelector(arguments[0]).scrollIntoView({block: 'end'})", SCROLLED[name])
+                    browser.run("document.querySelector(arguments[0]).scrollIntoView({block: 'end', behavior: 'instant'})", SCROLLED[name])
                 browser.settle()
                 Image.fromarray(browser.picture()).save(folder / f"console_{name}.webp", quality=80, method=6)
     finally:

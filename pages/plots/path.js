@@ -34,11 +34,13 @@ const kinshipPath = (() => {
     element.append(make("div", {class: "scroll"}, table), make("div", {class: "panels wide"}, ...both.map((one, i) => make("div", {}, make("h3", {}, titleOf(one)), stages[i]))));
     const bodies = (q) => (q ? solids(q).links.concat(solids(q).held) : []);
     const startOf = ({path, search}) => (path ? path.waypoints[0] : search && search.start.length ? search.start : null);
+    const everywhere = both.flatMap(({path}) => (path ? metres(path.hand) : [])); // both are seen from one place
     const views = both.map((one, i) => kinshipView.show(stages[i], {
       label: `${one.attempt.record.sampling_mode}: ${one.attempt.record.outcome}`, from: [-1.2, -1.6, 0.9], layers: [
         {name: "scene", text: scene.length ? "obstacles" : "", color: "scene", opacity: 0.3, objects: scene},
         {name: "arm", color: "arm", opacity: 1, objects: bodies(startOf(one))},
-        {name: "way", text: one.path ? "way of the hand" : "", color: "path", ways: one.path ? [{positions: metres(one.path.hand), width: 0.01}] : []}]}));
+        {name: "way", text: one.path ? "way of the hand" : "", color: "path", ways: one.path ? [{positions: metres(one.path.hand), width: 0.01}] : []},
+        {name: "room", color: "scene", shown: false, points: [{positions: everywhere}]}]}));
     if (views.length === 2) {
       views[0].follow(views[1]);
       views[1].follow(views[0]);
