@@ -15,7 +15,6 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
 <section id="why" hidden>
   <h2>Why not</h2>
   <p id="why-text"></p>
-  <div class="scroll"><table id="blockers" hidden></table></div>
 </section>
 
 <section>
@@ -28,6 +27,12 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
   <div id="growth" hidden>
     <h3>The trees as they grew</h3>
   </div>
+</section>
+
+<section id="blockers-section" hidden>
+  <h2>What was in the way</h2>
+  <p class="note">Of the configurations that were looked at. Choose a pair to see it above.</p>
+  <div class="scroll"><table id="blockers"></table></div>
 </section>
 
 <section id="beside" hidden>
@@ -98,7 +103,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     byId("growth").hidden = grown.length === 0;
     if (grown.length === 0) return;
     const sum = grown.reduce((all, {nodes}) => all + nodes, 0);
-    byId("growth").append(kinshipPlayer.player("Growth of the trees", 1, 6, (part) => {
+    const growing = kinshipPlayer.player("Growth of the trees", 1, 6, (part) => {
       let shown = 0;
       for (const {name, nodes, edges} of grown) {
         const now = Math.max(1, Math.round(part * nodes));
@@ -106,7 +111,9 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
         shown += now;
       }
       return `${count(shown)} of ${several(sum, "node")}`;
-    }).element);
+    });
+    byId("growth").append(growing.element);
+    growing.put(1);
   }
 
   /// The same query by the other way of sampling, where the server found such an attempt.
@@ -188,7 +195,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     const solved = record.outcome === "solved";
     byId("kind").textContent = path ? "Kinship path" : "Kinship attempt";
     byId("title").replaceChildren(linked(robot.label, href("robot", robot.label)), " on \u201c", linked(attempt.task, href("task", attempt.task)), "\u201d");
-    byId("lead").textContent = `${attempt.report_uuid}: ${solved ? "solved" : record.outcome === "timeout" ? "not solved within its time limit" : "could not be planned"} ` +
+    byId("lead").textContent = `${attempt.report_uuid}: ${solved ? "solved" : record.outcome === "timeout" ? "not solved within its limits" : "could not be planned"} ` +
       `after ${several(record.collision_checks, "collision check")}, sampled ${record.sampling_mode}` + (path ? "." : solved ? "; its path is not kept." : ".");
     const least = (series) => (series.least === null ? "\u2013" : millimetresText(series.distance_m[series.least]));
     fillTiles(byId("tiles"), [
@@ -251,7 +258,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     byId("why-text").textContent = [sentence(search.reason), most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${several(most.count, "configuration")} not free, more than any other pair.` : "",
                                     search.goal_contacts.length ? `${several(new Set(search.goal_contacts.map((contact) => contact.goal)).size, "goal configuration")} of ${count(search.goals.length)} touched something.` : ""]
       .filter(Boolean).join(" ") || "Nothing was recorded of it.";
-    byId("blockers").hidden = search.blockers.length === 0;
+    byId("blockers-section").hidden = search.blockers.length === 0;
     fillTable(byId("blockers"), [["bodies", "configurations not free"], ...search.blockers.map(({first, second, count: times}) => [
       make("button", {type: "button", onclick: () => {
         const last = known[known.length - 1];

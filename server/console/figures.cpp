@@ -62,12 +62,14 @@ std::optional<Attempt> planned_otherwise(Questions& questions, const plots::Atte
     return std::abs(each.received_ms - received_ms);
   });
   newest.resize(std::min(newest.size(), kMaxCompared));
-  for (const AttemptSummary& each : newest) {
-    auto other =
-        questions.row<Attempt>({.verb = AdminVerb::ShowPath, .argument = each.report_uuid.text()});
-    if (plots::is_same_query(figure, other))
-      return other;
-  }
+  for (const AttemptSummary& each : newest)
+    try {
+      auto other = questions.row<Attempt>(
+          {.verb = AdminVerb::ShowPath, .argument = each.report_uuid.text()});
+      if (plots::is_same_query(figure, other))
+        return other;
+    } catch (const Failure&) {  // it is gone, or damaged: this is no fault of what is drawn
+    }
   return std::nullopt;
 }
 
@@ -109,7 +111,7 @@ bool Figures::has_kind(std::string_view kind) { return maker_of(kind) != nullptr
 
 const std::string& Figures::make(const std::string& kind, const std::string& name) {
   const Maker& maker = *maker_of(kind);
-  const Clock::time_point begin = Clock::now();
+  const Clock::time_point begin = now_();
   if (!maker.is_kept)
     return text_ = maker.make(questions_, name);
   const std::pair key(kind, name);
@@ -118,7 +120,7 @@ const std::string& Figures::make(const std::string& kind, const std::string& nam
   if (kept_.size() >= kMaxKept)
     kept_.clear();
   std::string text = maker.make(questions_, name);
-  const Clock::time_point end = Clock::now();
+  const Clock::time_point end = now_();
   return (kept_[key] = {std::move(text), end + kKeptPerTime * (end - begin)}).text;
 }
 

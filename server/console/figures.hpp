@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,8 +16,12 @@ namespace kinship::console {
 /// hundredth of a core. To be used by one thread.
 class Figures {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// \param questions  outlives the figures; answers while one is made.
-  explicit Figures(Questions& questions) : questions_(questions) {}
+  /// \param now        of the clock by which figures are kept.
+  explicit Figures(Questions& questions, std::function<Clock::time_point()> now = &Clock::now)
+      : questions_(questions), now_(std::move(now)) {}
 
   static bool has_kind(std::string_view kind);
 
@@ -26,13 +31,13 @@ class Figures {
   const std::string& make(const std::string& kind, const std::string& name);
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Kept {
     std::string text;
     Clock::time_point until;
   };
 
   Questions& questions_;
+  const std::function<Clock::time_point()> now_;
   std::string text_;  // the last one
   std::map<std::pair<std::string, std::string>, Kept> kept_;
 };

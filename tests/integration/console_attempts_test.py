@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "docs" / "drawings"))
@@ -108,7 +109,7 @@ class Attempts(unittest.TestCase):
         self.assertEqual([row["attempt"] for row in slowest[:3]],
                          [row["report_uuid"][:8] for row in sorted((r for r in self.rows if r["record"]["outcome"] == "solved"),
                                                                    key=lambda r: -r["record"]["planning_time_s"])[:3]])
-        self.assertEqual(len(slowest), min(200, len(times)))
+        self.assertEqual(len(slowest), min(50, len(times)))
         self.assertTrue(any(row["sampling"].startswith("guided, ") for row in slowest))
 
     def test_rows_are_of_a_robot_and_a_link_keeps_that(self):
@@ -128,7 +129,8 @@ class Attempts(unittest.TestCase):
         self.assertEqual({row["robot"] for row in self.table("Slowest of those solved")}, {"my_arm"})
 
     def test_from_a_failed_query_to_its_cause(self):
-        """The way of somebody who was told that a query failed: three clicks."""
+        """The way of somebody who was told that a query failed: two clicks."""
+        begin = time.monotonic()
         self.open("/")
         self.browser.click("#nav a[href='/slow']")
         self.browser.wait("document.querySelector(`table[aria-label='Unsolved']`)?.tBodies[0].rows.length")
@@ -139,6 +141,7 @@ class Attempts(unittest.TestCase):
         most = re.search(r"'([^']*)' touches '([^']*)' \(", first["why"]).groups()
         self.assertTrue(all(name in self.browser.text("#why-text") for name in most), self.browser.text("#why-text"))
         self.assertGreater(self.drawn("blocking")["objects"], 0)
+        print(f"from the fleet's page to the bodies in the way: {time.monotonic() - begin:.1f} s without the reader's")
 
     def test_what_touches_at_each_goal_is_marked(self):
         attempt = self.explained(needs_trees=False)

@@ -173,7 +173,7 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.column("Unsolved", 1), ["its time was over; no search record"])
         slowest = self.table("Slowest of those solved")
         self.assertEqual([slowest[0][i] for i in (1, 2, 3, 4, 9)],
-                         ["1.0 times the mean of its task and robot; no search record", "other", "panda", "7.50\u202fs of 10\u202fs", MACHINE])
+                         ["1.0 times the mean of its task and robot", "other", "panda", "7.50\u202fs of 10\u202fs", MACHINE])
         status = json.loads(self.console.kinship("status", "--json"))
         self.assertEqual(self.tile("attempts"), str(status["attempts"]))
         self.browser.click("[data-hours='1']")

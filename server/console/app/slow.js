@@ -4,7 +4,7 @@
   const {make, count, fixed, percent, seconds, fillTiles} = kinshipPage;
   const {page, link, rows, figure} = kinshipConsole;
   const periods = [["1", "hour"], ["24", "day"], ["168", "week"]];
-  const kShown = 200; // of each list
+  const kUnsolved = 200, kSlowest = 50; // that are shown
   const timeText = (ms) => new Date(ms).toISOString().slice(0, 19).replace("T", " ");
   const isSolved = (a) => a.record.outcome === "solved";
 
@@ -24,7 +24,7 @@
     const mean = meanOf(a);
     const times = isSolved(a) && mean > 0 ? `${fixed(a.record.planning_time_s / mean, 1)} times the mean of its task and robot` : "";
     const outcome = a.record.outcome === "timeout" ? "its time was over" : a.record.outcome === "failed" ? "could not be planned" : "";
-    return [times, a.why || outcome, a.has_search ? "" : "no search record"].filter(Boolean).join("; ");
+    return [times, a.why || outcome, a.has_search || isSolved(a) ? "" : "no search record"].filter(Boolean).join("; ");
   }
 
   const columns = (meanOf) => [
@@ -91,8 +91,8 @@
         for (const button of choice.querySelectorAll("button")) button.setAttribute("aria-pressed", String(button.dataset.hours === wanted.hours));
         try {
           const data = await figure("slow", wanted.hours);
-          const ask = (filter) => rows("find_attempts", {argument: `since_ms=${data.since_ms},${filter}`, task: wanted.task, robot: wanted.robot}, kShown);
-          const [failed, solved] = await Promise.all([ask("outcome=unsolved"), ask("outcome=solved,order=slowest")]);
+          const ask = (filter, most) => rows("find_attempts", {argument: `since_ms=${data.since_ms},${filter}`, task: wanted.task, robot: wanted.robot}, most);
+          const [failed, solved] = await Promise.all([ask("outcome=unsolved", kUnsolved), ask("outcome=solved,order=slowest", kSlowest)]);
           if (own !== reading) return;
           const kept = data.pairs.filter((pair) => (!wanted.task || pair.task === wanted.task) && (!wanted.robot || pair.robot === wanted.robot));
           means = new Map(data.pairs.map((pair) => [keyOf(pair.task, pair.robot), pair.time_s / pair.attempts]));
@@ -100,7 +100,7 @@
           robots.fill(data.pairs.map((pair) => pair.robot));
           const sum = (of) => kept.reduce((all, pair) => all + of(pair), 0);
           told.textContent = `Since ${timeText(data.since_ms)} UTC` + (data.is_whole ? "." : `; the newest ${count(data.attempts)} attempts of it.`) +
-            (failed.length === kShown ? ` Of the unsolved, the newest ${kShown}.` : "");
+            (failed.length === kUnsolved ? ` Of the unsolved, the newest ${kUnsolved}.` : "");
           tiles.replaceChildren();
           fillTiles(tiles, [[count(sum((pair) => pair.attempts)), "attempts"], [count(sum((pair) => pair.unsolved)), "of them unsolved"],
                             [seconds(sum((pair) => pair.time_s)), "planning time in all"], [count(kept.length), "pairs of task and robot"]]);
