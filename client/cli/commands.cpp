@@ -1,7 +1,6 @@
 #include "client/cli/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <ostream>
 #include <string>
 
@@ -48,9 +47,9 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_completion(app, session);
   try {
     manual::parse(app, argc, argv);
-    tables::set_table_layout(
-        out, {&out == &std::cout ? tables::width_of_terminal() : tables::TableLayout().width,
-              session.is_wide});
+    tables::TableLayout layout = tables::own_layout(out);
+    layout.is_wide = session.is_wide;
+    tables::set_table_layout(out, layout);
     const int code = session.command();
     if (!out.flush()) {
       err << "kinship: cannot write to standard output\n";

@@ -3,6 +3,7 @@
 const kinshipView = (() => {
   const {color, make, onColors, onSize} = kinshipPage;
   const {groupOf, dispose, ballsOf, edgesOf, bonesOfWay} = kinshipSolids;
+  const views = new WeakMap(); // by their figures
 
   function hasWebGl() {
     try {
@@ -214,7 +215,8 @@ const kinshipView = (() => {
   ///   points [{positions, size, opacity}]}. Solids and bones are those of pages/page/json_text.hpp.
   /// \return {replace(name, layer): other content, colour or text for a layer; show(name, shown); grow(name, lines, points):
   ///   only so many segments and points of it; follow(other): turns as another figure does; fit(); count(name): drawn solids,
-  ///   arms, ways, segments and points of a layer}. Without its figure in the page it gives back what it holds.
+  ///   arms, ways, segments and points of a layer, and what grow() left of it}; counts(figure, name) is the same from outside.
+  ///   Without its figure in the page it gives back what it holds.
   function show(figure, view) {
     const layers = view.layers.map((layer) => ({shown: true, fits: true, ...layer}));
     const isTurnable = hasWebGl();
@@ -254,7 +256,7 @@ const kinshipView = (() => {
       setAll();
       drawing.draw();
     });
-    return {
+    const shown = {
       replace(name, layer) {
         const index = indexOf(name);
         layers[index] = {...layers[index], ...layer};
@@ -269,7 +271,7 @@ const kinshipView = (() => {
       count(name) {
         const {objects = [], arms = [], ways = [], lines = [], points = []} = layers[indexOf(name)];
         const numbers = (list) => list.reduce((sum, each) => sum + each.positions.length, 0);
-        return {objects: objects.length, arms: arms.length, ways: ways.length, segments: numbers(lines) / 6, points: numbers(points) / 3};
+        return {objects: objects.length, arms: arms.length, ways: ways.length, segments: numbers(lines) / 6, points: numbers(points) / 3, grown: grown.get(name)};
       },
       grow(name, lines, points) {
         grown.set(name, [lines, points]);
@@ -286,7 +288,9 @@ const kinshipView = (() => {
         if (button) button.setAttribute("aria-pressed", String(shown));
       },
       fit: again};
+    views.set(figure, shown);
+    return shown;
   }
 
-  return {show};
+  return {show, counts: (figure, name) => views.get(figure).count(name)};
 })();

@@ -15,7 +15,6 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
 <section id="why" hidden>
   <h2>Why not</h2>
   <p id="why-text"></p>
-  <div class="scroll"><table id="blockers" hidden></table></div>
 </section>
 
 <section>
@@ -25,6 +24,20 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
   <figure id="scene"></figure>
   <div id="player"></div>
   <p class="note" id="place" aria-live="polite"></p>
+  <div id="growth" hidden>
+    <h3>The trees as they grew</h3>
+  </div>
+</section>
+
+<section id="blockers-section" hidden>
+  <h2>What was in the way</h2>
+  <p class="note">Of the configurations that were looked at. Choose a pair to see it above.</p>
+  <div class="scroll"><table id="blockers"></table></div>
+</section>
+
+<section id="beside" hidden>
+  <h2>The same query, planned otherwise</h2>
+  <p id="beside-text"></p>
 </section>
 
 <section id="clearance-section">
@@ -43,14 +56,6 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
   const scene = data.scene || [];
   const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : "");
   const millimetresText = (metre) => `${fixed(1000 * metre, metre < 0.01 ? 1 : 0)}\u2009mm`;
-
-  function configurationAt(place) {
-    const at = path.waypoints_at;
-    let i = 1;
-    while (i < at.length - 1 && at[i] <= place) ++i;
-    const part = at[i] > at[i - 1] ? (place - at[i - 1]) / (at[i] - at[i - 1]) : 0;
-    return path.waypoints[i].map((to, joint) => path.waypoints[i - 1][joint] + part * (to - path.waypoints[i - 1][joint]));
-  }
 
   const solids = (q) => kinshipChain.solidsOf(robot, q, base, data.held);
   /// Layers of the arm in a configuration; bodies of these names in the colour of what is in the way.
@@ -83,13 +88,45 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
   }
   const blockers = () => search.blockers.flatMap(({first, second}) => [first, second]);
 
-  function treeLayers() {
-    return ((search && search.trees) || []).map((tree, i) => {
-      const hand = metres(tree.hand);
-      const lines = tree.parents.flatMap((parent, node) => (parent < 0 ? [] : [...hand.slice(3 * parent, 3 * parent + 3), ...hand.slice(3 * node, 3 * node + 3)]));
-      return {name: `tree-${i}`, text: i === 0 ? "tree from the start" : "tree from the goals", color: i === 0 ? "tree-start" : "tree-goal",
-              lines: [{positions: lines, opacity: 0.7}], points: [{positions: hand, size: 0.014, opacity: 0.8}]};
+  const trees = ((search && search.trees) || []).map((tree, i) => {
+    const hand = metres(tree.hand);
+    const edges = tree.parents.flatMap((parent, node) => (parent < 0 ? [] : [[parent, node]]));
+    return {
+      name: `tree-${i}`, nodes: tree.parents.length, edges, text: i === 0 ? "tree from the start" : "tree from the goals", color: i === 0 ? "tree-start" : "tree-goal",
+      lines: [{positions: edges.flatMap((ends) => ends.flatMap((node) => hand.slice(3 * node, 3 * node + 3))), opacity: 0.7}],
+      points: [{positions: hand, size: 0.014, opacity: 0.8}]};
+  });
+
+  /// Grows the trees in the order in which their nodes came, each by the same part of it: between them no order is recorded.
+  function showGrowth({view}) {
+    const grown = trees.filter(({nodes}) => nodes > 0);
+    byId("growth").hidden = grown.length === 0;
+    if (grown.length === 0) return;
+    const sum = grown.reduce((all, {nodes}) => all + nodes, 0);
+    const growing = kinshipPlayer.player("Growth of the trees", 1, 6, (part) => {
+      let shown = 0;
+      for (const {name, nodes, edges} of grown) {
+        const now = Math.max(1, Math.round(part * nodes));
+        view.grow(name, edges.filter(([, node]) => node < now).length, now);
+        shown += now;
+      }
+      return `${count(shown)} of ${several(sum, "node")}`;
     });
+    byId("growth").append(growing.element);
+    growing.put(1);
+  }
+
+  /// The same query by the other way of sampling, where the server found such an attempt.
+  function showBeside() {
+    const other = data.others && data.others[0];
+    if (!other) return;
+    byId("beside").hidden = false;
+    const both = [{attempt, path, search}, other].sort((a, b) => (a.attempt.record.sampling_mode === "guided") - (b.attempt.record.sampling_mode === "guided"));
+    const ratio = both[0].attempt.record.collision_checks / both[1].attempt.record.collision_checks;
+    byId("beside-text").textContent = "One start, one goal, one scene" + (both.every((each) => each.attempt.record.outcome === "solved") && Number.isFinite(ratio)
+      ? `: with guidance ${ratio >= 1 ? `${fixed(ratio, 1)} times fewer` : `${fixed(1 / ratio, 1)} times more`} collision checks.` : ".");
+    kinshipPath.beside(byId("beside"), both, {scene, solids, titleOf: (one) => (one.attempt === attempt ? `${record.sampling_mode} (this one)`
+      : linked(one.attempt.record.sampling_mode, href("attempt", one.attempt.report_uuid)))});
   }
 
   function showScene() {
@@ -106,7 +143,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
         {name: "way", text: wayText, color: "path", ways: path ? [{positions: metres(path.hand), width: 0.01}] : []},
         {name: "start", text: start ? "start" : "", color: "start", opacity: 0.14, ...ghost(start)},
         {name: "goal", text: goal ? "goal" : "", color: "goal", opacity: 0.14, ...ghost(goal)},
-        ...treeLayers(),
+        ...trees,
         {name: "room", color: "scene", shown: false, points: [{positions: path ? metres(path.hand) : []}]}]});
     const put = (q, names = []) => {
       for (const [name, layer] of Object.entries(armLayers(q, names))) view.replace(name, layer);
@@ -158,7 +195,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     const solved = record.outcome === "solved";
     byId("kind").textContent = path ? "Kinship path" : "Kinship attempt";
     byId("title").replaceChildren(linked(robot.label, href("robot", robot.label)), " on \u201c", linked(attempt.task, href("task", attempt.task)), "\u201d");
-    byId("lead").textContent = `${attempt.report_uuid}: ${solved ? "solved" : record.outcome === "timeout" ? "not solved within its time limit" : "could not be planned"} ` +
+    byId("lead").textContent = `${attempt.report_uuid}: ${solved ? "solved" : record.outcome === "timeout" ? "not solved within its limits" : "could not be planned"} ` +
       `after ${several(record.collision_checks, "collision check")}, sampled ${record.sampling_mode}` + (path ? "." : solved ? "; its path is not kept." : ".");
     const least = (series) => (series.least === null ? "\u2013" : millimetresText(series.distance_m[series.least]));
     fillTiles(byId("tiles"), [
@@ -184,7 +221,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
       (path.steady.length ? ` Left out, as they stay at one distance: ${path.steady.map(({pair: [a, b], distance_m: distance}) => `${a} and ${b} at ${millimetresText(distance)}`).join(", ")}.` : "");
     byId("clearance-keys").append(keys([["path", "to the nearest obstacle"], ["uniform", "to itself"]]));
     const playing = kinshipPlayer.player("Place along the path", 1, 6, (place) => {
-      stage.put(configurationAt(place));
+      stage.put(kinshipPath.at(path, place));
       if (curve) curve.signal("at", place);
       byId("place").textContent = placeText(Math.round(place * (places - 1)));
       return place <= 0 ? "at the start" : place >= 1 ? "at the goal" : `${Math.round(100 * place)}\u202f% of the path`;
@@ -217,11 +254,11 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     if (known.length) choose(byId("places").lastChild, known[known.length - 1]);
     if (!search || record.outcome === "solved") return;
     byId("why").hidden = false;
-    const most = search.blockers[0];
+    const most = search.last_free.length ? search.blockers[0] : null; // else no search was begun, and the reason names them
     byId("why-text").textContent = [sentence(search.reason), most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${several(most.count, "configuration")} not free, more than any other pair.` : "",
                                     search.goal_contacts.length ? `${several(new Set(search.goal_contacts.map((contact) => contact.goal)).size, "goal configuration")} of ${count(search.goals.length)} touched something.` : ""]
       .filter(Boolean).join(" ") || "Nothing was recorded of it.";
-    byId("blockers").hidden = search.blockers.length === 0;
+    byId("blockers-section").hidden = search.blockers.length === 0;
     fillTable(byId("blockers"), [["bodies", "configurations not free"], ...search.blockers.map(({first, second, count: times}) => [
       make("button", {type: "button", onclick: () => {
         const last = known[known.length - 1];
@@ -234,6 +271,8 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
   const stage = showScene();
   if (path) showPath(stage);
   else showSearch(stage);
+  showGrowth(stage);
+  showBeside();
   return stage.view;
 };
 kinshipFigures.path = kinshipFigures.attempt;

@@ -120,7 +120,7 @@ Eigen::Matrix3Xd hands_of(const SearchTree& tree, const kinematics::Chain& chain
 }  // namespace
 
 AttemptFigure attempt_figure(Attempt attempt, const RobotDescription& description) {
-  AttemptFigure figure{std::move(attempt), drawn_robot(description), {}, {}, {}};
+  AttemptFigure figure{std::move(attempt), drawn_robot(description), {}, {}, {}, {}};
   const kinematics::Chain& chain = figure.drawn.robot.chain;
   const Attempt& known = figure.attempt;
   if (chain.digest() != known.robot || (known.path && known.path->dof() != chain.dof()))
@@ -218,25 +218,40 @@ std::vector<SceneObject> held_solids(const std::optional<RecordedScene>& scene) 
   return solids;
 }
 
-}  // namespace
-
-std::string to_json(const AttemptFigure& figure) {
+std::string record_json(const AttemptFigure& figure) {
   Attempt record = figure.attempt;
   record.path.reset();
   record.scene.reset();
   record.search.reset();
+  return json::to_json(record);
+}
+
+std::string search_json(const AttemptFigure& figure) {
+  return figure.attempt.search ? json_of(*figure.attempt.search, figure.tree_hands) : "null";
+}
+
+std::string path_json(const AttemptFigure& figure) {
+  return figure.path ? json_of(*figure.path, figure.attempt.path->waypoints()) : "null";
+}
+
+}  // namespace
+
+std::string to_json(const AttemptFigure& figure) {
   const std::optional<RecordedScene>& scene = figure.attempt.scene;
-  return object(
-      {{"attempt", json::to_json(record)},
-       {"robot", to_json(figure.drawn)},
-       {"scene", scene ? page::json_of(scene->objects) : "null"},
-       {"held", page::json_of(held_solids(scene))},
-       {"is_constrained", scene && scene->constraint ? "true" : "false"},
-       {"always_touching",
-        list(figure.always_touching, [](const auto& names) { return json_of(names); })},
-       {"search",
-        figure.attempt.search ? json_of(*figure.attempt.search, figure.tree_hands) : "null"},
-       {"path", figure.path ? json_of(*figure.path, figure.attempt.path->waypoints()) : "null"}});
+  return object({{"attempt", record_json(figure)},
+                 {"robot", to_json(figure.drawn)},
+                 {"scene", scene ? page::json_of(scene->objects) : "null"},
+                 {"held", page::json_of(held_solids(scene))},
+                 {"is_constrained", scene && scene->constraint ? "true" : "false"},
+                 {"always_touching",
+                  list(figure.always_touching, [](const auto& names) { return json_of(names); })},
+                 {"search", search_json(figure)},
+                 {"path", path_json(figure)},
+                 {"others", list(figure.others, [](const AttemptFigure& other) {
+                    return object({{"attempt", record_json(other)},
+                                   {"search", search_json(other)},
+                                   {"path", path_json(other)}});
+                  })}});
 }
 
 }  // namespace kinship::plots

@@ -38,6 +38,7 @@ struct AttemptFigure {
   std::vector<Eigen::Matrix3Xd> tree_hands;  ///< of each tree of its search record, as PathPlaces
   /// Pairs of names that are not compared, because they touch almost everywhere.
   std::vector<std::pair<std::string, std::string>> always_touching;
+  std::vector<AttemptFigure> others;  ///< of the same query, see is_same_query(): drawn beside it
 };
 
 /// \param description  of the attempt's robot, as the server keeps it.

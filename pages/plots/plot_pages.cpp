@@ -144,7 +144,8 @@ void write_figure(const FigurePage& figure, std::string title, std::string data,
   document.styles = {text("plots.css")};
   document.scripts = {text("plots.js")};
   if (figure.draws_scenes)
-    document.scripts.push_back(text("chain.js"));
+    for (const char* const file : {"chain.js", "path.js"})
+      document.scripts.push_back(text(file));
   for (const std::string& file : {figure.name + ".js", std::string("draw.js")})
     document.scripts.push_back(text(file));
   document.draws_scenes = figure.draws_scenes;

@@ -1,5 +1,6 @@
 #include "proto/security/certificate.hpp"
 
+#include <arpa/inet.h>
 #include <openssl/bio.h>
 #include <openssl/bn.h>
 #include <openssl/err.h>
@@ -8,6 +9,7 @@
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 
@@ -21,13 +23,30 @@ constexpr std::chrono::days kClockSlack{1};
 /// One extension in the words of OpenSSL's configuration.
 struct Extension {
   int nid;
-  const char* value;
+  std::string value;
 };
 
-std::vector<Extension> extensions_of(Use use) {
+bool is_address(const std::string& host) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  return inet_pton(AF_INET, host.c_str(), bytes.data()) == 1 ||
+         inet_pton(AF_INET6, host.c_str(), bytes.data()) == 1;
+}
+
+/// "DNS:localhost,IP:127.0.0.1"
+std::string alternative_names(const std::vector<std::string>& hosts) {
+  std::string names;
+  for (const std::string& host : hosts) {
+    if (!is_host(host))
+      throw Failure(ErrorCode::InvalidInput, "certificate: '" + host + "' is no host");
+    names += (names.empty() ? "" : ",") + std::string(is_address(host) ? "IP:" : "DNS:") + host;
+  }
+  return names;
+}
+
+std::vector<Extension> extensions_of(const CertificateText& text) {
   const Extension subject{NID_subject_key_identifier, "hash"};
   const Extension issuer{NID_authority_key_identifier, "keyid"};
-  switch (use) {
+  switch (text.use) {
     case Use::Authority:  // an authority that is crossed stands between it and what it vouches for
       return {{NID_basic_constraints, "critical,CA:TRUE,pathlen:1"},
               {NID_key_usage, "critical,keyCertSign,cRLSign"},
@@ -47,6 +66,13 @@ std::vector<Extension> extensions_of(Use use) {
       return {{NID_basic_constraints, "critical,CA:FALSE"},
               {NID_key_usage, "critical,digitalSignature"},
               {NID_ext_key_usage, "critical,emailProtection"},
+              subject,
+              issuer};
+    case Use::Host:
+      return {{NID_basic_constraints, "critical,CA:FALSE"},
+              {NID_key_usage, "critical,digitalSignature"},
+              {NID_ext_key_usage, "serverAuth"},
+              {NID_subject_alt_name, alternative_names(text.hosts)},
               subject,
               issuer};
   }
@@ -81,14 +107,15 @@ void set_validity(x509_st& certificate, const Validity& validity) {
   set(X509_getm_notAfter(&certificate), validity.end);
 }
 
-void add_extensions(x509_st& certificate, x509_st& issuer, Use use) {
+void add_extensions(x509_st& certificate, x509_st& issuer, const CertificateText& text) {
   X509V3_CTX context;
   X509V3_set_ctx(&context, &issuer, &certificate, nullptr, nullptr, 0);
-  for (const Extension& wanted : extensions_of(use)) {
+  for (const Extension& wanted : extensions_of(text)) {
     const std::unique_ptr<X509_EXTENSION, decltype(&X509_EXTENSION_free)> extension(
-        X509V3_EXT_conf_nid(nullptr, &context, wanted.nid, wanted.value), &X509_EXTENSION_free);
+        X509V3_EXT_conf_nid(nullptr, &context, wanted.nid, wanted.value.c_str()),
+        &X509_EXTENSION_free);
     if (!extension || X509_add_ext(&certificate, extension.get(), -1) != 1)
-      throw_openssl(std::string("certificate: extension ") + wanted.value);
+      throw_openssl("certificate: extension " + wanted.value);
   }
 }
 
@@ -106,7 +133,7 @@ Certificate make_certificate(const CertificateText& text, evp_pkey_st& subject_k
   set_name(X509_get_subject_name(certificate.get()), text.name);
   if (X509_set_issuer_name(certificate.get(), X509_get_subject_name(&signer)) != 1)
     throw_openssl("certificate of '" + text.name + "': issuer");
-  add_extensions(*certificate, signer, text.use);
+  add_extensions(*certificate, signer, text);
   if (X509_sign(certificate.get(), &issuer_key, EVP_sha256()) == 0)
     throw_openssl("certificate of '" + text.name + "': signature");
   return certificate;
@@ -121,6 +148,26 @@ std::chrono::sys_seconds time_of(const ASN1_TIME* time, const std::string& what)
 }
 
 }  // namespace
+
+bool is_host(std::string_view text) {
+  constexpr std::size_t kMostBytes = 253;
+  const auto is_letter = [](char letter) {
+    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+           (letter >= '0' && letter <= '9') || letter == '-' || letter == '.';
+  };
+  return is_address(std::string(text)) ||
+         (!text.empty() && text.size() <= kMostBytes && std::ranges::all_of(text, is_letter));
+}
+
+bool names_host(x509_st& certificate, const std::string& host) {
+  constexpr unsigned kNotTheSubject = X509_CHECK_FLAG_NEVER_CHECK_SUBJECT;
+  const bool is_named =
+      is_address(host)
+          ? X509_check_ip_asc(&certificate, host.c_str(), kNotTheSubject) == 1
+          : X509_check_host(&certificate, host.c_str(), host.size(), kNotTheSubject, nullptr) == 1;
+  ERR_clear_error();
+  return is_named;
+}
 
 Validity valid_for(std::chrono::days days, std::chrono::sys_seconds now) {
   return {now - kClockSlack, now + days};

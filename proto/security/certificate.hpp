@@ -25,7 +25,8 @@ enum class Use {
   Authority,         ///< issues certificates
   CrossedAuthority,  ///< for the key of another authority, which issues certificates
   Identity,          ///< of a participant: signs no documents
-  Documents          ///< signs governance and permissions: of no participant
+  Documents,         ///< signs governance and permissions: of no participant
+  Host               ///< of a web server, which browsers know by its names: of no participant
 };
 
 /// Content of a new certificate.
@@ -33,7 +34,14 @@ struct CertificateText {
   std::string name;  ///< common name; the organization is Kinship
   Use use = Use::Identity;
   Validity validity;
+  std::vector<std::string> hosts = {};  ///< of Use::Host: names and addresses, see is_host()
 };
+
+/// Whether a text is a host's name (letters, digits, - and dots, 253 bytes at most) or an address.
+bool is_host(std::string_view text);
+
+/// Whether a certificate is for a host, by its subjectAltName.
+bool names_host(x509_st& certificate, const std::string& host);
 
 /// A new key: EC P-256.
 Key make_key();
@@ -42,6 +50,7 @@ Key make_key();
 Certificate make_authority(const CertificateText& text, evp_pkey_st& key);
 
 /// A certificate for `subject_key`, signed with the key of `issuer`.
+/// \throws Failure(InvalidInput) for hosts that are none.
 Certificate issue(const CertificateText& text, evp_pkey_st& subject_key, x509_st& issuer,
                   evp_pkey_st& issuer_key);
 

@@ -114,6 +114,21 @@ CredentialList::Row server_row(const std::filesystem::path& folder, std::chrono:
   return row;
 }
 
+bool is_good(const HostCertificate& files, const std::vector<std::string>& hosts,
+             const std::vector<Certificate>& trusted, std::chrono::sys_seconds now) {
+  try {
+    const auto certificates = certificates_from_pem(read_file(files.certificate), "certificate");
+    const Key key = key_from_pem(read_file(files.key), "key");
+    return !certificates.empty() && belongs_to(*key, *certificates.front()) &&
+           !check_issued(*certificates.front(), trusted, now + kWarnedBefore) &&
+           std::ranges::all_of(hosts, [&](const std::string& host) {
+             return names_host(*certificates.front(), host);
+           });
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
 /// Names of clients, neither revoked nor expired, that `property` holds for.
 std::vector<std::string> names_of(const CredentialList& list, bool CredentialList::Row::*property) {
   std::vector<std::string> names;
@@ -308,6 +323,27 @@ CredentialList SecurityFolder::list(std::chrono::sys_seconds now) const {
         });
   }
   return list;
+}
+
+HostCertificate SecurityFolder::host_certificate(const std::vector<std::string>& hosts,
+                                                 std::chrono::sys_seconds now) const {
+  const std::filesystem::path folder = folder_ / "console";
+  HostCertificate files{folder / "certificate.pem", folder / "key.pem"};
+  const files::LockFile lock = lock_folder(folder_);
+  if (is_good(files, hosts, authority_.trusted(), now))
+    return files;
+  const Authority issuer = authority_.for_server().issuer;
+  const Key key = make_key();
+  const Certificate certificate = issue({.name = "Kinship console",
+                                         .use = Use::Host,
+                                         .validity = within(issuer, kDefaultDays, now),
+                                         .hosts = hosts},
+                                        *key, *issuer.certificate, *issuer.key);
+  if (!std::filesystem::exists(folder))
+    make_private_folder(folder);
+  replace_file(files.key, to_pem(*key), Readers::Owner);
+  replace_file(files.certificate, to_pem(*certificate), Readers::Everybody);
+  return files;
 }
 
 std::filesystem::path SecurityFolder::replace_server(std::chrono::days days,

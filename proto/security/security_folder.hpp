@@ -24,6 +24,11 @@ struct NewClient {
   std::chrono::days days = kDefaultDays;
 };
 
+/// Files of a certificate for browsers.
+struct HostCertificate {
+  std::filesystem::path certificate, key;
+};
+
 /// The folder of a fleet's security: authority, the server's credentials, records of clients.
 ///
 /// Each function throws Failure that names the thing, its value and a remedy. Several processes may
@@ -101,6 +106,14 @@ class SecurityFolder {
   /// \return the file of the previous authority's key; empty if it is kept elsewhere.
   std::filesystem::path retire_authority(std::chrono::days server_days,
                                          std::chrono::sys_seconds now);
+
+  /// The certificate that names these hosts, DIR/console, of the authority that issues the
+  /// server's: the one that is there, or a new one for a year if that lacks a host, is not of a
+  /// trusted authority, or is valid for less than 30 days.
+  /// \throws Failure if one is needed and cannot be made, e.g. because the authority's key is kept
+  ///         elsewhere.
+  HostCertificate host_certificate(const std::vector<std::string>& hosts,
+                                   std::chrono::sys_seconds now) const;
 
   std::filesystem::path server_credentials() const { return folder_ / "server"; }
   std::filesystem::path clients() const { return folder_ / "clients"; }

@@ -102,7 +102,8 @@ std::vector<std::size_t> Table::shown(bool is_wide) const {
 }
 
 std::vector<std::size_t> Table::widths(const std::vector<std::size_t>& columns,
-                                       std::size_t most) const {
+                                       const TableLayout& layout) const {
+  const std::size_t most = layout.is_wide ? std::numeric_limits<std::size_t>::max() : layout.width;
   std::vector<std::size_t> widths, least;
   for (const std::size_t column : columns) {
     std::size_t natural = 0, words = 0;
@@ -111,7 +112,8 @@ std::vector<std::size_t> Table::widths(const std::vector<std::size_t>& columns,
       words = std::max(words, longest_word(row[column]));
     }
     widths.push_back(natural);
-    least.push_back(columns_[column].fit == Fit::Cut ? std::min(natural, kLeastCut) : words);
+    const bool is_cut = columns_[column].fit == Fit::Cut;
+    least.push_back(!is_cut ? words : layout.cuts ? std::min(natural, kLeastCut) : natural);
   }
   std::size_t total = kGap * (columns.size() - 1);
   for (const std::size_t width : widths)
@@ -135,8 +137,7 @@ void Table::print(std::ostream& out) const {
   }
   const TableLayout layout = table_layout(out);
   const std::vector<std::size_t> columns = shown(layout.is_wide);
-  const std::vector<std::size_t> most =
-      widths(columns, layout.is_wide ? std::numeric_limits<std::size_t>::max() : layout.width);
+  const std::vector<std::size_t> most = widths(columns, layout);
   std::vector<std::vector<std::vector<std::string>>> cells(rows_.size());
   std::vector<std::size_t> used(columns.size(), 0);
   std::vector<bool> right(columns.size(), true);

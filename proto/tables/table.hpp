@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "proto/tables/table_layout.hpp"
+
 namespace kinship::tables {
 
 /// Treatment of a column if a table is wider than its layout.
@@ -38,7 +40,8 @@ class Table {
 
  private:
   std::vector<std::size_t> shown(bool is_wide) const;
-  std::vector<std::size_t> widths(const std::vector<std::size_t>& columns, std::size_t most) const;
+  std::vector<std::size_t> widths(const std::vector<std::size_t>& columns,
+                                  const TableLayout& layout) const;
 
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;  // headings first

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <string_view>
 
 #include "proto/types/names.hpp"
@@ -106,13 +107,22 @@ std::optional<Error> check_search(const SearchRecord& search) {
 std::string why_text(const SearchRecord& search) {
   constexpr std::size_t kTold = 3;
   std::string text = search.reason;
-  for (std::size_t i = 0; i < std::min(kTold, search.blockers.size()); ++i) {
+  const auto add = [&text](const char* between, const std::string& part) {
+    text += (text.empty() ? "" : between) + part;
+  };
+  const Eigen::VectorXd& free = search.last_free;
+  const bool names_them = !text.empty() && free.size() == 0;  // no search was begun
+  const std::size_t told = names_them ? 0 : std::min(kTold, search.blockers.size());
+  for (std::size_t i = 0; i < told; ++i) {
     const Blocker& blocker = search.blockers[i];
-    text += (i > 0          ? ", '"
-             : text.empty() ? "'"
-                            : "; '") +
-            blocker.first + "' touches '" + blocker.second + "' (" + std::to_string(blocker.count) +
-            ")";
+    add(i > 0 ? ", " : "; ", "'" + blocker.first + "' touches '" + blocker.second + "' (" +
+                                 std::to_string(blocker.count) + ")");
+  }
+  if (free.size() > 0 && search.goals.cols() > 0 && search.goals.rows() == free.size()) {
+    std::array<char, 64> distance{};
+    std::snprintf(distance.data(), distance.size(), "%.2f from a goal",
+                  (search.goals.colwise() - free).colwise().norm().minCoeff());
+    add("; ", std::string("last free configuration ") + distance.data());
   }
   return cut_text(text, kMaxWhyBytes);
 }

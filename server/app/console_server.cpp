@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <utility>
 
 #include "proto/security/admin_token.hpp"
+#include "proto/security/certificate.hpp"
 #include "proto/security/credentials.hpp"
 #include "proto/security/private_files.hpp"
 #include "proto/security/security_folder.hpp"
@@ -21,11 +23,33 @@ std::filesystem::path file_beside_store(const ServerOptions& options, const char
   return store += ending;
 }
 
-std::optional<http::CertificateFiles> certificate_of(const ServerOptions& options) {
+/// Names and addresses by which browsers may ask for the console.
+std::vector<std::string> hosts_of(const ServerOptions& options, const http::Address& address) {
+  std::vector<std::string> hosts = {"localhost", "127.0.0.1", "::1", http::name_of_this_machine()};
+  if (address.address != "0.0.0.0" && address.address != "::")
+    hosts.push_back(address.address);
+  hosts.insert(hosts.end(), options.console_hosts.begin(), options.console_hosts.end());
+  std::erase_if(hosts, [](const std::string& host) { return !security::is_host(host); });
+  return hosts;
+}
+
+/// One that names the hosts; without the authority's key the server's own, which names none.
+std::optional<http::CertificateFiles> certificate_of(const ServerOptions& options,
+                                                     const http::Address& address) {
   if (options.security.empty())
     return std::nullopt;
-  const security::CredentialFiles files(
-      security::SecurityFolder(options.security).server_credentials());
+  const security::SecurityFolder folder(options.security);
+  try {
+    const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    const security::HostCertificate own = folder.host_certificate(hosts_of(options, address), now);
+    return http::CertificateFiles{own.certificate, own.key};
+  } catch (const Failure& failure) {
+    spdlog::warn(
+        "the console shows the server's certificate, which names no host: browsers will "
+        "complain ({})",
+        failure.what());
+  }
+  const security::CredentialFiles files(folder.server_credentials());
   return http::CertificateFiles{files.certificate, files.key};
 }
 
@@ -37,7 +61,7 @@ std::optional<http::Port> open_console_port(const ServerOptions& options) {
   const http::Address address = http::read_address(options.console).value_or_throw();
   http::PortUse use{"the console", "--console"};
   if (!http::is_loopback(address))
-    use.tls = certificate_of(options);
+    use.tls = certificate_of(options, address);
   return http::Port(address, use);
 }
 

@@ -1,7 +1,7 @@
 #include "server/app/secure.hpp"
 
 #include <algorithm>
-#include <iostream>
+#include <ostream>
 #include <string>
 
 #include "proto/json/credential_list_json.hpp"
@@ -49,8 +49,7 @@ void print(const CredentialList& list, std::ostream& out) {
                    is_readable ? std::to_string(row.days_left) : "-",
                    is_readable ? narrowing(row) : row.message});
   }
-  tables::set_table_layout(out, {.width = &out == &std::cout ? tables::width_of_terminal()
-                                                             : tables::TableLayout().width});
+  tables::set_table_layout(out, tables::own_layout(out));
   table.print(out);
   for (const CredentialList::Authority& authority : list.authorities)
     out << authority.name << " (" << authority.fingerprint << "), expires "

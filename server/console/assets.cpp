@@ -9,6 +9,7 @@
 #include "pages/plots/plot_texts.hpp"
 #include "proto/types/sha256.hpp"
 #include "server/console/app_texts.hpp"
+#include "server/http/compression.hpp"
 
 namespace kinship::console {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 constexpr std::string_view kShell = "shell.html";
 constexpr std::array kStyles = {"page.css", "plots.css", "console.css"};
 /// Those that every page needs, in the order in which they run.
-constexpr std::array kScripts = {"page.js",     "console.js", "tables.js",  "series.js", "fleet.js",
-                                 "listings.js", "slow.js",    "figures.js", "start.js"};
+constexpr std::array kScripts = {"page.js", "console.js",  "tables.js",  "series.js", "fleet.js",
+                                 "slow.js", "listings.js", "figures.js", "start.js"};
 
 std::string type_of(std::string_view name) {
   if (name.ends_with(".css"))
@@ -52,8 +53,8 @@ Assets::Assets() {
 }
 
 void Assets::add(std::string_view name, std::string_view text) {
-  assets_.push_back(
-      {std::string(name), text, type_of(name), Sha256().add(text).finish().short_hex()});
+  assets_.push_back({std::string(name), text, http::gzip(text, http::Effort::Good), type_of(name),
+                     Sha256().add(text).finish().short_hex()});
 }
 
 const Asset* Assets::find(std::string_view name) const {

@@ -10,6 +10,7 @@ namespace kinship::console {
 struct Asset {
   std::string name;  ///< tables.js
   std::string_view text;
+  std::string gzipped;  ///< its text as gzip
   std::string type;     ///< of its content
   std::string version;  ///< of its text: in its address, so that it may be kept for ever
 };

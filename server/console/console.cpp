@@ -1,19 +1,22 @@
 #include "server/console/console.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "server/console/assets.hpp"
 #include "server/console/figures.hpp"
 #include "server/console/gate.hpp"
 #include "server/console/status_text.hpp"
+#include "server/http/compression.hpp"
 #include "server/runtime/worker_pool.hpp"
 
 namespace kinship::console {
 namespace {
 
 constexpr std::size_t kMaxConnections = 256;
-constexpr std::size_t kMaxFigures = 32;  // that wait
-constexpr int kNiceness = 10;            // of the thread that makes them
+constexpr std::size_t kMaxFigures = 32;   // that wait
+constexpr std::size_t kMinPacked = 1400;  // bytes: more than a packet
+constexpr int kNiceness = 10;             // of the thread that makes them
 
 http::Limits limits_of(const ConsoleOptions& options) {
   return {.connections = kMaxConnections,
@@ -22,6 +25,15 @@ http::Limits limits_of(const ConsoleOptions& options) {
           .body_bytes = 16'384,
           .hosts = options.hosts,
           .host_option = "--console-host"};
+}
+
+/// With its body as gzip, if that is worth it and not done.
+http::Reply packed(http::Reply reply) {
+  const auto is_encoding = [](const auto& field) { return field.first == "Content-Encoding"; };
+  if (reply.body.size() < kMinPacked || std::ranges::any_of(reply.fields, is_encoding))
+    return reply;
+  std::string body = http::gzip(reply.body, http::Effort::Fast);
+  return http::with_gzip(std::move(reply), std::move(body));
 }
 
 unsigned status_of(ErrorCode code) {
@@ -46,11 +58,15 @@ class Console::Implementation {
         questions_(service.administration(), options_.is_admin),
         gate_(options_.token, port.address().port, port.url().starts_with("https:")),
         link_(gate_.link(port.url())),
-        figures_({.threads = 1, .queue_limit = kMaxFigures, .niceness = kNiceness}),
+        figures_(questions_),
+        worker_({.threads = 1, .queue_limit = kMaxFigures, .niceness = kNiceness}),
         listener_(
             std::move(port),
             [this](const http::Request& request, const http::Answer& answer) {
-              handle(request, [answer](http::Reply reply) { answer(guarded(std::move(reply))); });
+              const bool packs = http::accepts_gzip(request);
+              handle(request, [answer, packs](http::Reply reply) {
+                answer(guarded(packs ? packed(std::move(reply)) : std::move(reply)));
+              });
             },
             limits_of(options_)) {
     broadcast_.start([&service] { return status_text(service); });
@@ -79,26 +95,28 @@ class Console::Implementation {
     if (is_api)
       return answer(message_reply(404, "there is no " + request.path));
     if (parts.size() == 2 && parts.front() == "assets")
-      return answer_asset(parts[1], answer);
+      return answer_asset(parts[1], http::accepts_gzip(request), answer);
     answer({.type = "text/html; charset=utf-8", .body = assets_.shell(options_.is_admin)});
   }
 
-  void answer_asset(const std::string& name, const http::Answer& answer) const {
+  void answer_asset(const std::string& name, bool packs, const http::Answer& answer) const {
     const Asset* const asset = assets_.find(name);
     if (asset == nullptr)
       return answer(http::text_reply(404, "there is no " + name));
-    answer({.type = asset->type,
-            .body = std::string(asset->text),
-            .fields = {{"Cache-Control", "public, max-age=31536000, immutable"}}});
+    http::Reply reply{.type = asset->type,
+                      .fields = {{"Cache-Control", "public, max-age=31536000, immutable"}}};
+    if (packs)
+      return answer(http::with_gzip(std::move(reply), asset->gzipped));
+    reply.body = asset->text;
+    answer(std::move(reply));
   }
 
   void answer_figure(const std::string& kind, const std::string& name, const http::Answer& answer) {
-    const FigureMaker make = figure_maker(kind);
-    if (make == nullptr)
+    if (!Figures::has_kind(kind))
       return answer(message_reply(404, "no figure of kind '" + kind + "'"));
-    const auto run = [this, make, name, answer] {
+    const auto run = [this, kind, name, answer] {
       try {
-        answer(json_reply(200, make(questions_, name)));
+        answer(json_reply(200, figures_.make(kind, name)));
       } catch (const Failure& failure) {
         answer(message_reply(status_of(failure.error().code), failure.error().message));
       } catch (const std::exception& exception) {
@@ -106,8 +124,8 @@ class Console::Implementation {
       }
     };
     const auto decline = [answer] { answer(message_reply(503, "the server is busy or stopping")); };
-    if (!figures_.submit(runtime::WorkerPool::Priority::Interactive,
-                         {.run = run, .abandon = decline}))
+    if (!worker_.submit(runtime::WorkerPool::Priority::Interactive,
+                        {.run = run, .abandon = decline}))
       decline();
   }
 
@@ -126,7 +144,8 @@ class Console::Implementation {
   const Assets assets_;
   const Gate gate_;
   const std::string link_;
-  runtime::WorkerPool figures_;
+  Figures figures_;  // used by the worker alone
+  runtime::WorkerPool worker_;
   http::Listener listener_;  // last: uses all of the above
 };
 

@@ -1,18 +1,45 @@
 #pragma once
 
+#include <chrono>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "server/console/questions.hpp"
 
 namespace kinship::console {
 
-/// Makes the JSON document of a figure (pages/plots), which asks the service and computes: not on
-/// the network's thread.
-/// \throws Failure, e.g. NotFound for a name that is not known.
-using FigureMaker = std::string (*)(Questions& questions, const std::string& name);
+/// Makes what pages draw. Figures of recent attempts, which open pages ask for again and again, are
+/// kept for a hundred times as long as they took: whatever number of pages asks, they take a
+/// hundredth of a core. To be used by one thread.
+class Figures {
+ public:
+  using Clock = std::chrono::steady_clock;
 
-/// The maker of a kind of figure; null if there is none.
-FigureMaker figure_maker(std::string_view kind);
+  /// \param questions  outlives the figures; answers while one is made.
+  /// \param now        of the clock by which figures are kept.
+  explicit Figures(Questions& questions, std::function<Clock::time_point()> now = &Clock::now)
+      : questions_(questions), now_(std::move(now)) {}
+
+  static bool has_kind(std::string_view kind);
+
+  /// \param kind  has_kind()
+  /// \param name  of the robot, task, distribution, path or attempt; hours of recent attempts
+  /// \return JSON. \throws Failure if there is none.
+  const std::string& make(const std::string& kind, const std::string& name);
+
+ private:
+  struct Kept {
+    std::string text;
+    Clock::time_point until;
+  };
+
+  Questions& questions_;
+  const std::function<Clock::time_point()> now_;
+  std::string text_;  // the last one
+  std::map<std::pair<std::string, std::string>, Kept> kept_;
+};
 
 }  // namespace kinship::console

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "pages/page/json_text.hpp"
 #include "proto/evidence/attempt_window.hpp"
 #include "proto/evidence/cost_ratio.hpp"
-#include "proto/json/admin_rows_json.hpp"
+#include "proto/types/attempt_filter.hpp"
 
 namespace kinship::console {
 namespace {
@@ -19,40 +17,14 @@ namespace {
 using page::json_string;
 using page::number;
 
-constexpr std::size_t kShown = 100;         // attempts of each list
 constexpr double kMaxHours = 24 * 366;      // of the past
 constexpr std::uint64_t kMinCompared = 10;  // attempts of either mode
 
 struct RecentAttempts {
   std::int64_t since_ms = 0;
   bool is_whole = true;
-  std::vector<AttemptSummary> attempts;  // in the order of arrival
+  std::vector<AttemptSummary> attempts;  // the newest first
 };
-
-/// The first attempt after a cursor of ListAttempts: the store's number of an attempt, which rises
-/// as they arrive.
-std::optional<AttemptSummary> attempt_after(Questions& questions, std::int64_t cursor) {
-  service::AdminPage page = questions.answer(
-      {.verb = AdminVerb::ListAttempts, .cursor = std::to_string(cursor), .limit = 1});
-  if (page.rows.empty())
-    return std::nullopt;
-  return std::get<AttemptSummary>(std::move(page.rows.front()));
-}
-
-/// The lowest cursor of ListAttempts for which a statement on the first attempt after it holds,
-/// which holds for all after the first: halving, as there is no list from the newest on.
-template <typename Holds>
-std::int64_t first_cursor(Questions& questions, const Holds& holds) {
-  std::int64_t low = 0, high = std::numeric_limits<std::int64_t>::max() / 2;
-  while (low < high) {
-    const std::int64_t middle = low + (high - low) / 2;
-    if (holds(attempt_after(questions, middle)))
-      high = middle;
-    else
-      low = middle + 1;
-  }
-  return low;
-}
 
 RecentAttempts read_recent(Questions& questions, const std::string& hours_text) {
   double hours = 24;
@@ -63,14 +35,11 @@ RecentAttempts read_recent(Questions& questions, const std::string& hours_text) 
   RecentAttempts recent;
   recent.since_ms = std::chrono::duration_cast<milliseconds>(now).count() -
                     static_cast<std::int64_t>(hours * 3.6e6);
-  const auto end = first_cursor(questions, [](const auto& next) { return !next; });
-  std::int64_t begin = first_cursor(
-      questions, [&](const auto& next) { return !next || next->received_ms >= recent.since_ms; });
-  const auto newest = end - static_cast<std::int64_t>(kMaxRecentAttempts);
-  recent.is_whole = begin >= newest;
-  begin = std::max(begin, newest);
+  AttemptFilter filter;
+  filter.since_ms = recent.since_ms;
   recent.attempts = questions.rows<AttemptSummary>(
-      {.verb = AdminVerb::ListAttempts, .cursor = std::to_string(begin)}, kMaxRecentAttempts);
+      {.verb = AdminVerb::FindAttempts, .argument = to_text(filter)}, kMaxRecentAttempts);
+  recent.is_whole = recent.attempts.size() < kMaxRecentAttempts;
   return recent;
 }
 
@@ -80,8 +49,6 @@ double time_of(const PlanningRecord& record) {
     return record.planning_time_s;
   return record.processor_time_s * (record.machine_speed > 0 ? record.machine_speed : 1);
 }
-
-std::string json_of(const AttemptSummary* attempt) { return json::to_json(*attempt); }
 
 using PairName = std::pair<std::string, std::string>;  // task, label of the robot
 
@@ -150,35 +117,24 @@ std::string json_of_all(const std::map<PairName, Value>& pairs) {
 
 std::string slow_figure(Questions& questions, const std::string& hours) {
   const RecentAttempts recent = read_recent(questions, hours);
-  std::vector<const AttemptSummary*> dearest, unsolved;
   std::map<PairName, PairCost> pairs;
   for (const AttemptSummary& attempt : recent.attempts) {
-    const bool is_solved = attempt.record.outcome == Outcome::Solved;
-    (is_solved ? dearest : unsolved).push_back(&attempt);
     PairCost& pair = pairs[pair_of(attempt)];
     ++pair.attempts;
-    pair.unsolved += is_solved ? 0 : 1;
+    pair.unsolved += attempt.record.outcome == Outcome::Solved ? 0 : 1;
     pair.time_s += time_of(attempt.record);
   }
-  std::ranges::stable_sort(dearest, std::greater(),
-                           [](const AttemptSummary* attempt) { return time_of(attempt->record); });
-  std::ranges::reverse(unsolved);
-  dearest.resize(std::min(dearest.size(), kShown));
-  unsolved.resize(std::min(unsolved.size(), kShown));
-  const auto json = [](const AttemptSummary* attempt) { return json_of(attempt); };
   return page::object({{"since_ms", std::to_string(recent.since_ms)},
                        {"attempts", std::to_string(recent.attempts.size())},
                        {"is_whole", recent.is_whole ? "true" : "false"},
-                       {"dearest", page::list(dearest, json)},
-                       {"unsolved", page::list(unsolved, json)},
                        {"pairs", json_of_all(pairs)}});
 }
 
 std::string savings_figure(Questions& questions, const std::string& hours) {
   const RecentAttempts recent = read_recent(questions, hours);
   std::map<PairName, PairSavings> pairs;
-  for (const AttemptSummary& attempt : recent.attempts)
-    pairs[pair_of(attempt)].add(attempt.record);
+  for (auto attempt = recent.attempts.rbegin(); attempt != recent.attempts.rend(); ++attempt)
+    pairs[pair_of(*attempt)].add(attempt->record);  // in the order of arrival
   std::erase_if(pairs, [](const auto& pair) { return pair.second.guided == 0; });
   return page::object({{"since_ms", std::to_string(recent.since_ms)},
                        {"attempts", std::to_string(recent.attempts.size())},

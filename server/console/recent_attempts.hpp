@@ -7,12 +7,10 @@
 /// Figures of the newest attempts, of all tasks and robots.
 namespace kinship::console {
 
-/// The dearest and the unsolved attempts of some time.
+/// What the attempts of some time cost, and how many found no path, by task and robot.
 /// \param hours  a number.
-/// \return {"since_ms", "attempts", "is_whole", "dearest": [attempt], "unsolved": [attempt],
-///         "pairs": [{"task", "robot", "attempts", "unsolved", "time_s"}]}, attempts as
-///         `attempts list --json` has them, the dearest and the newest first; is_whole: all of the
-///         time, else the newest kMaxRecentAttempts.
+/// \return {"since_ms", "attempts", "is_whole", "pairs": [{"task", "robot", "attempts", "unsolved",
+///         "time_s"}]}; is_whole: all of the time, else the newest kMaxRecentAttempts.
 std::string slow_figure(Questions& questions, const std::string& hours);
 
 /// What guidance saves, for each task and robot with guided and control attempts in some time.

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include "server/store/values/distribution_blob.hpp"
 #include "server/store/values/rehearsal_blob.hpp"
 #include "server/store/values/scene_blob.hpp"
+#include "server/store/values/search_blob.hpp"
 #include "server/store/values/waypoint_blob.hpp"
 #include "tests/fuzz/demand.hpp"
 
@@ -67,6 +69,15 @@ void try_rehearsal(Bytes bytes) {
            "a rehearsal comes back");
 }
 
+void try_search(Bytes bytes) {
+  const auto search = store::decode_search(bytes);
+  if (!search)
+    return;
+  const std::vector<std::uint8_t> blob = store::encode_search(*search);
+  const auto again = store::decode_search(blob);
+  demand(again && store::encode_search(*again) == blob, "a search record comes back");
+}
+
 }  // namespace
 }  // namespace kinship::fuzz
 
@@ -74,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0)
     return 0;
   const kinship::fuzz::Bytes bytes(data + 1, size - 1);
-  switch (data[0] % 4) {
+  switch (data[0] % 5) {
     case 0:
       kinship::fuzz::try_waypoints(bytes);
       break;
@@ -84,8 +95,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case 2:
       kinship::fuzz::try_distribution(bytes);
       break;
-    default:
+    case 3:
       kinship::fuzz::try_rehearsal(bytes);
+      break;
+    default:
+      kinship::fuzz::try_search(bytes);
   }
   return 0;
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
+#include <span>
 
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
@@ -10,6 +12,7 @@
 #include "server/store/values/distribution_blob.hpp"
 #include "server/store/values/rehearsal_blob.hpp"
 #include "server/store/values/scene_blob.hpp"
+#include "server/store/values/search_blob.hpp"
 #include "server/store/values/waypoint_blob.hpp"
 #include "tests/golden/every_value.hpp"
 #include "tests/golden/pins.hpp"
@@ -84,6 +87,23 @@ TEST(BlobPins, ScenesAreWrittenAsPinned) {
   attempt.scene = scene;
   const std::string pin = test::read_pin("json/attempt.txt");  // its first line is the document
   EXPECT_EQ(json::to_json(attempt), pin.substr(0, pin.find('\n')));
+}
+
+/// What is compressed is pinned, after its size, as a record is that compresses badly.
+TEST(BlobPins, SearchRecordsAreWrittenAsPinnedAndRead) {
+  const std::vector<std::uint8_t> blob = encode_search(test::every_search_record());
+  std::uint64_t size = 0;
+  ASSERT_GT(blob.size(), sizeof size);
+  std::memcpy(&size, blob.data(), sizeof size);
+  std::vector<std::uint8_t> plain(blob.begin(), blob.begin() + sizeof size);
+  const std::span<const std::uint8_t> rest(blob.begin() + sizeof size, blob.end());
+  const std::vector<std::uint8_t> content =
+      rest.size() == size ? std::vector(rest.begin(), rest.end()) : decompress(rest, size).value();
+  plain.insert(plain.end(), content.begin(), content.end());
+  test::expect_pinned_bytes("blob/search.hex", plain);
+  const auto read = decode_search(test::read_pinned_bytes("blob/search.hex"));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(encode_search(*read), blob);
 }
 
 TEST(BlobPins, WaypointsAreWrittenAsPinned) {

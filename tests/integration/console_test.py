@@ -1,91 +1,13 @@
 """The live console of a real kinshipd, in a browser: each page opened, clicked, narrow and wide, its numbers those of the CLI."""
-import http.client
 import json
-import os
-import pathlib
 import re
-import resource
-import socket
-import ssl
-import subprocess
-import time
 import unittest
 import urllib.parse
-import uuid
 
-import numpy as np
 from selenium.webdriver.common.keys import Keys
 
 from browser import Browser
-from kinshipd_process import Kinshipd
-
-MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
-TASK = "shelf:1"
-MACHINE = "<img src=x> & \"2\""  # what a page must not take for HTML
-READY = {"panda": np.array([0, -0.785, 0, -2.356, 0, 1.571, 0.785]), "ur10e": np.array([0, -1.2, 1.8, -2.2, -1.57, 0])}
-
-
-def attempt(robot: str, seed: int, task: str = TASK, **record) -> dict:
-    """A line of an experience file: the hand sweeps in front of the robot, a little different for every seed."""
-    waypoints = np.tile(READY[robot], (4, 1))
-    waypoints[:, 0] += -0.9 + 0.6 * np.arange(4)
-    waypoints += np.random.default_rng(seed).uniform(-0.1, 0.1, waypoints.shape)
-    known = {"outcome": "solved", "planner": "birrt", "planner_options": "", "planning_time_s": 0.5, "collision_checks": 1000,
-             "time_limit_s": 10, **record}
-    return {"report_uuid": str(uuid.UUID(int=seed + 1000 * sum((robot + task).encode()))), "task": task, "robot": robot, "machine": MACHINE,
-            "T_task_base": [0, 0, 0, 0, 0, 0, 1], "waypoints": waypoints.tolist() if known["outcome"] == "solved" else None,
-            "record": known, "scene": None}
-
-
-class ServedConsole:
-    """A kinshipd with a console, and what a browser would know of it."""
-
-    def __init__(self, *options: str):
-        self.server = Kinshipd()
-        self.server.start("--console", "127.0.0.1:0", "--rehearsal-cpu", "0", *options)
-        self.link = self.kinship("console").strip()
-        self.host, self.token = re.fullmatch(r"http://([^/]+)/\?token=(\w+)", self.link).groups()
-        self.cookie = f"kinship-console-{self.host.split(':')[1]}={self.token}"
-
-    def close(self) -> None:
-        self.server.__exit__(None, None, None)
-
-    def kinship(self, *words: str) -> str:
-        program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship"
-        done = subprocess.run([program, "--domain", str(self.server.domain), "--timeout", "30", *words], capture_output=True, text=True)
-        if done.returncode != 0:
-            raise AssertionError(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr}")
-        return done.stdout
-
-    def rows(self, *words: str) -> list:
-        return json.loads(self.kinship(*words, "--json"))["rows"]
-
-    def give(self, attempts: "list[dict]") -> None:
-        file = self.server.folder / "given.jsonl"
-        file.write_text("".join(json.dumps(each) + "\n" for each in attempts))
-        self.kinship("paths", "import", str(file))
-
-    def ask(self, path: str, method: str = "GET", body: "str | None" = None, **fields: str) -> http.client.HTTPResponse:
-        """A request with the cookie, unless it has another; names of fields with _ for -."""
-        connection = http.client.HTTPConnection(self.host, timeout=30)
-        named = {name.replace("_", "-"): value for name, value in {"Cookie": self.cookie, **fields}.items()}
-        connection.request(method, path, body, {name: value for name, value in named.items() if value})
-        reply = connection.getresponse()
-        reply.text = reply.read().decode()
-        connection.close()
-        return reply
-
-    def stream(self) -> socket.socket:
-        """A listener to the events, who does not read."""
-        address, port = self.host.split(":")
-        listener = socket.create_connection((address, int(port)), timeout=30)
-        listener.sendall(f"GET /api/events HTTP/1.1\r\nHost: {self.host}\r\nCookie: {self.cookie}\r\n\r\n".encode())
-        return listener
-
-
-def processor_time_s(pid: int) -> float:
-    """Of all threads that live, to the nanosecond."""
-    return sum(int(file.read_text().split()[0]) for file in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat")) / 1e9
+from served_console import MACHINE, MODELS, READY, TASK, ServedConsole, attempt
 
 
 class Pages(unittest.TestCase):
@@ -211,11 +133,47 @@ class Pages(unittest.TestCase):
         self.browser.press("th:nth-child(3) button", Keys.ENTER)
         self.assertEqual([int(n) for n in self.column("Tasks", 2)], rising[::-1])
 
+    def test_jobs_audit_and_clients_are_sorted_and_filtered(self):
+        for path, label, head in (("/jobs", "Jobs", "verb"), ("/audit", "Audit log", "outcome"), ("/clients", "Clients", "attempts")):
+            self.open(path)
+            before = self.table(label)
+            self.assertGreater(len(before), 0, label)
+            heads = self.browser.run("return [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] thead th`)].map(head => head.textContent)", label)
+            index = heads.index(head)
+            self.browser.press(f"th:nth-child({index + 1}) button", Keys.ENTER)
+            numeric = label == "Clients"
+            values = [float(text) if numeric else text for text in self.column(label, index)]
+            self.assertEqual(values, sorted(values), label)
+            self.browser.press("input[type=search]", "no such word")
+            self.assertEqual(self.table(label), [])
+            self.browser.element("input[type=search]").clear()
+            self.browser.press("input[type=search]", before[0][1].split()[0], Keys.SPACE)
+            self.assertGreater(len(self.table(label)), 0)
+
+    def test_the_keyboard_reaches_everything(self):
+        self.open("/")
+        self.browser.wait("document.querySelectorAll('#tiles .tile').length")
+        self.browser.run("document.activeElement.blur()")
+        self.browser.press("body", Keys.TAB)
+        self.assertEqual(self.browser.run("return document.activeElement.className"), "skip")
+        reached = []
+        for _ in range(40):
+            reached.append(self.browser.run("return document.activeElement.outerHTML.slice(0, 60)"))
+            self.browser.run("return document.activeElement").send_keys(Keys.TAB)
+        self.assertTrue(any('href="/slow"' in each for each in reached), reached)
+        self.assertTrue(any("data-hours" in each for each in reached), reached)
+        self.browser.run("document.querySelector('#nav a[href=\"/tasks\"]').focus()")
+        self.browser.run("return document.activeElement").send_keys(Keys.ENTER)
+        self.ready()
+        self.assertEqual(self.browser.run("return [location.pathname, document.activeElement.id, document.title]"), ["/tasks", "main", "Tasks \u2013 Kinship"])
+
     def test_slow_and_failed_attempts_are_those_reported(self):
         self.open("/slow")
         self.assertEqual(self.column("Unsolved", 0), [attempt("ur10e", 50)["report_uuid"][:8]])
-        dearest = self.table("Dearest of those solved")
-        self.assertEqual([dearest[0][2], dearest[0][3], dearest[0][5], dearest[0][9]], ["other", "panda", "7.50\u202fs", MACHINE])
+        self.assertEqual(self.column("Unsolved", 1), ["its time was over; no search record"])
+        slowest = self.table("Slowest of those solved")
+        self.assertEqual([slowest[0][i] for i in (1, 2, 3, 4, 9)],
+                         ["1.0 times the mean of its task and robot", "other", "panda", "7.50\u202fs of 10\u202fs", MACHINE])
         status = json.loads(self.console.kinship("status", "--json"))
         self.assertEqual(self.tile("attempts"), str(status["attempts"]))
         self.browser.click("[data-hours='1']")
@@ -248,162 +206,6 @@ class Pages(unittest.TestCase):
                                  Origin="http://" + self.console.host, Content_Type="application/json")
         self.assertEqual(reply.status, 403, reply.text)
         self.assertIn("--console-admin", reply.text)
-
-    def test_a_page_is_light_and_quick(self):
-        def first_paints(path: str) -> "list[float]":
-            paints = []
-            for _ in range(5):
-                self.browser.driver.get(f"http://{self.console.host}{path}")
-                paints.append(self.browser.wait("(performance.getEntriesByName('first-contentful-paint')[0] || {}).startTime"))
-            return paints
-
-        plain, page = first_paints("/assets/console.css"), first_paints("/")  # the browser's own share, on a machine that other tests use too
-        sizes = self.browser.run("return performance.getEntriesByType('resource').map(e => e.decodedBodySize)")
-        print(f"the fleet's page: {sum(sizes)} bytes, first paint after {min(page):.0f} ms, of a plain text {min(plain):.0f} ms")
-        self.assertLess(sum(sizes), 300_000)
-        self.assertLess(min(page) - min(plain), 500)
-
-
-class Guard(unittest.TestCase):
-    """What the console keeps out. A browser's part of it is in the browser, here are its requests."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.console = ServedConsole()
-        cls.addClassCleanup(cls.console.close)
-
-    def status(self, path: str = "/api/rows/status", **fields: str) -> int:
-        return self.console.ask(path, **fields).status
-
-    def test_without_the_token_nothing_is_told(self):
-        self.assertEqual(self.status(), 200)
-        for cookie in ("", "kinship-console=" + self.console.token, self.console.cookie + "0", self.console.cookie[:-1]):
-            for path in ("/", "/assets/console.js", "/api/rows/status", "/api/events", "/api/figures/slow/24"):
-                self.assertEqual(self.status(path, Cookie=cookie), 401, path)
-        self.assertEqual(self.status("/?token=" + "0" * 64, Cookie=""), 403)
-
-    def test_a_name_that_was_made_to_lead_here_is_not_served(self):
-        port = self.console.host.split(":")[1]
-        self.assertEqual(self.status(Host="localhost:" + port), 200)
-        for host in ("evil.example", "evil.example:" + port, "127.0.0.1.evil.example"):
-            self.assertEqual(self.status(Host=host), 421, host)
-
-    def test_other_pages_are_not_answered(self):
-        self.assertEqual(self.status(Sec_Fetch_Site="same-site", Sec_Fetch_Mode="no-cors"), 403)
-        self.assertEqual(self.status(Sec_Fetch_Site="cross-site", Sec_Fetch_Mode="cors"), 403)
-        self.assertEqual(self.status("/", Sec_Fetch_Site="cross-site", Sec_Fetch_Mode="navigate"), 200)
-
-    def test_every_reply_has_the_policy(self):
-        for path in ("/", "/api/rows/status", "/api/nothing", "/assets/console.js"):
-            for cookie in (self.console.cookie, ""):
-                reply = self.console.ask(path, Cookie=cookie)
-                self.assertTrue(reply.headers["Content-Security-Policy"].startswith("default-src 'self'; "), path)
-                self.assertNotIn("unsafe", reply.headers["Content-Security-Policy"])
-                self.assertIsNone(reply.headers["Access-Control-Allow-Origin"])
-        cookie = self.console.ask("/?token=" + self.console.token, Cookie="").headers["Set-Cookie"]
-        self.assertIn("; HttpOnly; SameSite=Strict;", cookie)
-
-    def test_token_and_link_are_for_their_owner(self):
-        store = self.console.server.folder / "store.db"
-        for ending in (".console", ".console-token"):
-            self.assertEqual(pathlib.Path(str(store) + ending).stat().st_mode & 0o777, 0o600, ending)
-
-    def test_a_thousand_connections_shut_nobody_out(self):
-        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-        resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
-        listener = self.console.stream()
-        self.assertIn(b"200 OK", listener.recv(100))
-        address, port = self.console.host.split(":")
-        held = [socket.create_connection((address, int(port)), timeout=30) for _ in range(1000)]
-        try:
-            self.assertEqual(self.status(), 200)
-            self.assertGreater(len(listener.recv(100_000)), 0)
-            self.assertLess(len(list(pathlib.Path(f"/proc/{self.console.server.pid}/fd").iterdir())), 400)
-        finally:
-            for each in [*held, listener]:
-                each.close()
-
-    def test_ten_open_pages_cost_little(self):
-        listeners = [self.console.stream() for _ in range(10)]
-
-        def share_of_a_core(seconds: float) -> float:
-            begin, time_s = time.monotonic(), processor_time_s(self.console.server.pid)
-            time.sleep(seconds)
-            return (processor_time_s(self.console.server.pid) - time_s) / (time.monotonic() - begin)
-
-        try:
-            for listener in listeners:
-                while b"event: status" not in listener.recv(100_000):
-                    pass
-            with_pages = share_of_a_core(5)
-            for listener in listeners:
-                self.assertGreaterEqual(listener.recv(100_000).count(b"event: status"), 4)
-        finally:
-            for listener in listeners:
-                listener.close()
-        time.sleep(2)  # until the server has noticed
-        without = share_of_a_core(5)
-        print(f"ten open pages: {100 * with_pages:.2f} % of a core, without {100 * without:.2f} %")
-        self.assertLess(with_pages - without, 0.01)
-
-
-class Changes(unittest.TestCase):
-    def test_are_confirmed_by_the_name_typed(self):
-        console = ServedConsole("--console-admin")
-        self.addCleanup(console.close)
-        console.kinship("robots", "register", str(MODELS / "panda"))
-        console.give([attempt("panda", 1, task="old")])
-        own = {"Origin": "http://" + console.host, "Content_Type": "application/json"}
-
-        def reset(confirm: str, **fields: str) -> int:
-            return console.ask("/api/rows/reset_task", "POST", json.dumps({"argument": "old", "confirm": confirm}), **{**own, **fields}).status
-
-        self.assertEqual(reset("old", Origin="http://evil.example"), 403)
-        self.assertEqual(reset("old", Origin=""), 403)
-        self.assertEqual(reset("old", Content_Type="text/plain"), 400)
-        self.assertEqual(reset("other"), 400)
-        self.assertEqual(console.ask("/api/rows/reset_task?argument=old").status, 405)
-        self.assertEqual([row["outcome"] for row in console.rows("audit")], [])
-        with Browser() as browser:
-            browser.driver.get(console.link)
-            browser.wait("document.querySelector('main[data-ready]')")
-            browser.driver.get(f"http://{console.host}/tasks/old")
-            browser.wait("document.querySelector('main[data-ready]')")
-            browser.click(".grave")
-            go = "dialog .grave"
-            browser.press("dialog input", "ol")
-            self.assertFalse(browser.element(go).is_enabled())
-            browser.press("dialog input", "d")
-            browser.click(go)
-            browser.wait("!document.querySelector('dialog')")
-            browser.check_console(self)
-        self.assertEqual([(row["name"], row["verb"], row["target"]) for row in console.rows("audit")][-1], ("console", "reset_task", "old"))
-
-
-class Networks(unittest.TestCase):
-    def test_other_networks_are_served_over_tls_alone(self):
-        with Kinshipd() as server:
-            program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinshipd"
-            plain = subprocess.run([program, "--store", server.folder / "none.db", "--domain", str(server.domain), "--console", "0.0.0.0:0"],
-                                   capture_output=True, text=True, timeout=60)
-            self.assertEqual(plain.returncode, 2)
-            self.assertIn("--console '0.0.0.0:0' is not loopback, and without --security", plain.stderr)
-            folder = server.folder / "security"
-            subprocess.run([program, "secure", "init", folder], check=True, capture_output=True, timeout=60)
-            server.start("--security", str(folder), "--console", "0.0.0.0:0")
-            link = (server.folder / "store.db.console").read_text()
-            port, token = re.fullmatch(r"https://[^/]+:(\d+)/\?token=(\w+)\n", link).groups()
-            trusted = ssl.create_default_context(cafile=folder / "server" / "ca.pem")
-            trusted.check_hostname = False  # it names the server, no host
-            connection = http.client.HTTPSConnection("127.0.0.1", int(port), context=trusted, timeout=30)
-            connection.request("GET", "/?token=" + token)
-            reply = connection.getresponse()
-            self.assertEqual(reply.status, 200, reply.read())
-            self.assertIn("; Secure", reply.headers["Set-Cookie"])
-            connection.close()
-            with socket.create_connection(("127.0.0.1", int(port)), timeout=30) as clear:
-                clear.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
-                self.assertNotIn(b"HTTP/1.1", clear.recv(1000))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ const kinshipTables = (() => {
   ///
   /// \param table.label    what a reader hears
   /// \param table.columns  each {title, of(row): the value that is sorted and filtered by, show(row): what is seen if that differs,
-  ///   kind: "text" or "long" for what is read from the left}
+  ///   kind: "text", "long" or "reason" (longer still) for what is read from the left}
   /// \param table.sort     [title, "ascending" or "descending"] at first; as they come without
   /// \param table.empty    what is said without rows
   /// \return {set(rows)}
@@ -34,7 +34,7 @@ const kinshipTables = (() => {
       return make("tr", {}, ...columns.map((column, i) => {
         const seen = column.show ? column.show(row) : column.of(row);
         const cell = seen === null || seen === undefined ? "\u2013" : typeof seen === "number" ? count(seen) : seen;
-        return make(i === 0 ? "th" : "td", {scope: i === 0 ? "row" : null, class: column.kind === "long" ? "text long" : column.kind || null}, cell);
+        return make(i === 0 ? "th" : "td", {scope: i === 0 ? "row" : null, class: {long: "text long", reason: "text long reason"}[column.kind] || column.kind || null}, cell);
       }));
     }
 

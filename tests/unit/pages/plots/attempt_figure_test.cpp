@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "pages/plots/same_query.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/robots.hpp"
@@ -150,6 +151,46 @@ TEST(AttemptFigure, WithoutPathAndSceneThereIsTheRobot) {
 
 TEST(AttemptFigure, AnotherRobotIsRefused) {
   EXPECT_THROW(attempt_figure(turning(), kinship::test::model_description("panda")), Failure);
+}
+
+TEST(AttemptFigure, TheSameQueryIsThatOfOneStartAndOneGoal) {
+  const AttemptFigure figure = figure_of(turning());
+  Attempt other = turning();
+  other.record.sampling_mode = SamplingMode::Guided;
+  Eigen::MatrixXd waypoints = other.path->waypoints();
+  waypoints(2, 1) += 0.3;  // another way between
+  waypoints(5, 2) += 2 * EIGEN_PI;
+  other.path = Path(waypoints);
+  EXPECT_TRUE(is_same_query(figure, other)) << "the same pose of the hand";
+  const auto changed = [&](const auto& change) {
+    Attempt attempt = other;
+    change(attempt);
+    return is_same_query(figure, attempt);
+  };
+  EXPECT_FALSE(changed([](Attempt& attempt) { attempt.T_task_base.reset(); }));
+  EXPECT_FALSE(changed([](Attempt& attempt) { attempt.path.reset(); })) << "nothing is known";
+  EXPECT_FALSE(changed([](Attempt& attempt) { attempt.robot = {}; }));
+  EXPECT_FALSE(changed([&](Attempt& attempt) {
+    Eigen::MatrixXd moved = waypoints;
+    moved(1, 0) += 1e-3;
+    attempt.path = Path(moved);
+  })) << "another start";
+  EXPECT_FALSE(changed([&](Attempt& attempt) {
+    Eigen::MatrixXd moved = waypoints;
+    moved(1, 2) += 0.01;
+    attempt.path = Path(moved);
+  })) << "another goal";
+  EXPECT_FALSE(changed([](Attempt& attempt) {
+    attempt.scene.emplace().objects.push_back(
+        {"wall", BoxShape{Eigen::Vector3d(1, 1, 1)}, Eigen::Isometry3d::Identity()});
+  }));
+  EXPECT_TRUE(changed([&](Attempt& attempt) {
+    SearchRecord& search = attempt.search.emplace();
+    search.start = waypoints.col(0);
+    search.goals = waypoints.rightCols<2>();
+    attempt.path.reset();
+    attempt.record.outcome = Outcome::Timeout;
+  })) << "one of the goals of a failed one";
 }
 
 }  // namespace

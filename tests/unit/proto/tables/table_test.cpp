@@ -45,6 +45,15 @@ TEST(Table, GoesOnInASecondLineWhereItIsTooWideAndCutsWhatMayBeCut) {
             "3f9a0c11  a_robot_wi..  default,\n"
             "                        only panda\n"
             "                        iiwa14\n");
+  std::ostringstream uncut;
+  set_table_layout(uncut, {.width = 36, .cuts = false});
+  table.print(uncut);
+  EXPECT_EQ(uncut.str(),
+            "ID        ROBOT                MADE OF\n"
+            "3f9a0c11  a_robot_with_a_name  default,\n"
+            "                               only\n"
+            "                               panda\n"
+            "                               iiwa14\n");
   std::ostringstream wide;
   set_table_layout(wide, {36, true});
   table.print(wide);

@@ -111,6 +111,18 @@ TEST_F(ConsoleTest, EveryPageIsTheShellWithItsScripts) {
   EXPECT_EQ(status(ask("GET /assets/no.js")), "404");
 }
 
+TEST_F(ConsoleTest, WhatIsLargeComesPackedToThoseWhoReadIt) {
+  const auto is_packed = [&](const std::string& path, const std::string& fields) {
+    return ask("GET " + path, fields).find("Content-Encoding: gzip\r\n") != std::string::npos;
+  };
+  const std::string accepts = "Accept-Encoding: gzip, br\r\n";
+  for (const char* const path : {"/", "/assets/console.js", "/api/rows/status"}) {
+    EXPECT_TRUE(is_packed(path, accepts)) << path;
+    EXPECT_FALSE(is_packed(path, "")) << path;
+  }
+  EXPECT_FALSE(is_packed("/api/figures/slow/24", accepts)) << "less than a packet";
+}
+
 TEST_F(ConsoleTest, RowsAreThoseOfTheVerb) {
   const std::string reply = ask("GET /api/rows/status");
   EXPECT_EQ(status(reply), "200");
