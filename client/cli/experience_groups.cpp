@@ -110,7 +110,8 @@ void add_tasks(CLI::App& app, Session& session) {
   add_experience(*tasks, session);
   add_plot(*tasks, session,
            {"plot", "task", "Its name",
-            "A page that shows a task's experience and the benefit of guidance over time",
+            "A page that shows a task's paths in space, and its experience and the benefit of guidance "
+            "over time",
             "kinship tasks plot box_to_shelf --output box_to_shelf.html"},
            plot_task);
 

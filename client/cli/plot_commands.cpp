@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "client/cli/cell_text.hpp"
+#include "client/cli/plot_look_up.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
 #include "pages/plots/plot_pages.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
-#include "proto/json/robot_description_json.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::cli {
@@ -43,23 +43,6 @@ std::optional<Distribution> find_distribution(link::Client& server, const Distri
     return json::distribution_from_json(*row).value_or_throw();
   code = refuse(kPlotDistribution, row.error(), err);
   return std::nullopt;
-}
-
-struct KnownRobot {
-  RobotSummary summary;
-  RobotDescription description;
-};
-
-/// \param name  a label, or the beginning of a digest.
-/// \throws Failure for rows that cannot be read.
-Result<KnownRobot> find_robot(link::Client& server, const std::string& name) {
-  const auto rows = link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = name});
-  if (!rows)
-    return rows.error();
-  if (rows->size() < 2)
-    return Error{ErrorCode::Internal, "the server answered without a row"};
-  return KnownRobot{json::row_from_json<RobotSummary>(rows->front()).value_or_throw(),
-                    json::robot_description_from_json(rows->back()).value_or_throw()};
 }
 
 /// The rows of one task: the client that asks for them, and the stream for its messages.
@@ -94,11 +77,13 @@ int plot_distribution(link::Client& server, const DistributionQuery& query,
   auto distribution = find_distribution(server, query, options.progress, err, code);
   if (code != kDone)
     return code;
-  const auto robot = find_robot(server, distribution->robot.hex());
-  if (!robot)
-    return refuse(kPlotDistribution, robot.error(), err);
   try {
-    plots::write_page(plots::plot_of(*std::move(distribution), robot->description), page.stream());
+    StatusLine progress(err, options.progress);
+    progress.show("searching the poses that its transfer lost ...");
+    const plots::LookUp look_up = look_up_of(server);
+    const auto figure = plots::distribution_figure(*std::move(distribution), look_up);
+    progress.clear();
+    plots::write_page(figure, page.stream());
   } catch (const Failure& failure) {
     return refuse(kPlotDistribution, failure.error(), err);
   }
@@ -121,7 +106,17 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
   if (attempts.empty())
     return refuse(kPlotTask,
                   {ErrorCode::NotFound, "nothing to plot: no attempt of task '" + task + "'"}, err);
-  plots::write_page(plots::history_of(task, std::move(attempts), distributions), page.stream());
+  const auto summary =
+      link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = task});
+  if (!summary)
+    return refuse(kPlotTask, summary.error(), err);
+  StatusLine progress(err, options.progress);
+  progress.show("reading its paths ...");
+  const plots::LookUp look_up = look_up_of(server);
+  const plots::TaskFigure figure{plots::history_of(task, std::move(attempts), distributions),
+                                 plots::task_paths(*summary, look_up)};
+  progress.clear();
+  plots::write_page(figure, page.stream());
   page.keep(err);
   return kDone;
 }

@@ -15,12 +15,14 @@ struct PlotOptions {
   bool progress = false;  ///< shown on `err`
 };
 
-/// `distributions plot`: a distribution over its robot, its components, marginals and sources.
+/// `distributions plot`: a distribution over its robot, the poses that its transfer lost, its
+/// components, marginals and sources.
 /// \return kNotFound for an unknown one, or one without experience or mixture.
 int plot_distribution(link::Client& server, const DistributionQuery& query,
                       const PlotOptions& options, std::ostream& out, std::ostream& err);
 
-/// `tasks plot`: the reports of a task over time, and the benefit of guidance.
+/// `tasks plot`: the newest paths of a task in space, its reports over time, and the benefit of
+/// guidance.
 /// \return kNotFound for an unknown task, or one without reports.
 int plot_task(link::Client& server, const std::string& task, const PlotOptions& options,
               std::ostream& out, std::ostream& err);

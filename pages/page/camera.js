@@ -57,5 +57,34 @@ const kinshipCamera = (() => {
     camera.updateMatrixWorld();
   }
 
-  return {fit, move};
+  /// The line that is drawn nearest to a point of the picture.
+  /// \param lines   [{positions: pairs of points}, ...]
+  /// \param at      [x, y] in the picture, from its upper left corner
+  /// \param size    [width, height] of the picture
+  /// \param within  so near, in the unit of both
+  /// \return {line, segment: its number}, or null
+  function nearestLine(camera, lines, [x, y], [width, height], within) {
+    camera.updateMatrixWorld();
+    const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
+    const place = (p, i) => { // null behind the camera
+      const w = m[3] * p[i] + m[7] * p[i + 1] + m[11] * p[i + 2] + m[15];
+      return w <= 0 ? null : [((m[0] * p[i] + m[4] * p[i + 1] + m[8] * p[i + 2] + m[12]) / w + 1) / 2 * width,
+                              (1 - (m[1] * p[i] + m[5] * p[i + 1] + m[9] * p[i + 2] + m[13]) / w) / 2 * height];
+    };
+    let found = null, least = within;
+    for (const line of lines)
+      for (let i = 0; i + 5 < line.positions.length; i += 6) {
+        const from = place(line.positions, i), to = place(line.positions, i + 3);
+        if (!from || !to) continue;
+        const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        const part = Math.max(0, Math.min(1, ((x - from[0]) * dx + (y - from[1]) * dy) / Math.max(1e-9, dx * dx + dy * dy)));
+        const distance = Math.hypot(from[0] + part * dx - x, from[1] + part * dy - y);
+        if (distance > least) continue;
+        least = distance;
+        found = {line, segment: i / 6};
+      }
+    return found;
+  }
+
+  return {fit, move, nearestLine};
 })();

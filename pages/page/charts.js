@@ -10,7 +10,7 @@ const kinshipCharts = (() => {
   /// another width or the colours change. Expressions are interpreted: no page needs to allow `eval`.
   /// \param label    what a reader hears who does not see it
   /// \param onPoint  called with the value of the scale "x" where somebody clicks
-  /// \return {signal(name, value): sets a signal of the specification}
+  /// \return {signal(name, value): sets a signal of the specification; draw(): what specOf says now}
   function show(element, label, specOf, onPoint) {
     element.setAttribute("role", "img");
     element.setAttribute("aria-label", label);
@@ -39,6 +39,7 @@ const kinshipCharts = (() => {
     onSize(element, draw);
     onColors(element, draw);
     return {
+      draw,
       signal(name, value) {
         signals.set(name, value);
         view.signal(name, value).run();

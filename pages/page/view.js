@@ -145,7 +145,7 @@ const kinshipView = (() => {
         if (layer.shown) drawLayer(layer);
     };
     return {
-      draw,
+      camera, draw,
       set(index, layer) { layers[index] = layer; },
       grow(index, lines, points) {
         const {lines: [line] = [], points: [cloud] = []} = layers[index].whole || layers[index];
@@ -192,6 +192,20 @@ const kinshipView = (() => {
     });
   }
 
+  /// Tells the owner of the line at which a reader clicks, without dragging; null beside all of them.
+  function listenToPicks(canvas, drawing, layers, onPick) {
+    const kNear = 12; // pixels
+    let pressed = null;
+    canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+    canvas.addEventListener("click", (event) => {
+      if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
+      const lines = layers.flatMap((layer) => (layer.shown && layer.lines ? layer.lines.filter((line) => line.owners) : []));
+      const {left, top, width, height} = canvas.getBoundingClientRect();
+      const found = kinshipCamera.nearestLine(drawing.camera, lines, [event.clientX - left, event.clientY - top], [width, height], kNear);
+      onPick(found && found.line.owners[found.segment]);
+    });
+  }
+
   /// A button for each layer with a text: pressed while the layer is shown.
   function legendOf(layers, toggle) {
     const legend = make("div", {class: "legend", role: "group", "aria-label": "What is shown"});
@@ -211,8 +225,9 @@ const kinshipView = (() => {
   /// \param view.from    direction from which one looks at first, [x, y, z]
   /// \param view.layers  each {name, color (of the style, without --), and any of: text (in the legend, which hides and
   ///   shows the layer; "": not now), shown (true), fits (true: the camera sees all of it), objects [{pose, box | cylinder | capsule |
-  ///   sphere}] with opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity}], ways [{positions: one line, width, color}],
+  ///   sphere}] with opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity, owners: of each pair, to be picked}], ways [{positions: one line, width, color}],
   ///   points [{positions, size, opacity}]}. Solids and bones are those of pages/page/json_text.hpp.
+  /// \param view.onPick  called with the owner of a line that is clicked, and with null for a click beside all of them
   /// \return {replace(name, layer): other content, colour or text for a layer; show(name, shown); grow(name, lines, points):
   ///   only so many segments and points of it; follow(other): turns as another figure does; fit(); count(name): drawn solids,
   ///   arms, ways, segments and points of a layer, and what grow() left of it}; counts(figure, name) is the same from outside.
@@ -234,7 +249,7 @@ const kinshipView = (() => {
       ? make("div", {class: "hint"},
              make("span", {}, matchMedia("(pointer: coarse)").matches
                ? "Tap it, then drag to turn and pinch to zoom."
-               : "Drag to turn. Click it, then scroll to zoom; or use the arrow keys, + and \u2212."),
+               : "Drag to turn. Click it, then scroll to zoom; or use the arrow keys, + and \u2212." + (view.onPick ? " Click a line to pick it." : "")),
              make("button", {type: "button", onclick: again}, "Reset view"))
       : make("div", {class: "hint"}, "A still projection: this browser has no WebGL.");
     figure.classList.add("view");
@@ -251,6 +266,7 @@ const kinshipView = (() => {
     setAll();
     refit(true);
     if (isTurnable) listen(canvas, drawing, again);
+    if (view.onPick) listenToPicks(canvas, drawing, layers, view.onPick);
     onSize(stage, () => (stage.isConnected ? refit(false) : drawing.close()));
     onColors(stage, () => {
       setAll();

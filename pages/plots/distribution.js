@@ -1,6 +1,6 @@
-// A distribution: the hand over its robot, joints, components, sources.
+// A distribution: the hand over its robot, poses that were lost, others that are kept, joints, components, sources.
 "use strict";
-kinshipFigures.distribution = (element, data) => {
+kinshipFigures.distribution = (element, data, {href = () => null} = {}) => {
   const {color, make, count, fixed, percent, seconds, several, listed, total, metres, fillTable, fillTiles} = kinshipPage;
   const byId = kinshipPlots.fill(element, `
 <header>
@@ -18,7 +18,10 @@ kinshipFigures.distribution = (element, data) => {
 <section>
   <h2>Where it puts the hand</h2>
   <p id="hands-text"></p>
+  <p id="lost-text"></p>
   <figure id="hands"></figure>
+  <div id="kept" class="sliders"></div>
+  <p id="kept-text" class="note" role="status"></p>
 </section>
 
 <section>
@@ -46,7 +49,11 @@ kinshipFigures.distribution = (element, data) => {
   const {distribution, label, components, marginals, postures} = data;
   const {sources, recommended_share: share, evidence} = distribution;
   const word = data.are_kernels ? "kernel" : "component";
-  const samples = data.hands.length / 3;
+  const {lost} = data;
+  const own = {hands: data.hands, marginals};
+  let shown = own; // by its samples: this distribution, or another that is kept
+  const samplesOf = ({hands}) => hands.length / 3;
+  const samples = samplesOf(own);
   const placement = distribution.T_task_base;
 
   function tell() {
@@ -89,14 +96,73 @@ kinshipFigures.distribution = (element, data) => {
       "means are not samples, and nothing of a scene is drawn.";
     const low = [0, 1, 2].map((axis) => Math.min(...data.hands.filter((n, i) => i % 3 === axis)));
     const high = [0, 1, 2].map((axis) => Math.max(...data.hands.filter((n, i) => i % 3 === axis)));
-    kinshipView.show(byId("hands"), {
+    return kinshipView.show(byId("hands"), {
       label: `${count(samples)} dots where the hand of ${label} is in samples, between ` +
         `${listed(["x", "y", "z"].map((axis, i) => `${axis} ${fixed(low[i] / 1000, 2)} and ${fixed(high[i] / 1000, 2)} m`))}, over the arm.`,
       from: [-1, -1.5, 0.8],
       layers: [
         {name: "first", text: `${label} in the heaviest mean`, color: "arm", arms: postures.slice(0, 1).map(({bones}) => ({bones}))},
         ...(postures.length > 1 ? [{name: "others", text: "in the next ones", color: "scene", arms: postures.slice(1).map(({bones}) => ({bones, opacity: 0.35}))}] : []),
-        {name: "samples", text: "hand, one dot a sample", color: "sample", points: [{positions: metres(data.hands), size: 0.024, opacity: 0.85}]}]});
+        {name: "samples", text: "hand, one dot a sample", color: "sample", points: cloud(own)},
+        ...lostLayers()]});
+  }
+
+  const cloud = ({hands}) => [{positions: metres(hands), size: 0.024, opacity: 0.85}];
+
+  /// By Loss: what became of a pose, and the layer that shows it.
+  const losses = [["out of reach", "unreached"], ["outside limits", "unreached"], ["not converged", "unreached"], ["colliding", "colliding"]];
+  const numberLost = (layer) => total(lost.sources.flatMap((source) => source.lost.filter((n, why) => losses[why][1] === layer)));
+
+  function lostLayers() {
+    const layer = (name, text, hue) => ({
+      name, text: numberLost(name) ? `${text} (${count(numberLost(name))})` : "", color: hue,
+      points: [{positions: metres(lost.places.filter((places, why) => losses[why][1] === name).flat()), size: 0.03, opacity: 0.9}]});
+    return [layer("unreached", "poses not reached", "blocking"), layer("colliding", "poses reached in collision only", "path")];
+  }
+
+  function tellLost() {
+    const searched = lost.sources.filter((source) => source.poses > 0), takenOver = lost.sources.filter((source) => source.taken_over > 0);
+    const parts = losses.map(([text], why) => [total(searched.map((source) => source.lost[why])), text]).filter(([n]) => n > 0);
+    const poses = total(searched.map((source) => source.poses));
+    byId("lost-text").textContent = lost.problem ? `Which poses its transfer lost is not shown: ${lost.problem}.`
+      : (poses ? `Red: poses of the sources’ paths that ${label} cannot take. Of ${several(poses, "pose")} of the newest paths (${
+        listed(searched.map((source) => `${count(source.paths)} of ${source.label}`))}) ` +
+        (parts.length ? `${listed(parts.map(([n, text]) => `${count(n)} ${n === 1 ? "is" : "are"} ${text}`))}. ` : "none is lost. ") +
+        "The server keeps numbers (see Sources), not poses: these were searched anew for this page, without the tracks of a transfer, which reach a few more. " : "") +
+        (takenOver.length ? `Paths of ${listed(takenOver.map((source) => source.label))} were taken over as they are, so nothing of them is lost.` : "");
+    if (numberLost("colliding")) byId("lost-text").append(" Orange: every configuration found touches the robot itself or the recorded scene.");
+  }
+
+  /// A slider over what is kept of the same robot, task and placement.
+  function showKept(view) {
+    const {kept} = data, at = kept.findIndex(({summary}) => summary.id === distribution.id);
+    const former = distribution.revision > 1 ? ` Of the ${several(distribution.revision - 1, "revision")} before this one, attempts name ${
+      distribution.revision === 2 ? "its number" : "their numbers"}, and nothing else is kept.` : "";
+    if (kept.length < 2 || at < 0) {
+      byId("kept-text").textContent = "The server keeps the newest revision of a distribution, and no other distribution of this robot, task and placement." + former;
+      return;
+    }
+    const describe = ({summary, engines}, i) => `${i + 1} of ${kept.length}: ${summary.id.slice(0, 12)}, revision ${summary.revision}` +
+      `${i === at ? " (this page\u2019s)" : ""}, profile \u201c${summary.profile}\u201d, made ${timeText(summary.fitted_ms)} of ${several(summary.paths, "path")}, ` +
+      `${several(summary.components, "component")}; ${engines}.`;
+    const tell = (i) => {
+      byId("kept-text").replaceChildren(describe(kept[i], i), i !== at && href("distribution", kept[i].summary.id)
+        ? make("span", {}, " ", make("a", {href: href("distribution", kept[i].summary.id)}, "Its page")) : "",
+        ` The server keeps the newest revision of each distribution: the slider goes over those of this robot, task and placement, by the time of their fits.${former}` +
+        (i === at ? "" : " The arm, weights and sources are still those of this page\u2019s distribution."));
+    };
+    const output = make("output", {}, `${at + 1} of ${kept.length}`);
+    const input = make("input", {type: "range", min: "0", max: String(kept.length - 1), value: String(at), "aria-label": "Kept distribution", oninput: () => {
+      const i = Number(input.value);
+      shown = i === at ? own : kept[i];
+      output.textContent = `${i + 1} of ${kept.length}`;
+      input.setAttribute("aria-valuetext", describe(kept[i], i));
+      view.replace("samples", {points: cloud(shown), text: i === at ? "hand, one dot a sample" : `hand, by ${kept[i].summary.id.slice(0, 12)}`});
+      redrawJoints();
+      tell(i);
+    }});
+    byId("kept").append(make("label", {}, make("span", {}, "Distributions kept, the oldest fit first"), output, input));
+    tell(at);
   }
 
   /// More of the samples than this in the outermost fiftieth of a joint's range: somebody should see it.
@@ -104,17 +170,18 @@ kinshipFigures.distribution = (element, data) => {
 
   function jointNote(marginal) {
     if (marginal.cut !== null) return `continuous: no limits; its circle is cut at ${fixed(marginal.cut, 2)} rad`;
-    const [low, high] = [marginal.counts[0] / samples, marginal.counts[marginal.counts.length - 1] / samples];
+    const drawn = samplesOf(shown);
+    const [low, high] = [marginal.counts[0] / drawn, marginal.counts[marginal.counts.length - 1] / drawn];
     const said = [[low, "lower"], [high, "upper"]].filter(([part]) => part > kCrowded)
       .map(([part, side]) => `${percent(part)} of the samples at the ${side} limit`);
     return said.length ? said.join(", ") : "";
   }
 
   function jointSpec(marginal) {
-    const width = (marginal.upper - marginal.lower) / marginal.counts.length;
+    const width = (marginal.upper - marginal.lower) / marginal.counts.length, drawn = samplesOf(shown);
     const bins = marginal.counts.map((n, i) => ({
-      from: marginal.lower + i * width, to: marginal.lower + (i + 1) * width, part: n / samples,
-      hue: marginal.cut === null && (i === 0 || i === marginal.counts.length - 1) && n / samples > kCrowded ? "limit" : "sample"}));
+      from: marginal.lower + i * width, to: marginal.lower + (i + 1) * width, part: n / drawn,
+      hue: marginal.cut === null && (i === 0 || i === marginal.counts.length - 1) && n / drawn > kCrowded ? "limit" : "sample"}));
     const margin = 0.03 * (marginal.upper - marginal.lower);
     const ends = marginal.cut === null ? [{at: marginal.lower, dash: [1, 0]}, {at: marginal.upper, dash: [1, 0]}] : [{at: marginal.cut, dash: [4, 3]}];
     return {
@@ -143,15 +210,35 @@ kinshipFigures.distribution = (element, data) => {
       ["sample", "samples", "block"],
       ["limit", `limit; bars of this colour: more than ${percent(kCrowded)} of the samples within a fiftieth of the range at a limit`],
       ...(marginals.some((m) => m.cut !== null) ? [["limit", "cut of a continuous joint", "dashed"]] : [])]));
-    for (const marginal of marginals) {
-      const note = jointNote(marginal);
-      const figure = panel(marginal.joint, note);
+    marginals.forEach((marginal, i) => {
+      const figure = panel(marginal.joint, " ");
       byId("joints").append(figure.panel);
+      jointPanels.push({...figure, drawn: chart(figure.chart, "", () => jointSpec(shown.marginals[i]))});
+    });
+    tellJoints();
+  }
+
+  const jointPanels = [];
+
+  function tellJoints() {
+    jointPanels.forEach((figure, i) => {
+      const marginal = shown.marginals[i], note = jointNote(marginal);
       const most = marginal.counts.indexOf(Math.max(...marginal.counts));
       const at = marginal.lower + (most + 0.5) * (marginal.upper - marginal.lower) / marginal.counts.length;
-      chart(figure.chart, `Joint ${marginal.joint}, ${fixed(marginal.lower, 2)} to ${fixed(marginal.upper, 2)} ${marginal.unit}: most samples ` +
-        `near ${fixed(at, 2)} ${marginal.unit}${note ? "; " + note : ""}.`, () => jointSpec(marginal));
-    }
+      figure.panel.querySelector(".note").textContent = note;
+      figure.chart.setAttribute("aria-label", `Joint ${marginal.joint}, ${fixed(marginal.lower, 2)} to ${fixed(marginal.upper, 2)} ${marginal.unit}: most samples ` +
+        `near ${fixed(at, 2)} ${marginal.unit}${note ? "; " + note : ""}.`);
+    });
+  }
+
+  /// Once for all changes before the next picture.
+  let joints = 0;
+  function redrawJoints() {
+    cancelAnimationFrame(joints);
+    joints = requestAnimationFrame(() => {
+      for (const figure of jointPanels) figure.drawn.draw();
+      tellJoints();
+    });
   }
 
   /// Digits behind the point with which the ticks of small weights differ.
@@ -284,8 +371,11 @@ kinshipFigures.distribution = (element, data) => {
 
   tell();
   showFacts();
-  showHands();
+  tellLost();
+  const view = showHands();
+  showKept(view);
   showJoints();
   showComponents();
   showSources();
+  return view;
 };

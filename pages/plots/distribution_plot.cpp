@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pages/plots/drawn_robot.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/turn.hpp"
@@ -82,10 +81,10 @@ std::vector<Eigen::Index> by_weight(const Mixture& mixture) {
   return order;
 }
 
-Eigen::MatrixXd draw_samples(const Distribution& distribution) {
+Eigen::MatrixXd draw_samples(const Distribution& distribution, Eigen::Index count) {
   const mixture::DistributionSampler sampler(distribution);
   std::mt19937_64 generator(kSeed);
-  Eigen::MatrixXd samples(sampler.dimension(), kSamplesShown);
+  Eigen::MatrixXd samples(sampler.dimension(), count);
   for (auto column : samples.colwise()) {
     const auto q = sampler.sample(generator);
     if (!q)
@@ -111,29 +110,34 @@ std::vector<Component> heaviest_components(const Mixture& mixture) {
   return components;
 }
 
-DistributionPlot plot_of(Distribution distribution, const RobotDescription& description) {
+Samples samples_of(const Distribution& distribution, const kinematics::Chain& chain,
+                   Eigen::Index count) {
+  const Eigen::MatrixXd qs = draw_samples(distribution, count);
+  Samples samples{Eigen::Matrix3Xd(3, qs.cols()), marginals_of(distribution, chain, qs)};
+  const auto T_task_base = distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  for (Eigen::Index i = 0; i < qs.cols(); ++i)
+    samples.hands.col(i) =
+        T_task_base * kinematics::T_base_transfer(chain, qs.col(i)).translation();
+  return samples;
+}
+
+DistributionPlot plot_of(Distribution distribution, const DrawnRobot& drawn) {
   if (!distribution.mixture)
     throw Failure(ErrorCode::NotFound, "nothing to plot: distribution " +
                                            distribution.id.short_hex() +
                                            " has no mixture: " + distribution.reason);
   DistributionPlot plot;
-  const DrawnRobot drawn = drawn_robot(description);
   const models::LoadedRobot& robot = drawn.robot;
   plot.shapes = drawn.shapes;
+  plot.label = robot.description.label;
   if (robot.chain.digest() != distribution.robot)
     throw Failure(ErrorCode::InvalidInput,
-                  "robot '" + description.label + "' is " + robot.chain.digest().short_hex() +
+                  "robot '" + plot.label + "' is " + robot.chain.digest().short_hex() +
                       ", the distribution is for " + distribution.robot.short_hex());
   const Eigen::Isometry3d T_task_base =
       distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
-  const Eigen::MatrixXd samples = draw_samples(distribution);
-  plot.label = description.label;
   plot.components = heaviest_components(*distribution.mixture);
-  plot.marginals = marginals_of(distribution, robot.chain, samples);
-  plot.hands.resize(3, samples.cols());
-  for (Eigen::Index i = 0; i < samples.cols(); ++i)
-    plot.hands.col(i) =
-        T_task_base * kinematics::T_base_transfer(robot.chain, samples.col(i)).translation();
+  plot.samples = samples_of(distribution, robot.chain, kSamplesShown);
   const Mixture& mixture = *distribution.mixture;
   for (const Eigen::Index k : by_weight(mixture)) {
     if (plot.postures.size() == kPostures)

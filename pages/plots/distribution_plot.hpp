@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pages/page/bones.hpp"
+#include "pages/plots/drawn_robot.hpp"
 #include "proto/types/distribution.hpp"
-#include "proto/types/robot_description.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::plots {
@@ -30,6 +30,18 @@ struct Marginal {
 /// \throws Failure(InvalidInput) if limits are not finite, or a lower one lies above its upper one.
 std::vector<Marginal> marginals_of(const Distribution& distribution, const kinematics::Chain& chain,
                                    const Eigen::Ref<const Eigen::MatrixXd>& samples);
+
+/// A distribution by samples of it.
+struct Samples {
+  Eigen::Matrix3Xd hands;  ///< origin of the transfer frame in the task frame, m: one per sample
+  std::vector<Marginal> marginals;
+};
+
+/// Seeded: equal distribution, equal samples.
+/// \param distribution  with a mixture, of the chain.
+/// \throws Failure(NotFound) if none of it lies within the limits; the errors of marginals_of.
+Samples samples_of(const Distribution& distribution, const kinematics::Chain& chain,
+                   Eigen::Index count);
 
 /// One Gaussian of a mixture, or kernel, by weight.
 struct Component {
@@ -53,8 +65,7 @@ struct DistributionPlot {
   Distribution distribution;
   std::string label;  ///< of its robot
   std::vector<Component> components;
-  Eigen::Matrix3Xd hands;  ///< origin of the transfer frame, m: one column per sample
-  std::vector<Marginal> marginals;
+  Samples samples;
   std::vector<Posture> postures;  ///< of the heaviest components, heaviest first
   std::string shapes;             ///< text on the known shapes of the robot
 };
@@ -63,9 +74,9 @@ inline constexpr std::size_t kSamplesShown = 2000;
 
 /// Draws the samples (seeded: equal distribution, equal plot) and places the robot in the task
 /// frame, or that of its base if the distribution has no placement.
-/// \param description  of the distribution's robot, as the server keeps it.
-/// \throws Failure(NotFound) if there is no mixture or none of it lies within the limits; the
-///         errors of drawn_robot; InvalidInput if it is of another robot.
-DistributionPlot plot_of(Distribution distribution, const RobotDescription& description);
+/// \param drawn  the distribution's robot, as the server keeps it.
+/// \throws Failure(NotFound) if there is no mixture or none of it lies within the limits;
+///         InvalidInput if it is of another robot.
+DistributionPlot plot_of(Distribution distribution, const DrawnRobot& drawn);
 
 }  // namespace kinship::plots

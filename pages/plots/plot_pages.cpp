@@ -7,6 +7,7 @@
 #include "pages/page/document.hpp"
 #include "pages/page/json_text.hpp"
 #include "pages/plots/plot_texts.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_answers_json.hpp"
 
@@ -36,6 +37,17 @@ std::string json_of(const Marginal& marginal) {
                  {"upper", number(marginal.upper)},
                  {"cut", number_or_null(marginal.cut)},
                  {"counts", list(marginal.counts, whole)}});
+}
+
+std::string json_of(const std::vector<Marginal>& marginals) {
+  return list(marginals, [](const Marginal& marginal) { return json_of(marginal); });
+}
+
+std::string json_of(const KeptDistribution& kept) {
+  return object({{"summary", json::to_json(kept.summary)},
+                 {"engines", json_string(kept.engines)},
+                 {"hands", page::millimetres(kept.samples.hands)},
+                 {"marginals", json_of(kept.samples.marginals)}});
 }
 
 std::string json_of(const Posture& posture) {
@@ -91,7 +103,8 @@ std::string json_of(const Revision& revision) {
 
 }  // namespace
 
-std::string to_json(const DistributionPlot& plot) {
+std::string to_json(const DistributionFigure& figure) {
+  const DistributionPlot& plot = figure.plot;
   Distribution distribution = plot.distribution;
   const std::optional<Mixture> mixture = std::exchange(distribution.mixture, std::nullopt);
   return object(
@@ -101,14 +114,16 @@ std::string to_json(const DistributionPlot& plot) {
        {"are_kernels", mixture->shares_covariance() ? "true" : "false"},
        {"components",
         list(plot.components, [](const Component& component) { return json_of(component); })},
-       {"hands", page::millimetres(plot.hands)},
-       {"marginals",
-        list(plot.marginals, [](const Marginal& marginal) { return json_of(marginal); })},
+       {"hands", page::millimetres(plot.samples.hands)},
+       {"marginals", json_of(plot.samples.marginals)},
        {"postures", list(plot.postures, [](const Posture& posture) { return json_of(posture); })},
-       {"shapes", json_string(plot.shapes)}});
+       {"shapes", json_string(plot.shapes)},
+       {"lost", to_json(figure.lost)},
+       {"kept", list(figure.kept, [](const KeptDistribution& kept) { return json_of(kept); })}});
 }
 
-std::string to_json(const TaskHistory& history) {
+std::string to_json(const TaskFigure& figure) {
+  const TaskHistory& history = figure.history;
   return object(
       {{"task", json_string(history.task)},
        {"from_ms", std::to_string(history.from_ms)},
@@ -116,7 +131,8 @@ std::string to_json(const TaskHistory& history) {
        {"bins", whole(history.bins)},
        {"robots", list(history.robots, [](const RobotHistory& robot) { return json_of(robot); })},
        {"revisions",
-        list(history.revisions, [](const Revision& revision) { return json_of(revision); })}});
+        list(history.revisions, [](const Revision& revision) { return json_of(revision); })},
+       {"space", to_json(figure.paths)}});
 }
 
 namespace {
@@ -127,6 +143,7 @@ std::string_view text(std::string_view file) { return page::text_of(plot_texts()
 struct FigurePage {
   std::string name, command;
   bool draws_scenes = false, draws_charts = false;
+  std::vector<std::string> parts = {};  ///< other files of its own
 };
 
 void write_figure(const FigurePage& figure, std::string title, std::string data,
@@ -144,8 +161,9 @@ void write_figure(const FigurePage& figure, std::string title, std::string data,
   document.styles = {text("plots.css")};
   document.scripts = {text("plots.js")};
   if (figure.draws_scenes)
-    for (const char* const file : {"chain.js", "path.js"})
-      document.scripts.push_back(text(file));
+    document.scripts.push_back(text("chain.js"));
+  for (const std::string& file : figure.parts)
+    document.scripts.push_back(text(file));
   for (const std::string& file : {figure.name + ".js", std::string("draw.js")})
     document.scripts.push_back(text(file));
   document.draws_scenes = figure.draws_scenes;
@@ -155,13 +173,15 @@ void write_figure(const FigurePage& figure, std::string title, std::string data,
 
 }  // namespace
 
-void write_page(const DistributionPlot& plot, std::ostream& out) {
+void write_page(const DistributionFigure& figure, std::ostream& out) {
+  const DistributionPlot& plot = figure.plot;
   write_figure({"distribution", "distributions plot", true, true},
-               plot.label + " on " + plot.distribution.task, to_json(plot), out);
+               plot.label + " on " + plot.distribution.task, to_json(figure), out);
 }
 
-void write_page(const TaskHistory& history, std::ostream& out) {
-  write_figure({"task", "tasks plot", false, true}, history.task, to_json(history), out);
+void write_page(const TaskFigure& figure, std::ostream& out) {
+  write_figure({"task", "tasks plot", true, true, {"task_space.js"}}, figure.history.task,
+               to_json(figure), out);
 }
 
 void write_page(const RobotFigure& figure, std::ostream& out) {
@@ -169,7 +189,7 @@ void write_page(const RobotFigure& figure, std::ostream& out) {
 }
 
 void write_page(const AttemptFigure& figure, const std::string& command, std::ostream& out) {
-  write_figure({"attempt", command, true, true},
+  write_figure({"attempt", command, true, true, {"path.js"}},
                figure.drawn.robot.description.label + " on " + figure.attempt.task, to_json(figure),
                out);
 }

@@ -6,9 +6,10 @@
 
 #include "pages/page/embedded_text.hpp"
 #include "pages/plots/attempt_figure.hpp"
-#include "pages/plots/distribution_plot.hpp"
+#include "pages/plots/distribution_figure.hpp"
 #include "pages/plots/robot_figure.hpp"
 #include "pages/plots/task_history.hpp"
+#include "pages/plots/task_paths.hpp"
 #include "proto/types/transferability.hpp"
 
 /// Pages of a server's data: one HTML document each, which needs no network (pages/page), with its
@@ -17,12 +18,19 @@ namespace kinship::plots {
 
 /// The distribution as in `distributions fetch --json`, without its mixture, and the data derived
 /// from it.
-std::string to_json(const DistributionPlot& plot);
+std::string to_json(const DistributionFigure& figure);
 
-std::string to_json(const TaskHistory& history);
+/// A task over time and in space.
+struct TaskFigure {
+  TaskHistory history;
+  TaskPaths paths;
+};
 
-void write_page(const DistributionPlot& plot, std::ostream& out);
-void write_page(const TaskHistory& history, std::ostream& out);
+/// That of the history, with the paths as member `space`.
+std::string to_json(const TaskFigure& figure);
+
+void write_page(const DistributionFigure& figure, std::ostream& out);
+void write_page(const TaskFigure& figure, std::ostream& out);
 void write_page(const RobotFigure& figure, std::ostream& out);
 
 /// \param command  that writes it: `paths plot` or `attempts plot`.

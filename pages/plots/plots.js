@@ -30,8 +30,8 @@ const kinshipPlots = (() => {
   /// Draws what `spec()` says, a Vega specification without a width, as wide as the element. See kinshipCharts.show.
   const chart = (element, label, spec, onPoint) => kinshipCharts.show(element, label, (width) => ({width, ...spec()}), onPoint);
 
-  const hueOf = (index) => "robot-" + index % 4;
-  const dashOf = (index) => (index < 4 ? [1, 0] : index < 8 ? [6, 3] : [2, 3]);
+  const hueOf = (index) => "robot-" + index % 8;
+  const dashOf = (index) => (index < 8 ? [1, 0] : index < 16 ? [6, 3] : [2, 3]);
 
   /// Of what a Date cannot hold, the first or the last that it can.
   const isoText = (ms) => new Date(Math.max(-8.64e15, Math.min(8.64e15, ms))).toISOString();

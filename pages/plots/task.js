@@ -1,6 +1,6 @@
-// A task over time: experience, solved attempts, what planning cost, what guidance was worth.
+// A task in space (task_space.js) and over time: experience, solved attempts, what planning cost, what guidance was worth.
 "use strict";
-kinshipFigures.task = (element, data) => {
+kinshipFigures.task = (element, data, {href = () => null} = {}) => {
   const {color, count, fixed, percent, several, listed, total, fillTable, fillTiles} = kinshipPage;
   const byId = kinshipPlots.fill(element, `
 <header>
@@ -9,6 +9,8 @@ kinshipFigures.task = (element, data) => {
   <p id="lead" class="lead"></p>
   <div id="tiles" class="tiles"></div>
 </header>
+
+<section id="space-section"></section>
 
 <section>
   <h2>Experience</h2>
@@ -83,7 +85,7 @@ kinshipFigures.task = (element, data) => {
     encode: {labels: {update: {text: {signal: `utcFormat(datum.value, +datum.value % ${kDay} === 0 ? '%b %d' : '${ofDay}')`}}}}});
   const seriesScale = () => ({name: "hue", type: "ordinal", domain: robots.map((robot) => robot.label), range: robots.map((r, i) => color(hueOf(i)))});
   const dashScale = () => ({name: "dash", type: "ordinal", domain: robots.map((robot) => robot.label), range: robots.map((r, i) => dashOf(i))});
-  const robotKeys = () => robots.map((robot, i) => [hueOf(i), robot.label, i < 4 ? "" : "dashed"]);
+  const robotKeys = () => robots.map((robot, i) => [hueOf(i), robot.label, i < 8 ? "" : "dashed"]);
 
   function experienceSpec() {
     const values = robots.flatMap((robot) => {
@@ -245,9 +247,11 @@ kinshipFigures.task = (element, data) => {
   }
 
   tell();
+  const view = kinshipTaskSpace.show(byId("space-section"), data, href);
   showExperience();
   showSolved();
   showChecks();
   showBenefit();
   showTables();
+  return view;
 };

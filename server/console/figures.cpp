@@ -14,27 +14,77 @@
 namespace kinship::console {
 namespace {
 
-constexpr std::size_t kMaxAttempts = 200'000;  // of a task's history
 constexpr std::size_t kMaxCompared = 100;      // attempts that may have had the same query
 constexpr std::size_t kMaxKept = 16;
 constexpr int kKeptPerTime = 100;
+constexpr std::size_t kMaxListed = 200'000;  // rows of a task's history
+
+std::vector<PathSummary> newest_paths(Questions& questions, AdminRequest request,
+                                      std::size_t most) {
+  std::vector<PathSummary> paths;
+  std::size_t in_use = 0;
+  request.limit = static_cast<std::uint32_t>(std::min<std::size_t>(most, kMaxPageRows));
+  do {
+    service::AdminPage page = questions.answer(request);
+    for (service::AdminRow& row : page.rows) {
+      paths.push_back(std::get<PathSummary>(std::move(row)));
+      if (paths.back().retired_ms == 0)
+        ++in_use;
+    }
+    request.cursor = page.next_cursor;
+  } while (!request.cursor.empty() && in_use < most);
+  return paths;
+}
+
+plots::LookUp look_up_of(Questions& questions) {
+  return {
+      .paths =
+          [&](const std::string& task, const std::optional<Digest>& robot, std::size_t most) {
+            return newest_paths(
+                questions,
+                {.verb = AdminVerb::ListPaths, .robot = robot ? robot->hex() : "", .task = task},
+                most);
+          },
+      .attempt =
+          [&](const Uuid& report) {
+            return questions.row<Attempt>({.verb = AdminVerb::ShowPath, .argument = report.text()});
+          },
+      .robot =
+          [&](const Digest& robot) {
+            return questions.row<RobotDescription>(
+                {.verb = AdminVerb::ShowRobot, .argument = robot.hex()});
+          },
+      .distributions =
+          [&](const std::string& task, const Digest& robot) {
+            return questions.rows<DistributionSummary>(
+                {.verb = AdminVerb::ListDistributions, .robot = robot.hex(), .task = task},
+                kMaxListed);
+          },
+      .distribution =
+          [&](const Digest& id) {
+            return questions.row<Distribution>(
+                {.verb = AdminVerb::ShowDistribution, .argument = id.hex()});
+          }};
+}
 
 std::string distribution_figure(Questions& questions, const std::string& id) {
   auto distribution =
       questions.row<Distribution>({.verb = AdminVerb::ShowDistribution, .argument = id});
-  const auto description = questions.row<RobotDescription>(
-      {.verb = AdminVerb::ShowRobot, .argument = distribution.robot.hex()});
-  return plots::to_json(plots::plot_of(std::move(distribution), description));
+  const plots::LookUp look_up = look_up_of(questions);
+  return plots::to_json(plots::distribution_figure(std::move(distribution), look_up));
 }
 
 std::string task_figure(Questions& questions, const std::string& task) {
   auto attempts =
-      questions.rows<AttemptSummary>({.verb = AdminVerb::ListAttempts, .task = task}, kMaxAttempts);
+      questions.rows<AttemptSummary>({.verb = AdminVerb::ListAttempts, .task = task}, kMaxListed);
   if (attempts.empty())
     throw Failure(ErrorCode::NotFound, "no attempt of task '" + task + "'");
   const auto distributions = questions.rows<DistributionSummary>(
-      {.verb = AdminVerb::ListDistributions, .task = task}, kMaxAttempts);
-  return plots::to_json(plots::history_of(task, std::move(attempts), distributions));
+      {.verb = AdminVerb::ListDistributions, .task = task}, kMaxListed);
+  const auto summary = questions.row<TaskSummary>({.verb = AdminVerb::ShowTask, .argument = task});
+  const plots::LookUp look_up = look_up_of(questions);
+  return plots::to_json({plots::history_of(task, std::move(attempts), distributions),
+                         plots::task_paths(summary, look_up)});
 }
 
 std::string robot_figure(Questions& questions, const std::string& label) {

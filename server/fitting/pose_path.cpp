@@ -6,7 +6,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/profile.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "server/transfer/resample.hpp"
+#include "robots/kinematics/resample.hpp"
 
 namespace kinship::fitting {
 namespace {
@@ -30,7 +30,7 @@ std::optional<PosePath> pose_path(const store::StoredPath& stored, const runtime
   parameters.dropped_end_share = 0;
   Eigen::MatrixXd waypoints;
   try {
-    waypoints = transfer::resample(stored.path, parameters);
+    waypoints = kinematics::resample(stored.path, parameters);
   } catch (const std::exception&) {  // its length overflows
     return std::nullopt;
   }

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "robots/kinematics/resample.hpp"
 #include "server/transfer/extension_pool.hpp"
 #include "server/transfer/path_poses.hpp"
-#include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/take_over.hpp"
 #include "server/transfer/uncovered_poses.hpp"
@@ -155,7 +155,7 @@ class Transfer {
         throw std::invalid_argument("transfer: a path of " + std::to_string(path->path.dof()) +
                                     " joints for a source robot of " +
                                     std::to_string(pair_.source().dof()));
-      const Eigen::MatrixXd waypoints = resample(path->path, parameters_);
+      const Eigen::MatrixXd waypoints = kinematics::resample(path->path, parameters_);
       if (parameters_.take_over && pair_.takes_over(path->T_target_source)) {
         paths_.done(*path, take_over(waypoints, pair_));
         continue;

@@ -109,7 +109,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {recall, {{planning, inverse, collision, kinematics, types}, {"Eigen"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {plots,
-       {{page, evidence, collision, geometry, kinematics, models, mixture, json, types},
+       {{page, evidence, inverse, collision, geometry, kinematics, models, mixture, json, types},
         {"Eigen"}}},
       {mcap, {{page, geometry, kinematics, types}, {"Eigen", "Boost.CRC", "zstd"}}},
       {access, {{types}, {}}},

@@ -1,8 +1,6 @@
 """The pages of `robots plot` and `paths plot`, of a real kinshipd, in a browser: what is drawn, and where it stands."""
 import json
-import os
 import pathlib
-import subprocess
 import tempfile
 import unittest
 import uuid
@@ -10,10 +8,9 @@ import uuid
 import numpy as np
 
 from browser import Browser, share_drawn, touches_border
-from kinshipd_process import Kinshipd
+from kinshipd_process import MODELS, Kinshipd
 from strict_server import StrictServer, taken_apart
 
-MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
 TASK = "reach"
 BASE = [0.3, -0.2, 0.5, 0, 0, np.sin(0.4), np.cos(0.4)]
 SOLVED = str(uuid.UUID(int=1))
@@ -37,32 +34,17 @@ def attempts() -> "list[dict]":
 class Figures(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = Kinshipd()
-        cls.addClassCleanup(cls.server.__exit__, None, None, None)
+        cls.server = cls.enterClassContext(Kinshipd())
         cls.server.start()
         cls.folder = cls.server.folder
-        for robot in ("panda", "panda_lift"):
-            cls.kinship("robots", "register", str(MODELS / robot))
-        given = cls.folder / "given.jsonl"
-        given.write_text("".join(json.dumps(each) + "\n" for each in attempts()))
-        cls.kinship("paths", "import", str(given))
+        cls.kinship = cls.server.kinship
+        cls.server.register("panda", "panda_lift")
+        cls.server.give(attempts())
         for robot in ("panda", "panda_lift"):
             cls.kinship("robots", "plot", robot, "--output", str(cls.folder / f"{robot}.html"))
         cls.kinship("paths", "plot", SOLVED, "--output", str(cls.folder / "path.html"))
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-
-    @classmethod
-    def run_kinship(cls, *words: str) -> subprocess.CompletedProcess:
-        program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship"
-        return subprocess.run([program, "--domain", str(cls.server.domain), "--timeout", "30", *words], capture_output=True, text=True)
-
-    @classmethod
-    def kinship(cls, *words: str) -> str:
-        done = cls.run_kinship(*words)
-        if done.returncode != 0:
-            raise AssertionError(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr}")
-        return done.stdout
 
     def setUp(self):
         self.browser.resize(1280, 900)
@@ -190,9 +172,9 @@ class Figures(unittest.TestCase):
 
     def test_what_is_not_there_is_code_three(self):
         for words in (("robots", "plot", "nobody"), ("paths", "plot", UNSOLVED), ("paths", "plot", str(uuid.UUID(int=9)))):
-            done = self.run_kinship(*words, "--output", str(self.folder / "none.html"))
-            self.assertEqual(done.returncode, 3, done.stderr)
-            self.assertIn(" ".join(words[:2]), done.stderr)
+            done = self.server.run_kinship(*words, "--output", str(self.folder / "none.html"))
+            self.assertEqual(done.returncode, 3, done.stderr.decode())
+            self.assertIn(" ".join(words[:2]), done.stderr.decode())
             self.assertFalse((self.folder / "none.html").exists())
 
 

@@ -1,9 +1,7 @@
 """The pages of `distributions plot`, `tasks plot` and `robots compare`, of a real kinshipd, in a browser."""
 import json
-import os
 import pathlib
 import re
-import subprocess
 import tempfile
 import unittest
 import uuid
@@ -14,7 +12,6 @@ from browser import Browser, pixels_of, share_drawn
 from kinshipd_process import Kinshipd
 from strict_server import StrictServer, taken_apart
 
-MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
 TASK = "sweep"
 READY = {"panda": np.array([0, -0.785, 0, -2.356, 0, 1.571, 0.785]), "ur10e": np.array([0, -1.2, 1.8, -2.2, -1.57, 0])}
 GUIDED = (11, 122, 117)  # of the style, light
@@ -43,13 +40,12 @@ def digits(text: str) -> str:
 class PlotPages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = Kinshipd()
-        cls.addClassCleanup(cls.server.__exit__, None, None, None)
+        cls.server = cls.enterClassContext(Kinshipd())
         cls.server.start()
         cls.folder = cls.server.folder
-        for robot in READY:
-            cls.kinship("robots", "register", str(MODELS / robot))
-        cls.give([attempt("panda", seed, collision_checks=900 + 20 * seed) for seed in range(12)])
+        cls.kinship = cls.server.kinship
+        cls.server.register(*READY)
+        cls.server.give([attempt("panda", seed, collision_checks=900 + 20 * seed) for seed in range(12)])
         query = ("--task", TASK, "--robot", "ur10e", "--placement", "0 0 0 0 0 0 1", "--profile", "default,components=auto", "--wait", "100")
         cls.first = json.loads(cls.kinship("distributions", "fetch", *query, "--json"))
         used = {"distribution_id": cls.first["id"], "distribution_revision": cls.first["revision"]}
@@ -59,7 +55,7 @@ class PlotPages(unittest.TestCase):
             own.append(attempt("ur10e", 2 * seed + 1, sampling_mode="control", collision_checks=900 + 13 * seed, **used))
         own.append(attempt("ur10e", 50, outcome="timeout", collision_checks=5000))
         own.append(attempt("ur10e", 51, outcome="failed", collision_checks=0))
-        cls.give(own)
+        cls.server.give(own)
         cls.kinship("distributions", "fetch", *query)
         cls.shown = json.loads(cls.kinship("distributions", "show", cls.first["id"], "--json"))
         cls.explained = cls.kinship("distributions", "explain", "--distribution", cls.first["id"])
@@ -68,24 +64,6 @@ class PlotPages(unittest.TestCase):
         cls.compared = json.loads(cls.kinship("robots", "compare", "--task", TASK, "--json", "--output", str(cls.folder / "worths.html")))
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-
-    @classmethod
-    def run_kinship(cls, *words: str) -> subprocess.CompletedProcess:
-        program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship"
-        return subprocess.run([program, "--domain", str(cls.server.domain), "--timeout", "30", *words], capture_output=True, text=True)
-
-    @classmethod
-    def kinship(cls, *words: str) -> str:
-        done = cls.run_kinship(*words)
-        if done.returncode != 0:
-            raise AssertionError(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr}")
-        return done.stdout
-
-    @classmethod
-    def give(cls, attempts: "list[dict]") -> None:
-        file = cls.folder / "given.jsonl"
-        file.write_text("".join(json.dumps(each) + "\n" for each in attempts))
-        cls.kinship("paths", "import", str(file))
 
     def setUp(self):
         self.browser.resize(1280, 900)
@@ -207,9 +185,9 @@ class PlotPages(unittest.TestCase):
         kept.write_text("mine")
         for words in (("distributions", "plot", "abcdef"), ("distributions", "plot", "--task", "nothing", "--robot", "ur10e"),
                       ("tasks", "plot", "nothing"), ("robots", "compare", "--task", "nothing")):
-            done = self.run_kinship(*words, "--output", str(kept))
-            self.assertEqual(done.returncode, 3, done.stderr)
-            self.assertIn(" ".join(words[:2]), done.stderr)
+            done = self.server.run_kinship(*words, "--output", str(kept))
+            self.assertEqual(done.returncode, 3, done.stderr.decode())
+            self.assertIn(" ".join(words[:2]), done.stderr.decode())
             self.assertEqual(kept.read_text(), "mine")
             self.assertFalse((self.folder / "kept.html.part").exists())
 

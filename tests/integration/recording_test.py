@@ -1,18 +1,14 @@
 """`paths export --mcap` of a real kinshipd, read by a reader of our own, compared with the programs' own kinematics."""
 import json
-import os
-import pathlib
-import subprocess
 import unittest
 import uuid
 import xml.etree.ElementTree
 
 import numpy as np
 
-from kinshipd_process import Kinshipd
+from kinshipd_process import MODELS, Kinshipd
 from mcap_reader import Mcap
 
-MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
 READY = {"panda": [0, -0.785, 0, -2.356, 0, 1.571, 0.785], "ur10e": [0, -1.2, 1.8, -2.2, -1.57, 0]}
 PLACEMENT = [0.4, -0.2, 0.1, 0, 0, 0.6, 0.8]
 SCENE = {"boxes": [{"name": "table", "pose": [0.6, 0, -0.2, 0, 0, 0, 1], "size": [0.8, 1.2, 0.05]}],
@@ -51,36 +47,21 @@ def values(members: dict, names: str) -> list:
 class Recording(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = Kinshipd()
-        cls.addClassCleanup(cls.server.__exit__, None, None, None)
+        cls.server = cls.enterClassContext(Kinshipd())
         cls.server.start()
         cls.folder = cls.server.folder
-        for robot in READY:
-            cls.kinship("robots", "register", str(MODELS / robot))
+        cls.kinship = cls.server.kinship_bytes
+        cls.server.register(*READY)
         cls.attempts = [attempt("panda", 0, T_task_base=PLACEMENT, scene=SCENE), attempt("ur10e", 1), attempt("panda", 2, task="other")]
         cls.attempts += [attempt("ur10e", number) for number in range(3, 40)]
         failed = attempt("panda", 50, waypoints=None)
         failed["record"] = {**failed["record"], "outcome": "failed"}
-        file = cls.folder / "given.jsonl"
-        file.write_text("".join(json.dumps(each) + "\n" for each in [*cls.attempts, failed]))
-        cls.kinship("paths", "import", str(file))
-        done = cls.run_kinship("paths", "export", "--mcap", str(cls.folder / "all.mcap"))
+        cls.server.give([*cls.attempts, failed])
+        done = cls.server.run_kinship("paths", "export", "--mcap", str(cls.folder / "all.mcap"))
         assert done.returncode == 0, done.stderr
         cls.said = done.stderr.decode()
         cls.recording = Mcap((cls.folder / "all.mcap").read_bytes())
         cls.facts = {facts["report_uuid"]: facts for name, facts in cls.recording.metadata if name == "path"}
-
-    @classmethod
-    def run_kinship(cls, *words: str) -> subprocess.CompletedProcess:
-        program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship"
-        return subprocess.run([program, "--domain", str(cls.server.domain), "--timeout", "30", *words], capture_output=True)
-
-    @classmethod
-    def kinship(cls, *words: str) -> bytes:
-        done = cls.run_kinship(*words)
-        if done.returncode != 0:
-            raise AssertionError(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr.decode()}")
-        return done.stdout
 
     def span(self, given: dict) -> "tuple[int, int]":
         facts = self.facts[given["report_uuid"]]
@@ -236,7 +217,7 @@ class Recording(unittest.TestCase):
         kept = self.folder / "kept.mcap"
         kept.write_text("mine")
         for words in (("--task", "nothing"), (str(uuid.UUID(int=999)),)):
-            done = self.run_kinship("paths", "export", *words, "--mcap", str(kept))
+            done = self.server.run_kinship("paths", "export", *words, "--mcap", str(kept))
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertEqual(kept.read_text(), "mine")
             self.assertFalse((self.folder / "kept.mcap.part").exists())
@@ -245,7 +226,7 @@ class Recording(unittest.TestCase):
         file = self.folder / "refused.mcap"
         for words in (("--output", str(self.folder / "refused.jsonl")), (self.attempts[0]["report_uuid"], "--task", "sweep"),
                       (self.attempts[0]["report_uuid"], "--limit", "1"), ("--limit", "0")):
-            self.assertEqual(self.run_kinship("paths", "export", *words, "--mcap", str(file)).returncode, 2, words)
+            self.assertEqual(self.server.run_kinship("paths", "export", *words, "--mcap", str(file)).returncode, 2, words)
             self.assertFalse(file.exists())
 
 

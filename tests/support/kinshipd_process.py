@@ -1,4 +1,5 @@
 """kinshipd as a process for tests in Python: what reserved_domain.hpp and server_process.hpp are for those in C++."""
+import json
 import os
 import pathlib
 import socket
@@ -6,6 +7,7 @@ import subprocess
 import tempfile
 
 FIRST, LAST = 70, 101  # of reserved_domain.hpp
+MODELS = pathlib.Path(os.environ.get("KINSHIP_SOURCE_DIR", ".")) / "robots" / "models"
 
 
 def _is_free(port: int) -> bool:
@@ -70,6 +72,32 @@ class Kinshipd:
             self._process.wait()
             self._process.stdout.close()
             self._process = None
+
+    def run_kinship(self, *words: str) -> subprocess.CompletedProcess:
+        """The admin program on this server, whatever its exit code; outputs are bytes."""
+        program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship"
+        return subprocess.run([program, "--domain", str(self.domain), "--timeout", "30", *words], capture_output=True)
+
+    def kinship_bytes(self, *words: str) -> bytes:
+        """What it writes; it must succeed."""
+        done = self.run_kinship(*words)
+        if done.returncode != 0:
+            raise AssertionError(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr.decode()}")
+        return done.stdout
+
+    def kinship(self, *words: str) -> str:
+        return self.kinship_bytes(*words).decode()
+
+    def register(self, *models: str) -> None:
+        """Registers robots of robots/models."""
+        for model in models:
+            self.kinship("robots", "register", str(MODELS / model))
+
+    def give(self, attempts: "list[dict]") -> None:
+        """Imports lines of an experience file."""
+        file = self.folder / "given.jsonl"
+        file.write_text("".join(json.dumps(each) + "\n" for each in attempts))
+        self.kinship("paths", "import", str(file))
 
     def __enter__(self) -> "Kinshipd":
         return self

@@ -9,8 +9,8 @@
 namespace kinship::plots::distribution_plot_test {
 namespace {
 
-RobotDescription description(const std::string& model) {
-  return kinship::test::model_description(model);
+DrawnRobot drawn(const std::string& model) {
+  return drawn_robot(kinship::test::model_description(model));
 }
 
 TEST(HeaviestComponents, FallAndAddUp) {
@@ -33,12 +33,12 @@ TEST(HeaviestComponents, OfManyKernelsAreSome) {
 
 TEST(DistributionPlot, PlacesTheHandOfEverySampleInTheTaskFrame) {
   Distribution distribution = test::distribution_for("ur10e");
-  const DistributionPlot here = plot_of(distribution, description("ur10e"));
-  ASSERT_EQ(here.hands.cols(), static_cast<Eigen::Index>(kSamplesShown));
+  const DistributionPlot here = plot_of(distribution, drawn("ur10e"));
+  ASSERT_EQ(here.samples.hands.cols(), static_cast<Eigen::Index>(kSamplesShown));
   const Eigen::Vector3d shift(1, 2, 3);
   distribution.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(shift));
-  const DistributionPlot there = plot_of(distribution, description("ur10e"));
-  EXPECT_TRUE((here.hands.colwise() + shift).isApprox(there.hands, 1e-12));
+  const DistributionPlot there = plot_of(distribution, drawn("ur10e"));
+  EXPECT_TRUE((here.samples.hands.colwise() + shift).isApprox(there.samples.hands, 1e-12));
   EXPECT_TRUE((here.postures[0].bones[0].from + shift).isApprox(there.postures[0].bones[0].from));
   EXPECT_EQ(here.label, "ur10e");
   EXPECT_FALSE(here.shapes.empty());
@@ -49,14 +49,14 @@ TEST(DistributionPlot, ANarrowMixturesHandIsAtItsMeans) {
   const Eigen::MatrixXd means = distribution.mixture->means().col(1);
   distribution.mixture =
       Mixture(Eigen::VectorXd::Ones(1), means, {1e-12 * Eigen::MatrixXd::Identity(6, 6)});
-  const DistributionPlot plot = plot_of(distribution, description("ur10e"));
+  const DistributionPlot plot = plot_of(distribution, drawn("ur10e"));
   const Eigen::Vector3d hand =
       kinematics::T_base_transfer(kinship::test::model_chain("ur10e"), means.col(0)).translation();
-  EXPECT_LT((plot.hands.colwise() - hand).colwise().norm().maxCoeff(), 1e-4);
+  EXPECT_LT((plot.samples.hands.colwise() - hand).colwise().norm().maxCoeff(), 1e-4);
 }
 
 TEST(DistributionPlot, StandsInTheMeansOfTheHeaviestComponents) {
-  const DistributionPlot plot = plot_of(test::distribution_for("ur10e"), description("ur10e"));
+  const DistributionPlot plot = plot_of(test::distribution_for("ur10e"), drawn("ur10e"));
   ASSERT_EQ(plot.postures.size(), 2U);
   EXPECT_DOUBLE_EQ(plot.postures[0].weight, 0.75);
   EXPECT_DOUBLE_EQ(plot.postures[1].weight, 0.25);
@@ -66,7 +66,7 @@ TEST(DistributionPlot, StandsInTheMeansOfTheHeaviestComponents) {
 void expect_failure(const Distribution& distribution, const char* model, ErrorCode code,
                     const std::string& words) {
   try {
-    plot_of(distribution, description(model));
+    plot_of(distribution, drawn(model));
     FAIL() << "a plot of " << words;
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), code);

@@ -7,6 +7,7 @@
 
 #include "proto/json/distribution_json.hpp"
 #include "tests/unit/pages/plots/history_values.hpp"
+#include "tests/unit/pages/plots/known_paths.hpp"
 #include "tests/unit/pages/plots/plot_values.hpp"
 
 namespace kinship::plots::plot_pages_test {
@@ -28,8 +29,11 @@ json data_of(const std::string& page) {
   return json::parse(page.substr(first, page.find("</script>", first) - first));
 }
 
-DistributionPlot plot() {
-  return plot_of(test::distribution_for("ur10e"), kinship::test::model_description("ur10e"));
+DistributionFigure plot() {
+  test::KnownPaths known;
+  known.descriptions[kinship::test::model_chain("ur10e").digest()] =
+      kinship::test::model_description("ur10e");
+  return distribution_figure(test::distribution_for("ur10e"), known.look_up());
 }
 
 TEST(PlotPages, ADistributionIsThatOfFetchWithoutItsMixture) {
@@ -48,13 +52,15 @@ TEST(PlotPages, ADistributionIsThatOfFetchWithoutItsMixture) {
 TEST(PlotPages, EqualPlotsAreEqualPages) { EXPECT_EQ(page_of(plot()), page_of(plot())); }
 
 TEST(PlotPages, ATaskTellsItsHistory) {
-  const json data = data_of(page_of(history_of("shelf", test::season(12, 100, 300), {})));
+  const json data =
+      data_of(page_of(TaskFigure{history_of("shelf", test::season(12, 100, 300), {}), {}}));
   EXPECT_EQ(data["task"], "shelf");
   EXPECT_EQ(data["bin_ms"], 1000);
   EXPECT_EQ(data["robots"][0]["attempts"], 24);
   EXPECT_EQ(data["robots"][0]["bins"][0]["modes"][0]["median"], 100);
   EXPECT_EQ(data["robots"][0]["bins"][0]["modes"][1]["median"], nullptr);
   EXPECT_EQ(data["robots"][0]["benefit"].back()["control"], 12);
+  EXPECT_EQ(data["space"]["paths"].size(), 0U);
 }
 
 TEST(PlotPages, AMatrixHasTheRowsOfCompare) {

@@ -5,7 +5,7 @@
 #include "proto/types/path.hpp"
 #include "proto/types/profile.hpp"
 
-namespace kinship::transfer {
+namespace kinship::kinematics {
 
 /// Configurations at even distances along a path, so that its content does not depend on how
 /// densely a planner wrote it. Straight between waypoints as written, also across +-pi of a
@@ -20,4 +20,4 @@ namespace kinship::transfer {
 ///         0 <= dropped_end_share <= 0.5, or if the length of the path overflows.
 Eigen::MatrixXd resample(const Path& path, const TransferParameters& parameters);
 
-}  // namespace kinship::transfer
+}  // namespace kinship::kinematics

@@ -1,4 +1,4 @@
-#include "server/transfer/resample.hpp"
+#include "robots/kinematics/resample.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::transfer::resample_test {
+namespace kinship::kinematics::resample_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 4;
@@ -113,4 +113,4 @@ TEST(Resample, RefusesALengthThatOverflows) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer::resample_test
+}  // namespace kinship::kinematics::resample_test

@@ -1,4 +1,4 @@
-#include "server/transfer/resample.hpp"
+#include "robots/kinematics/resample.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::transfer {
+namespace kinship::kinematics {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of an interval: 3.0 / 0.3 is ten intervals, not eleven
@@ -68,4 +68,4 @@ Eigen::MatrixXd resample(const Path& path, const TransferParameters& parameters)
   return resampled;
 }
 
-}  // namespace kinship::transfer
+}  // namespace kinship::kinematics
