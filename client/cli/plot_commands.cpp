@@ -52,7 +52,7 @@ struct KnownRobot {
 
 /// \param name  a label, or the beginning of a digest.
 /// \throws Failure for rows that cannot be read.
-Result<KnownRobot> find_robot(link::Client& server, const std::string& name) {
+Result<KnownRobot> find_known_robot(link::Client& server, const std::string& name) {
   const auto rows = link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = name});
   if (!rows)
     return rows.error();
@@ -94,7 +94,7 @@ int plot_distribution(link::Client& server, const DistributionQuery& query,
   auto distribution = find_distribution(server, query, options.progress, err, code);
   if (code != kDone)
     return code;
-  const auto robot = find_robot(server, distribution->robot.hex());
+  const auto robot = find_known_robot(server, distribution->robot.hex());
   if (!robot)
     return refuse(kPlotDistribution, robot.error(), err);
   try {
@@ -129,7 +129,7 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
 int plot_robot(link::Client& server, const std::string& name, const PlotOptions& options,
                std::ostream& out, std::ostream& err) {
   PageFile page(options.output, out);
-  const auto robot = find_robot(server, name);
+  const auto robot = find_known_robot(server, name);
   if (!robot)
     return refuse(kPlotRobot, robot.error(), err);
   plots::write_page(plots::robot_figure(robot->summary, robot->description), page.stream());
@@ -154,7 +154,7 @@ int plot_report(link::Client& server, const std::string& id, std::string_view co
                                        ? " any more"
                                        : "; kinship attempts plot shows what was in the way")},
         err);
-  const auto robot = find_robot(server, attempt.robot.hex());
+  const auto robot = find_known_robot(server, attempt.robot.hex());
   if (!robot)
     return refuse(command, robot.error(), err);
   plots::write_page(plots::attempt_figure(std::move(attempt), robot->description),
