@@ -95,6 +95,7 @@ ProgramResult run(const std::vector<std::string>& words, std::size_t max_bytes) 
   const off_t size = lseek(errors.get(), 0, SEEK_END);
   lseek(errors.get(), std::max<off_t>(0, size - static_cast<off_t>(kShownBytes)), SEEK_SET);
   result.message = read_up_to(errors, kShownBytes);
+  result.message.resize(result.message.find_last_not_of(" \r\n") + 1);
   return result;
 }
 

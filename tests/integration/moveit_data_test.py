@@ -84,12 +84,12 @@ class MoveItData(unittest.TestCase):
     def import_warehouse(self, name: str, *words) -> subprocess.CompletedProcess:
         return self.run_kinship("paths", "import", "--moveit-warehouse", self.folder / name, "--robot", "panda", "--json", *words)
 
-    def import_paths(self, task: str, count: int) -> None:
+    def import_paths(self, task: str, count: int, outcome: str = "solved", **changes) -> None:
         file = self.folder / f"{task}.jsonl"
         file.write_text("".join(json.dumps(
             {"report_uuid": str(uuid.uuid5(uuid.NAMESPACE_OID, f"{task}{number}")), "task": task, "robot": "panda", "machine": "test",
              "T_task_base": None, "waypoints": sweep(number).tolist(), "scene": None,
-             "record": {"outcome": "solved", "planner": "birrt", "planning_time_s": 0.5, "collision_checks": 1000}}) + "\n"
+             "record": {"outcome": outcome, "planner": "birrt", "planning_time_s": 0.5, "collision_checks": 1000}, **changes}) + "\n"
             for number in range(count)))
         self.kinship("paths", "import", str(file))
 
@@ -142,6 +142,7 @@ class MoveItData(unittest.TestCase):
             self.assertEqual(shown["trajectory"], [message])
 
     def test_nothing_to_write_is_told(self):
+        self.import_paths("none", 1, waypoints=None, outcome="failed")
         done = self.run_kinship("paths", "export", "--task", "none", "--moveit", self.folder / "none.yaml")
         self.assertEqual((done.returncode, "nothing to write" in done.stderr), (3, True), done.stderr)
         self.assertFalse((self.folder / "none.yaml").exists())

@@ -106,7 +106,7 @@ TEST(ReadCdr, OtherEncodingsAreRefused) {
 TEST(ReadCdr, HostileBytesAreReadOrRefused) {
   const std::string whole = joint_state().bytes();
   std::mt19937 generator(20261129);
-  for (int round = 0; round < 20'000; ++round) {
+  for (int round = 0; round < 4'000; ++round) {
     std::string bytes = whole;
     const auto changes = 1 + generator() % 4;
     for (unsigned change = 0; change < changes; ++change)

@@ -94,7 +94,7 @@ TEST_F(XacroProgram, ItsFailureIsTold) {
   does("echo \"no such package: arm\" >&2; exit 3");
   const auto file = write("arm.xacro", kXacro);
   EXPECT_EQ(complaint(file, {.arguments = {}, .max_bytes = 100, .ending = ".urdf"}),
-            "'" + file.string() + "': xacro: it failed (exit code 3): no such package: arm\n");
+            "'" + file.string() + "': xacro: it failed (exit code 3): no such package: arm");
 }
 
 TEST_F(XacroProgram, IsStoppedWhenItWritesTooMuch) {
