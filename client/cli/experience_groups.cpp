@@ -62,25 +62,28 @@ void add_import(CLI::App& group, Session& session) {
       "Hand over an experience file, or what MoveIt or OMPL has kept; may be repeated",
       "kinship paths import box_to_shelf.jsonl\n  zcat old.jsonl.gz | kinship paths import -\n"
       "  kinship paths import --moveit-warehouse moveit.sqlite --robot panda --task box_to_shelf");
-  CLI::Option_group* sources = command->add_option_group("sources");
-  sources->add_option("file", options->file, "JSON Lines; - is standard input")->type_name("FILE");
+  CLI::Option* file = command->add_option("file", options->file, "JSON Lines; - is standard input")
+                          ->type_name("FILE");
   CLI::Option* warehouse =
-      sources
+      command
           ->add_option("--moveit-warehouse", options->moveit_warehouse,
-                       "Database of warehouse_ros_sqlite: trajectories of MoveIt's planning scenes "
-                       "and trajectory caches")
-          ->type_name("FILE");
+                       "Instead: a database of warehouse_ros_sqlite, the trajectories of MoveIt's "
+                       "planning scenes and trajectory caches")
+          ->type_name("FILE")
+          ->excludes(file);
   CLI::Option* planner_data =
-      sources
+      command
           ->add_option("--ompl-planner-data", options->ompl_planner_data,
-                       "File of OMPL's PlannerDataStorage: the shortest ways of the roadmap from "
-                       "its starts to its goals; only of a file that you trust")
-          ->type_name("FILE");
-  sources->require_option(1);
+                       "Instead: a file of OMPL's PlannerDataStorage, the shortest ways of the "
+                       "roadmap from its starts to its goals; only of a file that you trust")
+          ->type_name("FILE")
+          ->excludes(file)
+          ->excludes(warehouse);
   CLI::Option* robot =
       command
           ->add_option("--robot", options->robot, "Whose joints these are: label or digest prefix")
-          ->type_name("ROBOT");
+          ->type_name("ROBOT")
+          ->excludes(file);
   warehouse->needs(robot);
   planner_data->needs(robot);
   CLI::Option* task =

@@ -157,6 +157,9 @@ class ForeignImport {
 
 int import_foreign_paths(link::Client& server, const ImportOptions& options, std::ostream& out,
                          std::ostream& err) {
+  if (options.moveit_warehouse.empty() && options.ompl_planner_data.empty())
+    return refuse(kImportPaths,
+                  invalid_input("names no file, --moveit-warehouse or --ompl-planner-data"), err);
   const auto placement = placement_of(options.placement);
   if (!placement)
     return refuse(kImportPaths, placement.error(), err);

@@ -13,6 +13,8 @@
 namespace kinship::moveit {
 namespace {
 
+constexpr const char* kQuoted = "!";  // the tag of a text that is no number
+
 /// A float as YAML 1.1 knows it: "1.0", "1.0e-07".
 std::string float_text(double value) {
   std::string text = number_text(value);
@@ -31,7 +33,7 @@ YAML::Node empty_list() {
 /// In quotes: a joint may be called `on`, or `1`.
 YAML::Node name_node(const std::string& name) {
   YAML::Node node(name);
-  node.SetTag("!");
+  node.SetTag(kQuoted);
   return node;
 }
 
@@ -118,9 +120,32 @@ YAML::Node robot_state(const kinematics::RobotModel& robot,
   return node;
 }
 
+/// yaml-cpp's own way forgets the quotes.
+void emit(const YAML::Node& node, YAML::Emitter& emitter) {
+  if (node.IsMap()) {
+    emitter << YAML::BeginMap;
+    for (const auto& member : node) {
+      emitter << YAML::Key << member.first.Scalar() << YAML::Value;
+      emit(member.second, emitter);
+    }
+    emitter << YAML::EndMap;
+  } else if (node.IsSequence()) {
+    if (node.Style() == YAML::EmitterStyle::Flow)
+      emitter << YAML::Flow;
+    emitter << YAML::BeginSeq;
+    for (const YAML::Node& value : node)
+      emit(value, emitter);
+    emitter << YAML::EndSeq;
+  } else {
+    if (node.Tag() == kQuoted)
+      emitter << YAML::DoubleQuoted;
+    emitter << node.Scalar();
+  }
+}
+
 std::string text_of(const YAML::Node& document, const std::string& note) {
   YAML::Emitter emitter;
-  emitter << document;
+  emit(document, emitter);
   return "# " + on_one_line(note) + "\n" + emitter.c_str() + "\n";
 }
 

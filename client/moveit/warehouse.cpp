@@ -169,7 +169,7 @@ class Warehouse {
   }
 
   Result<StoredTrajectory> read_row(const Collection& collection, const Rows& row,
-                                    const std::string& name) const {
+                                    const std::string& name) {
     try {
       const std::string bytes = row.bytes(1);
       std::vector<std::string> left_out;
@@ -207,16 +207,29 @@ class Warehouse {
   }
   Eigen::VectorXd middle() const { return (chain_.lower() + chain_.upper()) / 2; }
 
+  /// Trajectories that follow each other mostly share their scene: the last one is kept.
+  const std::optional<YamlValue>& scene_named(const std::string& name) {
+    if (!last_scene_name_ || *last_scene_name_ != name) {
+      last_scene_name_.reset();
+      last_scene_.reset();  // a node that is assigned to would keep both documents
+      last_scene_ = newest("planning_scene", "PlanningScene", name, "");
+      last_scene_name_ = name;
+    }
+    return last_scene_;
+  }
+
   Path read_path(const YamlValue& trajectory, std::vector<std::string>& left_out) const;
   std::optional<YamlValue> newest(const char* collection, const char* type,
                                   const std::string& scene, const std::string& request) const;
   void add_scene(const std::string& scene_name, const std::string& request_name,
-                 StoredTrajectory& trajectory) const;
+                 StoredTrajectory& trajectory);
 
   Database database_;
   const kinematics::Chain& chain_;
   std::optional<Eigen::Isometry3d> T_task_base_;
   std::vector<Collection> collections_;
+  std::optional<std::string> last_scene_name_ = {};
+  std::optional<YamlValue> last_scene_ = {};
 };
 
 /// moveit_msgs/RobotTrajectory
@@ -288,7 +301,7 @@ std::optional<YamlValue> Warehouse::newest(const char* collection, const char* t
 }
 
 void Warehouse::add_scene(const std::string& scene_name, const std::string& request_name,
-                          StoredTrajectory& trajectory) const {
+                          StoredTrajectory& trajectory) {
   const YamlValue none = YamlValue::of_document(YAML::Node(YAML::NodeType::Map), {});
   const auto leave_out = [&](const std::string& what, const std::string& why) {
     trajectory.left_out.push_back(what + ": " + why);
@@ -305,7 +318,7 @@ void Warehouse::add_scene(const std::string& scene_name, const std::string& requ
     leave_out("the request", failure.what());
   }
   try {
-    const auto scene = newest("planning_scene", "PlanningScene", scene_name, "");
+    const std::optional<YamlValue>& scene = scene_named(scene_name);
     if (!scene) {
       leave_out("the scene", "it is not in the warehouse");
       return;

@@ -237,6 +237,8 @@ class MoveItData(unittest.TestCase):
         done = self.run_kinship("paths", "import", "--moveit-warehouse", self.folder / "old.sqlite")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--robot", done.stderr)
+        done = self.run_kinship("paths", "import")
+        self.assertEqual((done.returncode, "names no file" in done.stderr), (2, True), done.stderr)
 
 
 if __name__ == "__main__":

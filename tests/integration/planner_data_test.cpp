@@ -58,8 +58,9 @@ TEST(PlannerData, BecomesThePathThatItHolds) {
   EXPECT_NE(cell.kinship(command + " --task around").out.find("1 known already"),
             std::string::npos);
   const test::Answer stored = cell.kinship("paths export --task around");
-  EXPECT_NE(stored.out.find("\"waypoints\":[[-1,-0.5,0.5,0,0.3,0],"), std::string::npos);
-  EXPECT_NE(stored.out.find("[1,-0.5,0.5,0,0.3,0]]"), std::string::npos);
+  EXPECT_NE(stored.out.find("\"waypoints\":[[-1.0,-0.5,0.5,0.0,0.3,0.0],"), std::string::npos)
+      << stored.out;
+  EXPECT_NE(stored.out.find("[1.0,-0.5,0.5,0.0,0.3,0.0]]"), std::string::npos);
 }
 
 }  // namespace

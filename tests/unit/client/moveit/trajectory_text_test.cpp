@@ -45,6 +45,18 @@ TEST(TrajectoryText, NumbersAreFloatsForYaml11) {
   EXPECT_NE(text.find("[1.0, 1.0e-07, -0.25, -2.0, 0.0, 1.5, 3.0e+20]"), std::string::npos) << text;
 }
 
+TEST(TrajectoryText, NamesAreQuotedForTheyMayLookLikeNumbers) {
+  kinematics::RobotModel robot = panda();
+  kinematics::ChainParts parts = robot.chain.parts();
+  parts.joints[0].name = "1.5";
+  parts.joints[1].name = "on";
+  robot.chain = kinematics::Chain(parts);
+  const std::string text = display_trajectory_text(robot, two_points(), "");
+  EXPECT_NE(text.find("[\"1.5\", \"on\", \"panda_joint3\""), std::string::npos) << text;
+  EXPECT_NE(text.find("model_id: \"panda\""), std::string::npos) << text;
+  EXPECT_NE(text.find("velocities: []"), std::string::npos) << text;
+}
+
 TEST(TrajectoryText, RefusesThePathOfAnotherRobot) {
   kinematics::TimedPath path = two_points();
   path.configurations.conservativeResize(6, 2);
