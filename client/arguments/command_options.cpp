@@ -48,7 +48,12 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
                  "other")
       ->type_name("FILE");
   app.add_option("--package", arguments.packages,
-                 "NAME=DIR, where meshes named package://NAME/... are; may be repeated")
+                 "NAME=DIR, where meshes named package://NAME/... are, before AMENT_PREFIX_PATH, "
+                 "ROS_PACKAGE_PATH and a package.xml above the URDF; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--xacro-argument", arguments.xacro,
+                 "NAME:=VALUE for a URDF or SRDF that is xacro, which the program xacro expands; "
+                 "may be repeated")
       ->allow_extra_args(false);
   app.add_flag("--collision-from-visual", arguments.collision_from_visual,
                "links that are drawn and have no collision solids: what is drawn is taken for "

@@ -139,6 +139,8 @@ typedef struct kinship_robot_file {
   int collision_from_visual; /**< not 0: what is drawn of links without solids is solid */
   const char* const* without_collision; /**< links that are drawn and need no solid; NULL: none */
   size_t without_collision_count;
+  const char* const* xacro; /**< "NAME:=VALUE" each, for a URDF or SRDF that is xacro */
+  size_t xacro_count;
 } kinship_robot_file;
 
 /** Reads the files and registers the robot as kinship_register() does. A server has no meshes: it

@@ -82,6 +82,7 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   arguments.collision_from_visual = given.collision_from_visual != 0;
   arguments.without_collision =
       read_texts(given.without_collision, given.without_collision_count, "file->without_collision");
+  arguments.xacro = read_texts(given.xacro, given.xacro_count, "file->xacro");
   return arguments;
 }
 

@@ -1,7 +1,7 @@
 #include <iostream>
 
-#include "client/cli/exchange_commands.hpp"
 #include "client/cli/path_export.hpp"
+#include "client/cli/path_import.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
 #include "client/cli/upkeep_commands.hpp"
@@ -15,7 +15,8 @@ void add_export(CLI::App& group, Session& session) {
   CLI::App* command = add_command(
       group, "export", "Attempts and the robots they need, for `paths import` or a viewer",
       "kinship paths export --task box_to_shelf --output box_to_shelf.jsonl\n"
-      "  kinship paths export --task box_to_shelf --limit 20 --mcap box_to_shelf.mcap");
+      "  kinship paths export --task box_to_shelf --limit 20 --mcap box_to_shelf.mcap\n"
+      "  kinship paths export --task box_to_shelf --limit 20 --moveit trajectories/");
   CLI::Option* ids =
       command->add_option("id", options->ids, "Only these paths: UUIDs, as paths list shows them")
           ->type_name("PATH");
@@ -32,12 +33,22 @@ void add_export(CLI::App& group, Session& session) {
       command
           ->add_option("--output", options->output, "File of JSON Lines (default: standard output)")
           ->type_name("FILE");
+  CLI::Option* mcap =
+      command
+          ->add_option(
+              "--mcap", options->mcap,
+              "Instead: a recording for Foxglove, in which the robots move along the paths at "
+              "the speed limits of their URDFs; - is standard output")
+          ->type_name("FILE")
+          ->excludes(output);
   command
-      ->add_option("--mcap", options->mcap,
-                   "Instead: a recording for Foxglove, in which the robots move along the paths at "
-                   "the speed limits of their URDFs; - is standard output")
+      ->add_option("--moveit", options->moveit,
+                   "Instead: MoveIt's trajectories as YAML, with times by the speed limits of the "
+                   "URDF: DisplayTrajectory documents in a file (- is standard output), or in a "
+                   "folder (FOLDER/) a DisplayTrajectory and a RobotTrajectory for each path")
       ->type_name("FILE")
-      ->excludes(output);
+      ->excludes(output)
+      ->excludes(mcap);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->progress = session.shows_progress();
     return export_paths(server, *options, session.out, session.err);
@@ -47,11 +58,46 @@ void add_export(CLI::App& group, Session& session) {
 void add_import(CLI::App& group, Session& session) {
   const auto options = std::make_shared<ImportOptions>();
   CLI::App* command = add_command(
-      group, "import", "Hand over the lines of an experience file; may be repeated",
-      "kinship paths import box_to_shelf.jsonl\n  zcat old.jsonl.gz | kinship paths import -");
-  command->add_option("file", options->file, "JSON Lines; - is standard input")
-      ->required()
-      ->type_name("FILE");
+      group, "import",
+      "Hand over an experience file, or what MoveIt or OMPL has kept; may be repeated",
+      "kinship paths import box_to_shelf.jsonl\n  zcat old.jsonl.gz | kinship paths import -\n"
+      "  kinship paths import --moveit-warehouse moveit.sqlite --robot panda --task box_to_shelf");
+  CLI::Option* file = command->add_option("file", options->file, "JSON Lines; - is standard input")
+                          ->type_name("FILE");
+  CLI::Option* warehouse =
+      command
+          ->add_option("--moveit-warehouse", options->moveit_warehouse,
+                       "Instead: a database of warehouse_ros_sqlite, the trajectories of MoveIt's "
+                       "planning scenes and trajectory caches")
+          ->type_name("FILE")
+          ->excludes(file);
+  CLI::Option* planner_data =
+      command
+          ->add_option("--ompl-planner-data", options->ompl_planner_data,
+                       "Instead: a file of OMPL's PlannerDataStorage, the shortest ways of the "
+                       "roadmap from its starts to its goals; only of a file that you trust")
+          ->type_name("FILE")
+          ->excludes(file)
+          ->excludes(warehouse);
+  CLI::Option* robot =
+      command
+          ->add_option("--robot", options->robot, "Whose joints these are: label or digest prefix")
+          ->type_name("ROBOT")
+          ->excludes(file);
+  warehouse->needs(robot);
+  planner_data->needs(robot);
+  CLI::Option* task =
+      command
+          ->add_option("--task", options->task,
+                       "Of these paths (default: the planning scene's or cache's name)")
+          ->type_name("TASK")
+          ->needs(robot);
+  planner_data->needs(task);
+  command
+      ->add_option("--placement", options->placement,
+                   "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task frame "
+                   "is MoveIt's planning frame, for OMPL the base)")
+      ->needs(robot);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->json = session.json;

@@ -5,14 +5,19 @@
 #include <optional>
 #include <ostream>
 #include <set>
+#include <system_error>
+#include <utility>
 
 #include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
+#include "client/moveit/trajectory_text.hpp"
 #include "pages/mcap/path_recording.hpp"
 #include "proto/files/output_file.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/json/robot_description_json.hpp"
+#include "robots/kinematics/timed_path.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -123,22 +128,40 @@ std::map<std::string, std::string> choice_of(const ExportOptions& options) {
   return choice;
 }
 
+/// Hands over the robots and the attempts that have a path; the others are counted.
+int use_paths(link::Client& server, const ExportOptions& options, std::ostream& err,
+              const std::function<void(RobotDescription)>& use_robot,
+              const std::function<bool(const Attempt&)>& use_path, std::size_t& without_path) {
+  return use_lines(server, options, err, [&](const std::string& line) {
+    json::ExperienceLine parsed = json::experience_line_from_json(line).value_or_throw();
+    if (auto* robot = std::get_if<RobotDescription>(&parsed))
+      use_robot(std::move(*robot));
+    else if (const Attempt& attempt = std::get<json::NamedAttempt>(parsed).attempt; attempt.path)
+      return use_path(attempt);
+    else
+      ++without_path;
+    return true;
+  });
+}
+
+std::string left_out_text(std::size_t without_path) {
+  return without_path == 0
+             ? ""
+             : "; " + count_text(without_path, "attempt") + " without a path left out";
+}
+
 int write_recording(link::Client& server, const ExportOptions& options, std::ostream& out,
                     std::ostream& err) {
   const std::filesystem::path file = options.mcap == "-" ? std::filesystem::path() : options.mcap;
   files::OutputFile output(file, out);
   mcap::PathRecording recording(output.stream(), choice_of(options));
   std::size_t without_path = 0;
-  const int code = use_lines(server, options, err, [&](const std::string& line) {
-    json::ExperienceLine parsed = json::experience_line_from_json(line).value_or_throw();
-    if (auto* robot = std::get_if<RobotDescription>(&parsed))
-      recording.add_robot(std::move(*robot));
-    else if (const Attempt& attempt = std::get<json::NamedAttempt>(parsed).attempt; attempt.path)
-      recording.add_path(attempt);
-    else
-      ++without_path;
+  const auto use_robot = [&](RobotDescription robot) { recording.add_robot(std::move(robot)); };
+  const auto use_path = [&](const Attempt& attempt) {
+    recording.add_path(attempt);
     return output.stream().good();
-  });
+  };
+  const int code = use_paths(server, options, err, use_robot, use_path, without_path);
   if (code != kDone)
     return code;
   if (recording.paths() == 0)
@@ -146,10 +169,91 @@ int write_recording(link::Client& server, const ExportOptions& options, std::ost
   recording.finish();
   output.keep();
   err << count_text(recording.paths(), "path") << ", " << seconds_text(recording.duration())
-      << (file.empty() ? "" : ", in '" + file.string() + "'");
-  if (without_path > 0)
-    err << "; " << count_text(without_path, "attempt") << " without a path left out";
-  err << '\n';
+      << (file.empty() ? "" : ", in '" + file.string() + "'") << left_out_text(without_path)
+      << '\n';
+  return kDone;
+}
+
+/// Writes paths as messages of MoveIt.
+class TrajectoryFiles {
+ public:
+  TrajectoryFiles(const std::filesystem::path& place, std::ostream& out) : out_(out) {
+    std::error_code unreadable;
+    is_folder_ = !place.has_filename() || std::filesystem::is_directory(place, unreadable);
+    if (is_folder_)
+      folder_ = place;
+    else
+      output_.emplace(place == "-" ? std::filesystem::path() : place, out);
+  }
+
+  std::size_t paths() const noexcept { return paths_; }
+
+  void add_robot(RobotDescription description) {
+    kinematics::RobotModel robot = kinematics::read_model(std::move(description)).value_or_throw();
+    const Digest digest = robot.chain.digest();
+    robots_.insert_or_assign(digest, std::move(robot));
+  }
+
+  bool add_path(const Attempt& attempt) {
+    const kinematics::RobotModel& robot = robots_.at(attempt.robot);
+    const kinematics::TimedPath path =
+        kinematics::timed(*attempt.path, kinematics::path_speeds(robot), 0);
+    const std::string id = attempt.report_uuid.text();
+    const std::string note = "Path " + id + " of robot '" + robot.description.label + "', task '" +
+                             attempt.task + "'. " + kTimes;
+    const std::string shown = moveit::display_trajectory_text(robot, path, note);
+    if (is_folder_) {
+      std::filesystem::create_directories(folder_);
+      write(folder_ / (id + ".display.yaml"), shown);
+      write(folder_ / (id + ".trajectory.yaml"), moveit::robot_trajectory_text(robot, path, note));
+    } else {
+      output_->stream() << (paths_ == 0 ? "" : "---\n") << shown;
+    }
+    ++paths_;
+    return is_folder_ || output_->stream().good();
+  }
+
+  void keep() {
+    if (output_)
+      output_->keep();
+  }
+
+  static constexpr const char* kTimes =
+      "Times: every segment takes what its slowest joint needs at the velocity limit of the URDF "
+      "(1 rad/s or 0.25 m/s where there is none); a URDF has no limits of acceleration, so a "
+      "controller that needs them parameterises the path anew.";
+
+ private:
+  void write(const std::filesystem::path& file, const std::string& text) const {
+    files::OutputFile output(file, out_);
+    output.stream() << text;
+    output.keep();
+  }
+
+  std::ostream& out_;
+  bool is_folder_ = false;
+  std::filesystem::path folder_;
+  std::optional<files::OutputFile> output_;
+  std::map<Digest, kinematics::RobotModel> robots_;
+  std::size_t paths_ = 0;
+};
+
+int write_trajectories(link::Client& server, const ExportOptions& options, std::ostream& out,
+                       std::ostream& err) {
+  TrajectoryFiles files(options.moveit, out);
+  std::size_t without_path = 0;
+  const int code = use_paths(
+      server, options, err, [&](RobotDescription robot) { files.add_robot(std::move(robot)); },
+      [&](const Attempt& attempt) { return files.add_path(attempt); }, without_path);
+  if (code != kDone)
+    return code;
+  if (files.paths() == 0)
+    return refuse(kExportPaths, {ErrorCode::NotFound, "nothing to write: no path"}, err);
+  files.keep();
+  err << count_text(files.paths(), "path")
+      << (options.moveit == "-" ? "" : " in '" + options.moveit.string() + "'")
+      << left_out_text(without_path) << '\n'
+      << TrajectoryFiles::kTimes << '\n';
   return kDone;
 }
 
@@ -158,8 +262,10 @@ int write_recording(link::Client& server, const ExportOptions& options, std::ost
 int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
                  std::ostream& err) {
   ExportOptions here = options;
-  here.progress =
-      options.progress && !(options.output.empty() && options.mcap.empty() && is_terminal(out));
+  here.progress = options.progress && !(options.output.empty() && options.mcap.empty() &&
+                                        options.moveit.empty() && is_terminal(out));
+  if (!options.moveit.empty())
+    return write_trajectories(server, here, out, err);
   return options.mcap.empty() ? write_lines(server, here, out, err)
                               : write_recording(server, here, out, err);
 }

@@ -124,7 +124,7 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
 int plot_robot(link::Client& server, const std::string& name, const PlotOptions& options,
                std::ostream& out, std::ostream& err) {
   PageFile page(options.output, out);
-  const auto robot = find_robot(server, name);
+  const auto robot = find_known_robot(server, name);
   if (!robot)
     return refuse(kPlotRobot, robot.error(), err);
   plots::write_page(plots::robot_figure(robot->summary, robot->description), page.stream());
@@ -149,7 +149,7 @@ int plot_report(link::Client& server, const std::string& id, std::string_view co
                                        ? " any more"
                                        : "; kinship attempts plot shows what was in the way")},
         err);
-  const auto robot = find_robot(server, attempt.robot.hex());
+  const auto robot = find_known_robot(server, attempt.robot.hex());
   if (!robot)
     return refuse(command, robot.error(), err);
   plots::write_page(plots::attempt_figure(std::move(attempt), robot->description),

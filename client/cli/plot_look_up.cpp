@@ -26,7 +26,7 @@ std::vector<PathSummary> newest_paths(link::Client& server, const AdminRequest& 
 
 }  // namespace
 
-Result<KnownRobot> find_robot(link::Client& server, const std::string& name) {
+Result<KnownRobot> find_known_robot(link::Client& server, const std::string& name) {
   const auto rows = link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = name});
   if (!rows)
     return rows.error();
@@ -56,7 +56,7 @@ plots::LookUp look_up_of(link::Client& server) {
           },
       .robot =
           [&server](const Digest& robot) {
-            return find_robot(server, robot.hex()).value_or_throw().description;
+            return find_known_robot(server, robot.hex()).value_or_throw().description;
           },
       .distributions =
           [&server](const std::string& task, const Digest& robot) {

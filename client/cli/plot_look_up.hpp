@@ -15,7 +15,7 @@ struct KnownRobot {
 
 /// \param name  a label, or the beginning of a digest.
 /// \throws Failure for rows that cannot be read.
-Result<KnownRobot> find_robot(link::Client& server, const std::string& name);
+Result<KnownRobot> find_known_robot(link::Client& server, const std::string& name);
 
 /// Asks a server, once for each path, robot or distribution.
 /// \param server  outlives it.

@@ -126,13 +126,18 @@ void read_goals(const YamlValue& request, const kinematics::Chain& chain, const 
   if (problem.T_task_goal && problem.goal_configurations.cols() > 0)
     request["goal_constraints"].refuse("a pose and configurations; a problem has one or the other");
   conversion.left_out.push_back("tolerances of the goal: a problem's goal is exact");
+  problem.constraint = read_constraint(request, frames, conversion.left_out);
+}
+
+std::optional<TaskSpaceRegion> read_constraint(const YamlValue& request, const Frames& frames,
+                                               std::vector<std::string>& left_out) {
   const YamlValue kept = request["path_constraints"];
   refuse_others(kept, {"joint_constraints", "position_constraints", "visibility_constraints"});
-  if (!kept["orientation_constraints"].items().empty())
-    problem.constraint = read_kept_orientation(only_one(kept["orientation_constraints"]), frames,
-                                               conversion.left_out);
   if (!request["trajectory_constraints"]["constraints"].items().empty())
     request["trajectory_constraints"]["constraints"].refuse("a problem cannot say this");
+  if (kept["orientation_constraints"].items().empty())
+    return std::nullopt;
+  return read_kept_orientation(only_one(kept["orientation_constraints"]), frames, left_out);
 }
 
 }  // namespace kinship::moveit

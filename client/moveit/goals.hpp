@@ -19,4 +19,11 @@ Eigen::VectorXd read_start(const YamlValue& scene, const YamlValue& request,
 void read_goals(const YamlValue& request, const kinematics::Chain& chain, const Frames& frames,
                 Conversion& conversion);
 
+/// The region that path_constraints of moveit_msgs/MotionPlanRequest bound; empty if none.
+/// \param left_out  receives the differences.
+/// \throws Failure(InvalidInput) that names a constraint of another kind, or
+///         trajectory_constraints.
+std::optional<TaskSpaceRegion> read_constraint(const YamlValue& request, const Frames& frames,
+                                               std::vector<std::string>& left_out);
+
 }  // namespace kinship::moveit

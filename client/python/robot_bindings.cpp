@@ -80,7 +80,8 @@ void bind_loading(RobotClass& robot) {
                   const std::map<std::string, double>& held,
                   const std::optional<std::filesystem::path>& srdf,
                   const std::map<std::string, std::string>& packages, bool collision_from_visual,
-                  const std::vector<std::string>& without_collision) {
+                  const std::vector<std::string>& without_collision,
+                  const std::map<std::string, std::string>& xacro) {
         models::RobotArguments arguments{
             .source = source,
             .base_link = base,
@@ -93,6 +94,8 @@ void bind_loading(RobotClass& robot) {
             .packages = pairs_of(packages, [](const auto& folder) { return folder; }),
             .collision_from_visual = collision_from_visual,
             .without_collision = without_collision};
+        for (const auto& [name, value] : xacro)
+          arguments.xacro.push_back(name + ":=" + value);
         if (transfer)
           arguments.transfer = words_of(read_pose(*transfer, "transfer"));
         std::vector<std::string> warnings;
@@ -114,9 +117,10 @@ transfer  pose of the transfer frame in the tip link: 4 x 4, or x y z qx qy qz q
 axes      those of x y z roll pitch yaw that matter; by default the folder's, or all
 held      positions of joints off the chain
 srdf      its disabled pairs of links are never checked
-packages  folders of the packages that meshes are in, by name
+packages  folders of the packages that meshes are in, by name; others are searched as ROS does
 collision_from_visual  links that are drawn and have no solids: what is drawn is solid
 without_collision      names of links that are drawn and need no solid
+xacro     arguments of a URDF or SRDF that is xacro, which the program xacro expands
 
 Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("source"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
@@ -125,7 +129,8 @@ Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("held") = std::map<std::string, double>(), py::arg("srdf") = py::none(),
       py::arg("packages") = std::map<std::string, std::string>(),
       py::arg("collision_from_visual") = false,
-      py::arg("without_collision") = std::vector<std::string>());
+      py::arg("without_collision") = std::vector<std::string>(),
+      py::arg("xacro") = std::map<std::string, std::string>());
 }
 
 void bind_properties(RobotClass& robot) {

@@ -19,7 +19,6 @@ constexpr std::chrono::nanoseconds kStart = 1s;  // in MCAP a time of 0 can mean
 constexpr std::chrono::nanoseconds kRest = 500ms;  // at the end of a path
 constexpr std::chrono::nanoseconds kChange = 1ms;  // to the next: viewers interpolate between times
 constexpr double kPerSecond = 30;
-constexpr double kOtherSpeed_rad_per_s = 1, kOtherSpeed_m_per_s = 0.25;
 constexpr const char* kTimes =
     "made up: every segment of a path lasts as long as its slowest joint needs at the velocity "
     "limit of the URDF (1 rad/s or 0.25 m/s where there is none), without acceleration; the robot "
@@ -54,17 +53,6 @@ std::vector<Entity> link_entities(const kinematics::RobotModel& robot) {
   for (auto& [link, entity] : entities)
     list.push_back(std::move(entity));
   return list;
-}
-
-Eigen::VectorXd speeds_of(const kinematics::RobotModel& robot) {
-  Eigen::VectorXd speeds = kinematics::velocity_limits(robot);
-  for (Eigen::Index i = 0; i < speeds.size(); ++i) {
-    const auto type = robot.chain.joints()[static_cast<std::size_t>(i)].type;
-    if (speeds(i) == 0)
-      speeds(i) =
-          type == kinematics::JointType::Prismatic ? kOtherSpeed_m_per_s : kOtherSpeed_rad_per_s;
-  }
-  return speeds;
 }
 
 /// The poses of links in their parents: those that a joint moves against its parent, or the others.
@@ -135,7 +123,7 @@ void PathRecording::begin() {
 void PathRecording::add_robot(RobotDescription description) {
   Robot robot{kinematics::read_model(std::move(description)).value_or_throw(), {}, {}};
   robot.links = link_entities(robot.model);
-  robot.speeds = speeds_of(robot.model);
+  robot.speeds = kinematics::path_speeds(robot.model);
   const Digest digest = robot.model.chain.digest();
   robots_.insert_or_assign(digest, std::move(robot));
 }
@@ -156,7 +144,7 @@ void PathRecording::add_path(const Attempt& attempt) {
                                                "' has " + std::to_string(robot.model.chain.dof()));
   if (!writer_)
     begin();
-  const TimedPath path = timed(*attempt.path, robot.speeds, kPerSecond);
+  const kinematics::TimedPath path = kinematics::timed(*attempt.path, robot.speeds, kPerSecond);
   write_metadata(robot, attempt, path);
   write_fixed(robot, placement_of(attempt));
   write_drawings(robot, attempt, path);
@@ -192,7 +180,7 @@ void PathRecording::write_moving(const Robot& robot, const Eigen::Ref<const Eige
 }
 
 void PathRecording::write_drawings(const Robot& robot, const Attempt& attempt,
-                                   const TimedPath& path) {
+                                   const kinematics::TimedPath& path) {
   const std::string& label = robot.model.description.label;
   Entity hand{kTask, "hand", kHand};
   hand.line.resize(3, path.configurations.cols());
@@ -208,7 +196,7 @@ void PathRecording::write_drawings(const Robot& robot, const Attempt& attempt,
 }
 
 void PathRecording::write_metadata(const Robot& robot, const Attempt& attempt,
-                                   const TimedPath& path) {
+                                   const kinematics::TimedPath& path) {
   auto facts = facts_of(attempt, robot.model.description.label);
   facts["start_ns"] = std::to_string(now_.count());
   facts["end_ns"] = std::to_string((now_ + path.times.back()).count());

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "pages/mcap/scene_messages.hpp"
-#include "pages/mcap/timed_path.hpp"
 #include "pages/mcap/writer.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/robot_description.hpp"
+#include "robots/kinematics/timed_path.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::mcap {
@@ -55,8 +55,10 @@ class PathRecording {
   void begin();
   void write_fixed(const Robot& robot, const Eigen::Isometry3d& T_task_base);
   void write_moving(const Robot& robot, const Eigen::Ref<const Eigen::VectorXd>& q);
-  void write_drawings(const Robot& robot, const Attempt& attempt, const TimedPath& path);
-  void write_metadata(const Robot& robot, const Attempt& attempt, const TimedPath& path);
+  void write_drawings(const Robot& robot, const Attempt& attempt,
+                      const kinematics::TimedPath& path);
+  void write_metadata(const Robot& robot, const Attempt& attempt,
+                      const kinematics::TimedPath& path);
 
   std::ostream& out_;
   std::map<std::string, std::string> choice_;

@@ -6,6 +6,7 @@
 #include "proto/types/number_text.hpp"
 #include "robots/geometry/mesh.hpp"
 #include "robots/geometry/point_cloud.hpp"
+#include "robots/models/ros_packages.hpp"
 #include "robots/models/text_file.hpp"
 
 namespace kinship::models {
@@ -44,10 +45,16 @@ Result<std::filesystem::path> MeshFiles::find(const std::string& uri) const {
     if (slash == 0 || slash == std::string_view::npos || slash + 1 == rest.size())
       return wrong_uri("must be package://NAME/FILE");
     const std::string name(rest.substr(0, slash));
-    const auto folder = packages_.find(name);
-    if (folder == packages_.end())
-      return wrong_uri("the folder of package '" + name + "' is not known; give --package " + name +
-                       "=DIR");
+    if (name == "." || name == "..")
+      return wrong_uri("'" + name + "' is no package");
+    auto folder = packages_.find(name);
+    if (folder == packages_.end()) {
+      PackageSearch search = find_ros_package(name, urdf_folder_);
+      if (!search.folder)
+        return wrong_uri("the folder of package '" + name + "' is not known; give --package " +
+                         name + "=DIR. Searched: " + search.places);
+      folder = packages_.emplace(name, *std::move(search.folder)).first;
+    }
     return folder->second / rest.substr(slash + 1);
   }
   if (text.starts_with(kFile)) {

@@ -26,16 +26,18 @@ using PackageFolders = std::map<std::string, std::filesystem::path>;
 ///         or a folder that does not exist.
 Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments);
 
-/// The files that URDFs and problems name.
+/// The files that URDFs and problems name. Not shared between threads: it keeps the folders of the
+/// packages that it found.
 class MeshFiles {
  public:
-  /// \param urdf_folder  of the URDF file, for relative names.
+  /// \param urdf_folder  of the URDF file, for relative names and the packages above it.
+  /// \param packages     count before those that find_ros_package() finds.
   MeshFiles(std::filesystem::path urdf_folder, PackageFolders packages)
       : urdf_folder_(std::move(urdf_folder)), packages_(std::move(packages)) {}
 
   /// The file of a mesh: package://NAME/FILE, file:///FILE, or a file name.
-  /// \return InvalidInput with the URI, and with the option that helps if it names a package with
-  ///         unknown folder.
+  /// \return InvalidInput with the URI; of a package that is not found with the searched places and
+  ///         the option that helps.
   Result<std::filesystem::path> find(const std::string& uri) const;
 
   /// The corners of a mesh: a geometry::MeshSource.
@@ -53,7 +55,7 @@ class MeshFiles {
                             Result<Content> (*parse)(std::string_view, std::string_view)) const;
 
   std::filesystem::path urdf_folder_;
-  PackageFolders packages_;
+  mutable PackageFolders packages_;  // and those that were found
 };
 
 /// Reads the meshes and point clouds that problems name. A file is read once for each scale or size

@@ -155,12 +155,13 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 /// \throws Failure with the fault.
-RobotDescription read_urdf_file(const std::filesystem::path& file) {
+RobotDescription read_urdf_file(const RobotArguments& arguments) {
   RobotDescription description;
-  description.urdf = read_text(file, kMaxUrdfBytes);
-  if (const auto error = check_expanded(file, description.urdf, ".urdf"))
-    throw Failure(*error);
-  description.label = file.stem().string();
+  description.urdf = read_expanded(arguments.source, urdf_input(arguments));
+  std::filesystem::path name = arguments.source.filename();
+  if (name.extension() == ".xacro")
+    name.replace_extension();
+  description.label = name.stem().string();
   return description;
 }
 
@@ -202,10 +203,11 @@ std::string stranger_warning(const std::filesystem::path& srdf,
 }
 
 /// \throws Failure with the fault.
-void add_pairs(const std::filesystem::path& srdf, DescribedRobot& robot) {
-  const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
-  if (const auto error = check_expanded(srdf, text, ".srdf"))
-    throw Failure(*error);
+void add_pairs(const RobotArguments& arguments, DescribedRobot& robot) {
+  const std::filesystem::path& srdf = arguments.srdf;
+  const std::string text = read_expanded(
+      srdf,
+      {.arguments = arguments.xacro, .max_bytes = geometry::kMaxSrdfBytes, .ending = ".srdf"});
   kinematics::RobotModel model = kinematics::read_model(robot.description).value_or_throw();
   robot.urdf = std::move(model.urdf);
   std::vector<geometry::SrdfStranger> strangers;
@@ -232,7 +234,7 @@ DescribedRobot put_together(const RobotArguments& arguments) {
   std::error_code unreadable;  // is for read_urdf_file to tell
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   DescribedRobot robot{is_folder ? read_model_folder(arguments.source).value_or_throw()
-                                 : read_urdf_file(arguments.source)};
+                                 : read_urdf_file(arguments)};
   RobotDescription& description = robot.description;
   if (!is_folder && (arguments.base_link.empty() || arguments.tip_link.empty()))
     throw Failure(
@@ -258,11 +260,15 @@ DescribedRobot put_together(const RobotArguments& arguments) {
   for (const std::string& held : arguments.held)
     add_held_joint(held, description);
   if (!arguments.srdf.empty())
-    add_pairs(arguments.srdf, robot);
+    add_pairs(arguments, robot);
   return robot;
 }
 
 }  // namespace
+
+XacroInput urdf_input(const RobotArguments& arguments) {
+  return {.arguments = arguments.xacro, .max_bytes = kMaxUrdfBytes, .ending = ".urdf"};
+}
 
 Result<RobotDescription> read_model_folder(const std::filesystem::path& folder) {
   try {

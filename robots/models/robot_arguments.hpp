@@ -8,6 +8,7 @@
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "robots/models/xacro.hpp"
 
 namespace kinship::models {
 
@@ -35,7 +36,11 @@ struct RobotArguments {
   std::vector<std::string> packages = {};  ///< "NAME=DIR" each, for meshes named package://NAME/...
   bool collision_from_visual = false;      ///< links without collision elements get their visuals
   std::vector<std::string> without_collision = {};  ///< links that may have visuals and no solid
+  std::vector<std::string> xacro = {};  ///< "NAME:=VALUE" each, for a URDF or SRDF that is xacro
 };
+
+/// How the URDF file of a robot is read.
+XacroInput urdf_input(const RobotArguments& arguments);
 
 /// The description that the files of a robot make.
 struct DescribedRobot {

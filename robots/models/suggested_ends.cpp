@@ -53,9 +53,7 @@ LinksOfFile read_links(RobotArguments& arguments) {
   std::error_code unreadable;
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   const std::filesystem::path file = is_folder ? arguments.source / kUrdfFile : arguments.source;
-  const std::string urdf = read_text(file, kMaxUrdfBytes);
-  if (const auto error = check_expanded(file, urdf, ".urdf"))
-    throw Failure(*error);
+  const std::string urdf = read_expanded(file, urdf_input(arguments));
   LinksOfFile links;
   links.tree = kinematics::read_link_tree(urdf).value_or_throw();
   links.ends = kinematics::suggest_ends(links.tree);

@@ -131,9 +131,11 @@ std::optional<Error> check_expanded(const std::filesystem::path& file, std::stri
   if (made == file.filename())
     made.replace_filename(made.stem().string() + "_expanded" + std::string(ending));
   return Error{ErrorCode::InvalidInput,
-               "'" + file.string() + "' is xacro (" + mark + "), which is still to be expanded: " +
-                   "xacro " + file.string() + " > " + made.string() +
-                   " (the program comes with ROS; arguments as NAME:=VALUE), then give that file"};
+               "'" + file.string() + "' is xacro (" + mark +
+                   "), and there is no program xacro in PATH to expand it. " +
+                   "It comes with ROS (or: pip install xacro); where it is: xacro " +
+                   file.string() + " > " + made.string() +
+                   " (arguments as NAME:=VALUE), then give that file"};
 }
 
 }  // namespace kinship::models

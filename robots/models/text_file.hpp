@@ -20,7 +20,8 @@ std::string read_text(const std::filesystem::path& file, std::size_t max_bytes);
 /// does a mere declaration xmlns:xacro, which expanded files keep.
 std::string xacro_mark(std::string_view text);
 
-/// The error for a file whose text is xacro: its mark, and how to expand it.
+/// The error for a file whose text is xacro where there is no program to expand it: its mark, and
+/// how to expand it.
 /// \param ending  of the expanded file, ".urdf" or ".srdf".
 std::optional<Error> check_expanded(const std::filesystem::path& file, std::string_view text,
                                     std::string_view ending);

@@ -5,7 +5,8 @@ import shutil
 import socket
 import subprocess
 
-PROGRAMS = pathlib.Path("/usr/lib/postgresql/15/bin")
+# Of the newest version that is installed: 15 in Debian 12, 17 in Debian 13.
+PROGRAMS = max(pathlib.Path("/usr/lib/postgresql").glob("*/bin"), key=lambda folder: int(folder.parent.name), default=pathlib.Path("/"))
 NAMES = ["initdb", "pg_basebackup", "pg_ctl", "psql", "openssl"]
 DOCUMENT_PORTS = (5433, 5434)
 

@@ -38,7 +38,10 @@ jit = off
 /// initdb, which takes longer than all that most tests do: so its outcome is kept beside the tests'
 /// programs, and copied. All clusters have one system identifier then.
 void make_cluster(const std::filesystem::path& data, const std::filesystem::path& log) {
-  const std::filesystem::path pattern = test::bin_dir() + "/../tests/postgresql-15-cluster";
+  const std::filesystem::path version =
+      std::filesystem::path(postgres_program("initdb")).parent_path().parent_path().filename();
+  const std::filesystem::path pattern =
+      test::bin_dir() + "/../tests/postgresql-" + version.string() + "-cluster";
   const auto copy = [&](const std::filesystem::path& from, const std::filesystem::path& to) {
     run_to_end({"/bin/cp", "--archive", "--reflink=auto", from, to}, log);
   };

@@ -3,17 +3,30 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <system_error>
 
 namespace kinship::test {
 namespace {
 
-// Where Debian has them; its wrappers in /usr/bin are for clusters of the system.
-constexpr const char* kPostgresFolder = "/usr/lib/postgresql/15/bin";
+constexpr const char* kPostgresFolder = "/usr/lib/postgresql";
 constexpr const char* kBouncer = "/usr/sbin/pgbouncer";
 constexpr const char* kSetpriv = "/usr/bin/setpriv";
 constexpr const char* kUser = "postgres";
+
+/// Where Debian has the programs of the newest version that is installed (15 in Debian 12, 17 in
+/// 13); its wrappers in /usr/bin are for clusters of the system.
+std::string newest_folder() {
+  long newest = 0;
+  std::error_code missing;
+  for (std::filesystem::directory_iterator entry(kPostgresFolder, missing), end;
+       !missing && entry != end; entry.increment(missing))
+    if (std::filesystem::exists(entry->path() / "bin/initdb", missing))
+      newest = std::max(newest, std::strtol(entry->path().filename().c_str(), nullptr, 10));
+  return std::string(kPostgresFolder) + "/" + std::to_string(newest) + "/bin";
+}
 
 bool may_run(const std::string& program) { return access(program.c_str(), X_OK) == 0; }
 
@@ -22,7 +35,7 @@ bool may_run(const std::string& program) { return access(program.c_str(), X_OK) 
 std::string missing_postgres() {
   for (const char* const name : {"initdb", "postgres", "pg_basebackup", "pg_rewind"})
     if (!may_run(postgres_program(name)))
-      return "no " + postgres_program(name) + " here (Debian package postgresql-15)";
+      return "no " + postgres_program(name) + " here (Debian package postgresql)";
   if (!may_run(kSetpriv))
     return std::string("no ") + kSetpriv + " here (Debian package util-linux)";
   if (geteuid() == 0 && getpwnam(kUser) == nullptr)  // NOLINT(concurrency-mt-unsafe)
@@ -36,7 +49,8 @@ std::string missing_pgbouncer() {
 }
 
 std::string postgres_program(const std::string& name) {
-  return std::string(kPostgresFolder) + "/" + name;
+  static const std::string kFolder = newest_folder();
+  return kFolder + "/" + name;
 }
 
 std::string pgbouncer_program() { return kBouncer; }

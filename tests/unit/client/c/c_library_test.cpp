@@ -351,6 +351,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_robot_description, held_joint_count), 80U);
   EXPECT_EQ(offsetof(kinship_robot_file, package_count), 88U);
   EXPECT_EQ(offsetof(kinship_robot_file, without_collision_count), 112U);
+  EXPECT_EQ(offsetof(kinship_robot_file, xacro_count), 128U);
   EXPECT_EQ(offsetof(kinship_object, pose), 48U);
   EXPECT_EQ(sizeof(kinship_held_joint), 16U);
   EXPECT_EQ(offsetof(kinship_attempt, share), 112U);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "robots/geometry/mesh.hpp"
@@ -26,16 +27,75 @@ TEST(MeshFiles, FindsFilesByPackageRootAndName) {
 }
 
 TEST(MeshFiles, NamesUriAndOptionOfWhatItCannotFind) {
-  const MeshFiles files("", {{"arm", "/opt/arm"}});
+  const MeshFiles files("/", {{"arm", "/opt/arm"}});
   EXPECT_EQ(found(files, "package://hand/h.dae"),
             "mesh 'package://hand/h.dae': the folder of package 'hand' is not known; give "
-            "--package hand=DIR");
+            "--package hand=DIR. Searched: AMENT_PREFIX_PATH (not set), ROS_PACKAGE_PATH (not "
+            "set), package.xml in / and above");
+  EXPECT_EQ(found(files, "package://../h.dae"), "mesh 'package://../h.dae': '..' is no package");
   EXPECT_EQ(found(files, "package://arm"), "mesh 'package://arm': must be package://NAME/FILE");
   EXPECT_EQ(found(files, "file://host/h.dae"),
             "mesh 'file://host/h.dae': must be file:///FILE with a path from the root");
   EXPECT_EQ(found(files, "http://a/h.dae"),
             "mesh 'http://a/h.dae': is not package://, file:// or a file name");
   EXPECT_EQ(found(files, ""), "mesh '': names no file");
+}
+
+/// Packages as ROS has them: installed, in a source tree, and around a URDF.
+class RosPackages : public testing::Test {
+ protected:
+  RosPackages() {
+    add("installed/share/arm_description", "arm_description");
+    add("src/group/arm_source", "arm_description");  // another folder name than the package's
+    add("src/group/hand", "hand");
+    add("src/.git/hidden", "hidden");
+    add("src/ignored/away", "away");
+    std::ofstream(folder_ / "src/ignored/COLCON_IGNORE").close();
+    add("own", "own_description");
+    std::filesystem::create_directories(folder_ / "own/robots/urdf");
+  }
+  ~RosPackages() override {
+    unsetenv("AMENT_PREFIX_PATH");  // NOLINT(concurrency-mt-unsafe)
+    unsetenv("ROS_PACKAGE_PATH");   // NOLINT(concurrency-mt-unsafe)
+  }
+
+  void add(const std::string& folder, const std::string& name) {
+    std::filesystem::create_directories(folder_.path() / folder);
+    std::ofstream(folder_.path() / folder / "package.xml")
+        << "<?xml version='1.0'?><package format='3'><name> " << name << "\n</name></package>";
+  }
+  void set(const char* variable, const std::string& value) {
+    setenv(variable, value.c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
+  }
+  std::string place(const std::string& inside) const { return (folder_.path() / inside).string(); }
+  std::string find(const std::string& package, const PackageFolders& given = {}) const {
+    return found(MeshFiles(folder_ / "own/robots/urdf", given), "package://" + package + "/m.stl");
+  }
+
+  test::TemporaryDirectory folder_;
+};
+
+TEST_F(RosPackages, AreFoundInstalledThenInSourcesThenAboveTheUrdf) {
+  set("AMENT_PREFIX_PATH", place("none") + ":" + place("installed"));
+  set("ROS_PACKAGE_PATH", place("src") + "::" + place("none"));
+  EXPECT_EQ(find("arm_description"), place("installed/share/arm_description/m.stl"));
+  EXPECT_EQ(find("hand"), place("src/group/hand/m.stl"));
+  EXPECT_EQ(find("own_description"), place("own/m.stl"));
+  EXPECT_EQ(find("hand", {{"hand", "/given"}}), "/given/m.stl");
+  unsetenv("AMENT_PREFIX_PATH");  // NOLINT(concurrency-mt-unsafe)
+  EXPECT_EQ(find("arm_description"), place("src/group/arm_source/m.stl"));
+}
+
+TEST_F(RosPackages, TheErrorNamesAllPlaces) {
+  set("AMENT_PREFIX_PATH", place("none") + ":" + place("installed"));
+  set("ROS_PACKAGE_PATH", place("src"));
+  for (const std::string package : {"hidden", "away", "nowhere"})
+    EXPECT_EQ(find(package),
+              "mesh 'package://" + package + "/m.stl': the folder of package '" + package +
+                  "' is not known; give --package " + package +
+                  "=DIR. Searched: AMENT_PREFIX_PATH (" + place("none/share/" + package) + ", " +
+                  place("installed/share/" + package) + "), ROS_PACKAGE_PATH (" + place("src") +
+                  "), package.xml in " + place("own/robots/urdf") + " and above");
 }
 
 TEST(MeshFiles, ReadsAFileByItsEnding) {

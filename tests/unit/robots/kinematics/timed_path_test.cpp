@@ -1,10 +1,10 @@
-#include "pages/mcap/timed_path.hpp"
+#include "robots/kinematics/timed_path.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-namespace kinship::mcap {
+namespace kinship::kinematics {
 namespace {
 
 using namespace std::chrono_literals;
@@ -49,4 +49,4 @@ TEST(TimedPath, RefusesSpeedsOfAnotherRobot) {
 }
 
 }  // namespace
-}  // namespace kinship::mcap
+}  // namespace kinship::kinematics

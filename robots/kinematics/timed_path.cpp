@@ -1,15 +1,26 @@
-#include "pages/mcap/timed_path.hpp"
+#include "robots/kinematics/timed_path.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-namespace kinship::mcap {
+namespace kinship::kinematics {
+
+Eigen::VectorXd path_speeds(const RobotModel& robot) {
+  constexpr double kOther_rad_per_s = 1, kOther_m_per_s = 0.25;
+  Eigen::VectorXd speeds = velocity_limits(robot);
+  for (Eigen::Index i = 0; i < speeds.size(); ++i)
+    if (speeds(i) == 0)
+      speeds(i) = robot.chain.joints()[static_cast<std::size_t>(i)].type == JointType::Prismatic
+                      ? kOther_m_per_s
+                      : kOther_rad_per_s;
+  return speeds;
+}
 
 TimedPath timed(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& speeds,
                 double per_second) {
   if (speeds.size() != path.dof())
-    throw std::invalid_argument("mcap::timed: a path of " + std::to_string(path.dof()) +
+    throw std::invalid_argument("timed: a path of " + std::to_string(path.dof()) +
                                 " joints, speeds of " + std::to_string(speeds.size()));
   const Eigen::MatrixXd& waypoints = path.waypoints();
   std::vector<Eigen::VectorXd> configurations = {waypoints.col(0)};
@@ -36,4 +47,4 @@ TimedPath timed(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& speed
   return result;
 }
 
-}  // namespace kinship::mcap
+}  // namespace kinship::kinematics
