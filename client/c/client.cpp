@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <string>
 #include <utility>
 
 #include "client/c/errors.hpp"
 #include "client/c/handles.hpp"
+#include "client/guided/scene_record.hpp"
 #include "client/link/environment.hpp"
 #include "proto/evidence/machine_speed.hpp"
 #include "proto/json/attempt_json.hpp"
@@ -57,19 +57,11 @@ SamplingMode read_sampling(kinship_sampling given) {
                               std::to_string(KINSHIP_CONTROL)));
 }
 
-SceneObject read_object(const kinship_object& given, const std::string& where) {
-  require(given.name, ("a name in " + where).c_str());
-  const std::string name = given.name;
-  if (given.shape < KINSHIP_BOX || given.shape > KINSHIP_CAPSULE)
-    throw Failure(invalid_input("object '" + name + "': its shape is " +
-                                std::to_string(given.shape) + ", must be 0 to " +
-                                std::to_string(KINSHIP_CAPSULE)));
-  ShapeNumbers shape;
-  shape.kind = static_cast<std::size_t>(given.shape);
-  std::copy_n(std::begin(given.sizes), shape.sizes.size(), shape.sizes.begin());
-  return {.name = name,
-          .shape = to_shape(shape),
-          .T_task_object = read_pose(std::begin(given.pose), ("object '" + name + "'").c_str())};
+/// As the server keeps it: solids around meshes, boxes around voxels.
+RecordedScene record(const GivenScene& given) {
+  RecordedScene scene = guided::SceneRecords().record(given.scene, given.held, {}).value_or_throw();
+  scene.allowed_collisions = given.allowed_collisions;  // unknown names are told
+  return scene;
 }
 
 Attempt read_attempt(const kinship_attempt& given) {
@@ -94,9 +86,9 @@ Attempt read_attempt(const kinship_attempt& given) {
   if (given.solved != 0)
     attempt.path = read_path(given);
   if (given.objects != nullptr || given.object_count > 0)
-    attempt.scene = read_scene({given.objects, given.object_count, given.allowed_collisions,
-                                given.allowed_collision_pairs},
-                               "attempt");
+    attempt.scene = record(read_scene({given.objects, given.object_count, given.allowed_collisions,
+                                       given.allowed_collision_pairs},
+                                      "attempt"));
   else if (given.allowed_collision_pairs > 0)
     throw Failure(invalid_input("attempt->allowed_collision_pairs is " +
                                 std::to_string(given.allowed_collision_pairs) +
@@ -129,34 +121,6 @@ std::vector<std::pair<std::string, std::string>> read_pairs(const char* const* n
     read.emplace_back(names[2 * i], names[2 * i + 1]);
   }
   return read;
-}
-
-RecordedScene read_scene(const SceneMembers& given, const std::string& name) {
-  const std::string objects = name + "->objects";
-  if (given.object_count > 0)
-    require(given.objects, objects.c_str());
-  RecordedScene scene;
-  // A caller that was compiled with another version has objects of another size.
-  const auto* bytes = reinterpret_cast<const char*>(given.objects);  // NOLINT: steps of that size
-  const std::size_t step = given.object_count > 0 ? given.objects->size : 0;
-  for (std::size_t i = 0; i < given.object_count; ++i) {
-    const kinship_object object =  // NOLINTNEXTLINE: of the array that the caller has
-        read_structure(reinterpret_cast<const kinship_object*>(bytes + i * step), "object");
-    if (object.size != step)
-      throw Failure(invalid_input("object " + std::to_string(i) + ": its size is " +
-                                  std::to_string(object.size) + ", that of the first is " +
-                                  std::to_string(step)));
-    SceneObject read = read_object(object, objects);
-    if (object.is_held == 0)
-      scene.objects.push_back(std::move(read));
-    else
-      scene.held.push_back({.name = std::move(read.name),
-                            .shape = read.shape,
-                            .T_transfer_object = read.T_task_object});
-  }
-  scene.allowed_collisions = read_pairs(given.allowed_collisions, given.allowed_collision_pairs,
-                                        (name + "->allowed_collisions").c_str());
-  return scene;
 }
 
 Digest read_robot(const kinship_robot* robot, const char* name) {

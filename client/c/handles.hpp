@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "client/c/kinship.h"
+#include "client/c/kinship_planning.h"
+#include "client/guided/plan_problem.hpp"
 #include "client/link/client.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/distribution.hpp"
-#include "proto/types/recorded_scene.hpp"
+#include "proto/types/scene.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/edge_prover.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -88,6 +90,19 @@ struct kinship_world {
   kinship::collision::EdgeProver prover;
   std::set<std::string> names;  // that proofs have told, at most one a body
 };
+
+struct kinship_planner {
+  explicit kinship_planner(const kinship::models::LoadedRobot& loaded)
+      : robot(loaded.chain, loaded.shapes) {}
+  const kinship::guided::PlannedRobot robot;
+};
+
+struct kinship_plan {
+  kinship::kinematics::Chain chain;
+  kinship::Problem problem;
+  kinship::guided::PlanSettings settings;
+  kinship::guided::PlannedProblem planned;
+};
 // NOLINTEND(readability-identifier-naming)
 
 namespace kinship::c_library {
@@ -115,9 +130,24 @@ struct SceneMembers {
   std::size_t allowed_collision_pairs;
 };
 
+/// A scene of the caller; what is held is given in the transfer frame, and names no link yet.
+struct GivenScene {
+  Scene scene;
+  std::vector<AttachedObject> held;
+  std::vector<std::pair<std::string, std::string>> allowed_collisions;
+};
+
 /// \param name  of the structure, for messages.
 /// \throws Failure(InvalidInput) if a member is NULL, of another size, or no shape or pose.
-RecordedScene read_scene(const SceneMembers& given, const std::string& name);
+GivenScene read_scene(const SceneMembers& given, const std::string& name);
+
+/// The same with a placement: what is held hangs on the tip link.
+collision::Surroundings read_surroundings(const kinship_surroundings& given,
+                                          const kinematics::Chain& chain);
+
+/// \return  dof x count. \throws Failure(InvalidInput) if one is NULL or not finite.
+Eigen::MatrixXd read_columns(const double* numbers, Eigen::Index dof, std::size_t count,
+                             const std::string& name);
 
 /// The robot in files, with its meshes' triangles. Links that move may be without solids.
 /// \throws Failure that names the argument or file.

@@ -1,7 +1,7 @@
 /** \file kinship.h
  * Kinship for C and for whatever calls C: register a robot, report paths, fetch or follow the
  * distribution that the fleet's experience gives it, draw configurations from it; recall whole
- * paths; without a server prove that edges touch nothing.
+ * paths; without a server prove that edges touch nothing. kinship_planning.h plans.
  *
  * - Functions that can fail return a kinship_code; kinship_error_text() then says in words what
  * went wrong in the last call of this thread, with the thing, its value and the limit. What they
@@ -165,6 +165,8 @@ typedef enum kinship_shape {
   KINSHIP_CYLINDER = 1, /**< radius, length along z */
   KINSHIP_SPHERE = 2,   /**< radius */
   KINSHIP_CAPSULE = 3,  /**< radius, length of its cylindrical part along z */
+  KINSHIP_MESH = 4,     /**< triangles: three points each */
+  KINSHIP_VOXELS = 5,   /**< cubes: edge; points: middles, odd multiples of half an edge */
   KINSHIP_SHAPE_WIDTH = 0x7fffffff
 } kinship_shape;
 
@@ -177,6 +179,8 @@ typedef struct kinship_object {
   int is_held;     /**< not 0: the robot holds it */
   double sizes[3]; /**< as the shape says, the others are not looked at */
   double pose[7];  /**< of its centre, in the task's frame; if it is held in the transfer frame */
+  const double* points; /**< x y z each, m, in the object's own frame; else not looked at */
+  size_t point_count;
 } kinship_object;
 
 /** What a planner says about one query. */
@@ -197,8 +201,8 @@ typedef struct kinship_attempt {
   uint64_t collision_checks; /**< configurations of which any collision question was asked */
   kinship_sampling sampling; /**< CONTROL: uniform on purpose although there was guidance */
   double share;              /**< of samples drawn from the distribution, 0 to 1 */
-  /** The scene, so that another robot's distribution keeps out of it; of meshes take solids around
-   * them. NULL: the scene is not told; not NULL, with object_count 0: nothing was in the way. */
+  /** The scene, so that another robot's distribution keeps out of it; meshes are told as solids
+   * around them. NULL: the scene is not told; not NULL, with object_count 0: nothing was there. */
   const kinship_object* objects;
   size_t object_count;
   const char* const* allowed_collisions; /**< 2 n names of objects that may touch, pair by pair */

@@ -19,16 +19,6 @@ static_assert(KINSHIP_RECALL_WAYPOINTS == kRecallWaypoints);
 
 struct GivenUp {};  // leaves recall between two checks
 
-/// \return  dof x count. \throws Failure(InvalidInput) if one is NULL or not finite.
-Eigen::MatrixXd read_columns(const double* numbers, Eigen::Index dof, std::size_t count,
-                             const std::string& name) {
-  require(numbers, name.c_str());
-  const Eigen::Map<const Eigen::MatrixXd> read(numbers, dof, static_cast<Eigen::Index>(count));
-  if (!read.allFinite())
-    throw Failure(invalid_input(name + " has a number that is not finite"));
-  return read;
-}
-
 /// Goals within the bounds of a plan; a goal that a joint's limit excludes is left out.
 /// \throws Failure(InvalidInput) if none is left.
 Eigen::MatrixXd read_goals(const kinship_recall_query& given, const kinematics::Chain& chain,
@@ -67,7 +57,7 @@ recall::Query read_query(const kinship_recall_query& given, const recall::Recall
   }
   query.T_task_anchors = recall::find_anchors(
       guide.library().anchors,
-      read_scene({given.objects, given.object_count, nullptr, 0}, "query").objects);
+      read_scene({given.objects, given.object_count, nullptr, 0}, "query").scene.objects);
   return query;
 }
 
@@ -111,6 +101,16 @@ recall::RecallSummary try_paths(kinship_recall& recall, const recall::Query& que
 }
 
 }  // namespace
+
+Eigen::MatrixXd read_columns(const double* numbers, Eigen::Index dof, std::size_t count,
+                             const std::string& name) {
+  require(numbers, name.c_str());
+  const Eigen::Map<const Eigen::MatrixXd> read(numbers, dof, static_cast<Eigen::Index>(count));
+  if (!read.allFinite())
+    throw Failure(invalid_input(name + " has a number that is not finite"));
+  return read;
+}
+
 }  // namespace kinship::c_library
 
 using namespace kinship::c_library;

@@ -15,26 +15,6 @@ namespace {
 
 static_assert(KINSHIP_CLEARANCE_M == collision::EdgeProofOptions{}.clearance_m);
 
-/// Held shapes hang on the tip link.
-collision::Surroundings read_surroundings(const kinship_surroundings& given,
-                                          const kinematics::Chain& chain) {
-  collision::Surroundings surroundings;
-  if (given.T_task_base != nullptr)
-    surroundings.T_task_base = read_pose(given.T_task_base, "surroundings->T_task_base");
-  RecordedScene scene = read_scene(
-      {given.objects, given.object_count, given.allowed_collisions, given.allowed_collision_pairs},
-      "surroundings");
-  surroundings.scene.objects = std::move(scene.objects);
-  for (HeldObject& held : scene.held)
-    surroundings.attached.push_back({std::move(held.name),
-                                     chain.tip_link(),
-                                     held.shape,
-                                     chain.T_tip_transfer() * held.T_transfer_object,
-                                     {}});
-  surroundings.allowed_collisions = std::move(scene.allowed_collisions);
-  return surroundings;
-}
-
 /// A sentence a line.
 std::string doubts_of(const models::LoadedRobot& robot, const collision::RobotSolids& solids,
                       const collision::Surroundings& surroundings) {

@@ -41,26 +41,25 @@ Result<SceneRecords::Solids> SceneRecords::around(const Mesh& mesh, const std::s
   return solids;
 }
 
-std::optional<Error> SceneRecords::add_held(const AttachedObject& attached,
-                                            const Eigen::Isometry3d& T_transfer_object,
-                                            RecordedScene& scene) {
-  if (!attached.mesh) {
-    scene.held.push_back({attached.name, attached.shape, T_transfer_object});
+std::optional<Error> SceneRecords::add_held(const AttachedObject& held, RecordedScene& scene) {
+  if (!held.mesh) {
+    scene.held.push_back({held.name, held.shape, held.T_link_object});
     return std::nullopt;
   }
-  const Result<Solids> solids = around(*attached.mesh, attached.name);
+  const Result<Solids> solids = around(*held.mesh, held.name);
   if (!solids)
     return solids.error();
   for (const geometry::FittedShape& solid : **solids)
-    scene.held.push_back(
-        {attached.name, solid.shape, T_transfer_object * solid.T_points_shape, true});
+    scene.held.push_back({held.name, solid.shape, held.T_link_object * solid.T_points_shape, true});
   return std::nullopt;
 }
 
-Result<RecordedScene> SceneRecords::record(const kinematics::Chain& chain, const Problem& problem) {
+Result<RecordedScene> SceneRecords::record(const Scene& given,
+                                           const std::vector<AttachedObject>& held,
+                                           const NamePairs& allowed_collisions) {
   RecordedScene scene;
-  scene.objects = problem.scene.objects;
-  for (const SceneMesh& object : problem.scene.meshes) {
+  scene.objects = given.objects;
+  for (const SceneMesh& object : given.meshes) {
     const Result<Solids> solids = around(object.mesh, object.name);
     if (!solids)
       return solids.error();
@@ -68,7 +67,7 @@ Result<RecordedScene> SceneRecords::record(const kinematics::Chain& chain, const
       scene.objects.push_back(
           {object.name, solid.shape, object.T_task_mesh * solid.T_points_shape, true});
   }
-  for (const SceneCloud& object : problem.scene.clouds) {
+  for (const SceneCloud& object : given.clouds) {
     if (!object.cloud.voxels)
       return invalid_input("'" + object.name + "' is a point cloud that was not read");
     for (const geometry::VoxelBlock& block :
@@ -76,18 +75,33 @@ Result<RecordedScene> SceneRecords::record(const kinematics::Chain& chain, const
       scene.objects.push_back({object.name, BoxShape{block.size},
                                object.T_task_cloud * Eigen::Translation3d(block.center), true});
   }
-  for (const AttachedObject& attached : problem.attached)
-    if (const auto T = T_transfer_link(chain, attached.link))
-      if (const auto error = add_held(attached, *T * attached.T_link_object, scene))
-        return *error;
+  for (const AttachedObject& each : held)
+    if (const auto error = add_held(each, scene))
+      return *error;
   std::set<std::string_view> names;
   for (const SceneObject& object : scene.objects)
     names.insert(object.name);
-  for (const HeldObject& held : scene.held)
-    names.insert(held.name);
-  for (const auto& [first, second] : problem.allowed_collisions)
+  for (const HeldObject& each : scene.held)
+    names.insert(each.name);
+  for (const auto& [first, second] : allowed_collisions)
     if (names.contains(first) && names.contains(second))
       scene.allowed_collisions.emplace_back(first, second);
+  if (const auto error = check_scene(scene))
+    return *error;
+  return scene;
+}
+
+Result<RecordedScene> SceneRecords::record(const kinematics::Chain& chain, const Problem& problem) {
+  std::vector<AttachedObject> held;
+  for (const AttachedObject& attached : problem.attached)
+    if (const auto T = T_transfer_link(chain, attached.link)) {
+      held.push_back(attached);
+      held.back().T_link_object = *T * attached.T_link_object;
+    }
+  Result<RecordedScene> recorded = record(problem.scene, held, problem.allowed_collisions);
+  if (!recorded || !problem.constraint)
+    return recorded;
+  RecordedScene scene = std::move(recorded).value();
   scene.constraint = problem.constraint;
   if (const auto error = check_scene(scene))
     return *error;

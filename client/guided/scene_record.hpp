@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "proto/types/problem.hpp"
@@ -19,6 +20,8 @@ namespace kinship::guided {
 /// however many problems share it. Used by one thread.
 class SceneRecords {
  public:
+  using NamePairs = std::vector<std::pair<std::string, std::string>>;
+
   /// A problem's scene and constraint without its robot. Objects attached to the tip link, or to a
   /// link fixed to it, are given in the transfer frame; objects of other links, and allowed pairs
   /// that name a link, are left out: another robot has no such link. A mesh becomes solids around
@@ -26,13 +29,16 @@ class SceneRecords {
   /// \param problem  its meshes and clouds have been read.
   /// \return Error that names the rule which the scene breaks: too large, an empty name.
   Result<RecordedScene> record(const kinematics::Chain& chain, const Problem& problem);
+  /// The same of a scene without a constraint.
+  /// \param held  given in the transfer frame, whatever link they name.
+  Result<RecordedScene> record(const Scene& scene, const std::vector<AttachedObject>& held,
+                               const NamePairs& allowed_collisions);
 
  private:
   using Solids = std::shared_ptr<const std::vector<geometry::FittedShape>>;
 
   Result<Solids> around(const Mesh& mesh, const std::string& name);
-  std::optional<Error> add_held(const AttachedObject& attached,
-                                const Eigen::Isometry3d& T_transfer_object, RecordedScene& scene);
+  std::optional<Error> add_held(const AttachedObject& held, RecordedScene& scene);
 
   std::map<std::shared_ptr<const Eigen::Matrix3Xd>, Solids> solids_;  // by the mesh's triangles
 };

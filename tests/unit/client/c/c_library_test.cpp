@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "client/c/kinship.h"
+#include "client/c/kinship_planning.h"
 #include "proto/security/security_folder.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
@@ -278,8 +279,8 @@ struct TableAndCup {
 TEST_F(CLibraryOffline, AnAttemptTellsItsScene) {
   TableAndCup scene(attempt_);
   EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
-  scene.objects[1].shape = static_cast<kinship_shape>(4);
-  expect_refused(kinship_report(client_, &attempt_), "object 'cup': its shape is 4");
+  scene.objects[1].shape = static_cast<kinship_shape>(6);
+  expect_refused(kinship_report(client_, &attempt_), "object 'cup': its shape is 6");
   scene.objects[1].shape = KINSHIP_SPHERE;
   scene.objects[1].sizes[0] = -1;
   expect_refused(kinship_report(client_, &attempt_), "'cup'");
@@ -353,6 +354,9 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_robot_file, without_collision_count), 112U);
   EXPECT_EQ(offsetof(kinship_robot_file, xacro_count), 128U);
   EXPECT_EQ(offsetof(kinship_object, pose), 48U);
+  EXPECT_EQ(offsetof(kinship_object, point_count), 112U);
+  EXPECT_EQ(offsetof(kinship_query, user), 128U);
+  EXPECT_EQ(offsetof(kinship_plan_info, planner), 72U);
   EXPECT_EQ(sizeof(kinship_held_joint), 16U);
   EXPECT_EQ(offsetof(kinship_attempt, share), 112U);
   EXPECT_EQ(offsetof(kinship_attempt, allowed_collision_pairs), 144U);

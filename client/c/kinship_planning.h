@@ -1,0 +1,93 @@
+/** \file kinship_planning.h
+ * Kinship's planners for C: a path of one query, guided by what kinship.h fetched, proven to touch
+ * nothing between its waypoints, and its report. Planning needs no server. The rules of kinship.h
+ * hold here too.
+ */
+#ifndef KINSHIP_PLANNING_H
+#define KINSHIP_PLANNING_H
+
+#include "kinship.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Names as C has them. NOLINTBEGIN(readability-identifier-naming,readability-function-size) */
+
+/** A robot to plan for. Never changes: threads share one, and plan at once. */
+typedef struct kinship_planner kinship_planner;
+
+/** Reads the robot's files as kinship_world_create() does, once for all queries; that may take
+ * seconds. \param dof  number of joints; may be NULL. */
+KINSHIP_API kinship_code kinship_planner_create(const kinship_robot_file* file,
+                                                kinship_planner** planner, size_t* dof);
+KINSHIP_API void kinship_planner_free(kinship_planner* planner);
+
+/** What is to be planned, and with which guidance. */
+typedef struct kinship_query {
+  size_t size;
+  const kinship_surroundings* surroundings; /**< NULL: nothing */
+  size_t dof;
+  const double* start;       /**< dof numbers, joint units */
+  const double* goals;       /**< dof numbers each, one after the other; any of them will do */
+  size_t goal_count;         /**< 0: any configuration at T_task_goal */
+  const double* T_task_goal; /**< of the transfer frame, in the task's frame; else not looked at */
+  double time_limit_s;       /**< 0: 10 */
+  uint64_t seed;             /**< equal queries with equal seeds have equal paths */
+  /** "birrt", "roadmap", "rrtconnect", or "ompl:NAME"; NULL: birrt. */
+  const char* algorithm;
+  /** What guides it, of the robot at this placement; NULL: not guided by that. They are used during
+   * the call only. */
+  const kinship_distribution* distribution;
+  kinship_recall* recall;
+  double share; /**< of samples drawn from the distribution; 0: the one it recommends */
+  /** KINSHIP_CONTROL: guidance is there, but on purpose not used, to compare. Else it is used. */
+  kinship_sampling sampling;
+  /** Called by the calling thread before every check: not 0 ends planning. NULL: never. */
+  int (*stop)(void* user);
+  void* user; /**< its argument */
+} kinship_query;
+
+/** An answer: a path, or why there is none. Never changes. */
+typedef struct kinship_plan kinship_plan;
+
+/** Plans: recalled paths first, then a search, then shortcuts, and a proof of every edge.
+ * \param plan  set with KINSHIP_OK, whether there is a path or not.
+ * \return KINSHIP_INVALID_INPUT for a query that is not proper, as kinship_world_create() for its
+ * surroundings. */
+KINSHIP_API kinship_code kinship_plan_find(const kinship_planner* planner,
+                                           const kinship_query* query, kinship_plan** plan);
+KINSHIP_API void kinship_plan_free(kinship_plan* plan);
+
+typedef struct kinship_plan_info {
+  size_t size;
+  int is_solved;
+  int is_recalled;       /**< 1: a stored path, moved onto the query; nothing was searched */
+  int is_stopped;        /**< 1: by `stop`; it cannot be reported */
+  size_t waypoint_count; /**< 0 without a path */
+  size_t dof;
+  uint64_t collision_checks; /**< of planning, goals and shortcuts */
+  double planning_time_s;    /**< without goal configurations and shortcuts */
+  double processor_time_s;   /**< of all of it */
+  const char* reason;        /**< why there is no path, in words; "" if there is */
+  const char* planner;       /**< its name. Both texts are valid until the plan is freed */
+} kinship_plan_info;
+
+KINSHIP_API kinship_code kinship_plan_describe(const kinship_plan* plan, kinship_plan_info* info);
+/** \param waypoints  waypoint_count x dof numbers, start first, straight between them.
+ * \return KINSHIP_NOT_FOUND without a path. */
+KINSHIP_API kinship_code kinship_plan_copy(const kinship_plan* plan, double* waypoints);
+
+/** Reports the plan with its scene, as kinship_report() does.
+ * \param task  its name. \param machine  NULL: "".
+ * \return KINSHIP_INVALID_INPUT also if nothing was planned: the query does not fit the robot, or
+ * was stopped. */
+KINSHIP_API kinship_code kinship_plan_report(kinship_client* client, const kinship_plan* plan,
+                                             const char* task, const char* machine);
+
+/* NOLINTEND(readability-identifier-naming,readability-function-size) */
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "handles.hpp"
+#include "moveit_versions.hpp"
+
+namespace kinship_moveit {
+
+/// A planning scene as libkinship takes it: obstacles with their shapes, attached bodies, and the
+/// pairs that the allowed collision matrix always allows. Owns what its structures point to.
+class SceneObjects {
+ public:
+  /// \param state         of the query's start, up to date.
+  /// \param tip_link      of the planned chain.
+  /// \param T_tip_transfer  of the transfer frame.
+  /// \param T_task_world  pose of the planning frame in the task's frame.
+  SceneObjects(const planning_scene::PlanningScene& scene, const moveit::core::RobotState& state,
+               const std::string& tip_link, const Eigen::Isometry3d& T_tip_transfer,
+               const Eigen::Isometry3d& T_task_world);
+  SceneObjects(const SceneObjects&) = delete;
+  SceneObjects& operator=(const SceneObjects&) = delete;
+
+  const std::vector<kinship_object>& objects() const { return objects_; }
+  /// Two names a pair, of links and objects.
+  const std::vector<const char*>& allowed() const { return allowed_; }
+  /// The same without pairs that name a link.
+  const std::vector<const char*>& allowed_objects() const { return allowed_objects_; }
+  /// What the scene has and libkinship cannot be told, e.g. a body on a link that does not move
+  /// with the tip; empty: nothing.
+  const std::string& untold() const { return untold_; }
+
+ private:
+  void add(const std::string& name, const shapes::Shape& shape, const Eigen::Isometry3d& T,
+           bool is_held);
+  void add_points(std::vector<double> points, kinship_object& object);
+  void allow_pairs(const planning_scene::PlanningScene& scene,
+                   const std::vector<const moveit::core::AttachedBody*>& attached);
+  void allow(const std::string& first, const std::string& second, bool are_objects);
+
+  std::deque<std::string> names_;
+  std::deque<std::vector<double>> points_;
+  std::vector<kinship_object> objects_;
+  std::vector<const char*> allowed_, allowed_objects_;
+  std::string untold_;
+};
+
+}  // namespace kinship_moveit
