@@ -20,6 +20,8 @@ const std::string& checked(std::string_view what, const std::string& name) {
   return name;
 }
 
+constexpr const char* kLoopback = "lo";
+
 bool is_loopback(const std::string& host) {
   return host.starts_with("127.") || host == "localhost";
 }
@@ -28,42 +30,66 @@ std::string interfaces(const ParticipantOptions& options) {
   const std::string name = chosen_interface(options);
   if (name.empty())
     return {};
-  return "<Interfaces><NetworkInterface name=\"" + name + "\" multicast=\"false\"/></Interfaces>";
+  const bool has_multicast = options.role == Role::RosNode && name != kLoopback;
+  return "<Interfaces><NetworkInterface name=\"" + name +
+         (has_multicast ? "\"" : "\" multicast=\"false\"") + "/></Interfaces>";
 }
 
 std::string discovery(const ParticipantOptions& options) {
   if (options.role == Role::Server)
-    return "<ParticipantIndex>0</ParticipantIndex>";
+    return "<ParticipantIndex>" + std::to_string(options.place) + "</ParticipantIndex>";
   if (options.server.empty())
     throw Failure(ErrorCode::InvalidInput, "host of the server: is empty");
-  return "<ParticipantIndex>none</ParticipantIndex><Peers><Peer address=\"" +
-         checked("host of the server", options.server) + ":" +
-         std::to_string(discovery_port(options.domain)) + "\"/></Peers>";
+  std::string peers;
+  for (std::uint32_t place = 0; place < kServerPlaces; ++place)
+    peers += "<Peer address=\"" + checked("host of the server", options.server) + ":" +
+             std::to_string(discovery_port(options.domain, place)) + "\"/>";
+  return "<ParticipantIndex>none</ParticipantIndex><Peers>" + peers + "</Peers>";
+}
+
+/// As a ROS 2 node: the next participant index that is free, other nodes by multicast, or on
+/// loopback, which has none, by asking at the indices of this machine. The domain's number in this
+/// process is another one: it may have that domain as a server, too.
+std::string node_configuration(const ParticipantOptions& options) {
+  const bool is_local = chosen_interface(options) == kLoopback;
+  return "<CycloneDDS xmlns=\"https://cdds.io/config\"><Domain Id=\"any\"><General>" +
+         interfaces(options) + "<AllowMulticast>" + (is_local ? "false" : "default") +
+         "</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize>"
+         "<FragmentSize>8000B</FragmentSize></General><Discovery><ExternalDomainId>" +
+         std::to_string(options.domain) +
+         "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex>"
+         "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>" +
+         (is_local ? "<Peers><Peer address=\"127.0.0.1\"/></Peers>" : "") +
+         "<SPDPInterval>3s</SPDPInterval><LeaseDuration>10s</LeaseDuration></Discovery><Internal>"
+         "<SocketReceiveBufferSize max=\"4MB\"/><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>"
+         "<MaxSampleSize>12MB</MaxSampleSize></Internal></Domain></CycloneDDS>";
 }
 
 }  // namespace
 
 std::string chosen_interface(const ParticipantOptions& options) {
   const std::string& name = checked("network interface", options.network_interface);
-  if (name.empty() && (options.role == Role::Server || is_loopback(options.server)))
-    return "lo";
+  if (name.empty() && (options.role != Role::Client || is_loopback(options.server)))
+    return kLoopback;
   return name;
 }
 
-std::uint16_t discovery_port(std::uint32_t domain) {
+std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t place) {
   if (domain > kMaxDomain)
     throw Failure(ErrorCode::InvalidInput,
                   "domain " + std::to_string(domain) + " exceeds " + std::to_string(kMaxDomain));
-  return static_cast<std::uint16_t>(7400 + 250 * domain + 10);
+  return static_cast<std::uint16_t>(7400 + 250 * domain + 10 + 2 * place);
 }
 
-std::array<std::uint16_t, 2> server_ports(std::uint32_t domain) {
-  const std::uint16_t discovery = discovery_port(domain);
+std::array<std::uint16_t, 2> server_ports(std::uint32_t domain, std::uint32_t place) {
+  const std::uint16_t discovery = discovery_port(domain, place);
   return {discovery, static_cast<std::uint16_t>(discovery + 1)};
 }
 
 std::string cyclone_configuration(const ParticipantOptions& options) {
   discovery_port(options.domain);  // checks the domain
+  if (options.role == Role::RosNode)
+    return node_configuration(options);
   return "<CycloneDDS xmlns=\"https://cdds.io/config\"><Domain Id=\"any\"><General>" +
          interfaces(options) +
          "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize>"

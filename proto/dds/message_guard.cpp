@@ -6,6 +6,8 @@
 #include <dds/ddsi/ddsi_xt_impl.h>
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 
@@ -176,8 +178,16 @@ class Walk {
 }  // namespace
 
 bool is_too_long(std::size_t size, std::string_view type) {
-  return size > kMaxShortRequestBytes && (type == kinship_wire_FetchRequest_desc.m_typename ||
-                                          type == kinship_wire_AdminRequest_desc.m_typename);
+  constexpr std::string_view kOfRos = "kinship_msgs::";
+  constexpr std::array<std::string_view, 4> kLongOfRos = {"::PlannedPath_", "::Report_Request_",
+                                                          "::Registration_", "::Register_Request_"};
+  if (type.starts_with(kOfRos) && std::ranges::any_of(kLongOfRos, [type](std::string_view name) {
+        return type.ends_with(name);
+      }))
+    return size > kMaxShortPathBytes;
+  return size > kMaxShortRequestBytes &&
+         (type.starts_with(kOfRos) || type == kinship_wire_FetchRequest_desc.m_typename ||
+          type == kinship_wire_AdminRequest_desc.m_typename);
 }
 
 bool LongRequests::admit(std::chrono::steady_clock::time_point now) {

@@ -23,7 +23,7 @@ bool overruns(std::span<const std::uint8_t> bytes, bool swapped, std::uint32_t v
               const std::uint32_t* ops);
 
 /// Whether a message is longer than any valid one of its type: the server has to hold many that
-/// wait (Topics::held_requests).
+/// wait (Topics::held_requests, ros2::Channel).
 /// \param type  its name: kinship::wire::FetchRequest.
 bool is_too_long(std::size_t size, std::string_view type);
 

@@ -22,7 +22,7 @@ namespace kinship::dds {
 namespace {
 
 std::string describe_failure(const ParticipantOptions& options, Handle code) {
-  const std::string port = std::to_string(discovery_port(options.domain));
+  const std::string port = std::to_string(discovery_port(options.domain, options.place));
   std::string message = "domain " + std::to_string(options.domain) + ": cannot join";
   if (options.role == Role::Server)
     message += " as its server at UDP port " + port;
@@ -30,6 +30,11 @@ std::string describe_failure(const ParticipantOptions& options, Handle code) {
   if (const std::string line = last_log_line(); !line.empty())
     message += ": " + line;
   return message + ")" + note_of_environment();
+}
+
+/// What Cyclone DDS calls a domain in this process: the ROS domain of a number is another one.
+std::uint32_t number_here(const ParticipantOptions& options) {
+  return options.domain + (options.role == Role::RosNode ? kMaxDomain + 1 : 0);
 }
 
 // The process with the threads of Cyclone DDS, and its domains; the threads end with the last one.
@@ -63,7 +68,7 @@ class Participant::Domain {
     static std::map<std::uint32_t, std::weak_ptr<Domain>> domains;
     const std::string configuration = cyclone_configuration(options);
     const std::lock_guard lock(mutex);
-    std::weak_ptr<Domain>& known = domains[options.domain];
+    std::weak_ptr<Domain>& known = domains[number_here(options)];
     if (auto domain = known.lock()) {
       const bool is_server_here = domain->role_ == Role::Server && options.role == Role::Client;
       if (domain->configuration_ != configuration && !is_server_here)
@@ -86,13 +91,13 @@ class Participant::Domain {
       : role_(options.role), security_(options.security), configuration_(configuration) {
     joined_process = getpid();
     limit_log();
-    if (std::getenv("CYCLONEDDS_URI"))
+    if (std::getenv("CYCLONEDDS_URI") && role_ != Role::RosNode)
       return;  // the user's configuration, read by Cyclone DDS
     require_usable_interface(options);
     std::optional<LoopbackGuard> guard;
     if (chosen_interface(options) == "lo")
       guard.emplace();
-    const Handle handle = dds_create_domain(options.domain, configuration.c_str());
+    const Handle handle = dds_create_domain(number_here(options), configuration.c_str());
     if (handle < 0)
       throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
     entity_.emplace(handle, "domain");
@@ -153,7 +158,7 @@ Entity create_participant(const ParticipantOptions& options) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const Qos qos = options.security.empty() ? Qos() : security_qos(options.security);
-  const Handle handle = dds_create_participant(options.domain, qos.get(), nullptr);
+  const Handle handle = dds_create_participant(number_here(options), qos.get(), nullptr);
   if (handle < 0)
     throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
   return {handle, "participant"};
@@ -181,7 +186,7 @@ Participant::Participant(const ParticipantOptions& options)
     : options_(options),
       credentials_(credentials_of(options)),
       guard_(guard_of(options)),
-      packets_(options.role == Role::Server
+      packets_(options.role != Role::Client
                    ? std::make_unique<PacketGuard>(!options.security.empty())
                    : nullptr),
       domain_(Domain::join(options)),

@@ -23,6 +23,8 @@ inline constexpr int kHeldRequests = 256;
 inline constexpr int kHeldShortRequests = 2048;
 /// Of longer requests in a conversation with short ones only some are admitted (message_guard.hpp).
 inline constexpr std::size_t kMaxShortRequestBytes = 65'536;
+/// The same of paths and robots of ROS nodes, whose trajectories have more than positions.
+inline constexpr std::size_t kMaxShortPathBytes = 2 * kMaxSampleBytes;
 
 /// Topics of a conversation, for the type-erased parts.
 struct Topics {

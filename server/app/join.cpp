@@ -71,21 +71,57 @@ std::string advise(std::uint16_t port) {
          std::to_string((first - 1 - first_data_port) / ports_per_domain) + " (--domain N)";
 }
 
-std::string explain(const ServerOptions& options, std::uint16_t port, const PortHolder& holder,
-                    const std::string& address) {
+/// The holder of a port of a place in the domain, and the port.
+struct TakenPlace {
+  std::uint16_t port = 0;
+  PortHolder holder;
+};
+
+std::string explain(const ServerOptions& options, const TakenPlace& taken,
+                    const std::optional<ServerStatus>& server) {
   const std::string start = "domain " + std::to_string(options.domain) + ": ";
-  const auto server = ask_server(options, address);
-  if (!server && holder.program != kProgram)
-    return start + "UDP port " + std::to_string(port) + " is taken by " + describe(holder) +
-           ", no kinshipd answers there; " + advise(port);
-  std::string message = start + "another kinshipd has it, at UDP port " + std::to_string(port);
-  if (holder.process != 0)
-    message += ", process " + std::to_string(holder.process);
+  if (!server && taken.holder.program != kProgram)
+    return start + "UDP port " + std::to_string(taken.port) + " is taken by " +
+           describe(taken.holder) + ", no kinshipd answers there, and the next " +
+           std::to_string(dds::kServerPlaces - 1) + " places are taken too; " + advise(taken.port);
+  std::string message =
+      start + "another kinshipd has it, at UDP port " + std::to_string(taken.port);
+  if (taken.holder.process != 0)
+    message += ", process " + std::to_string(taken.holder.process);
   if (server && !server->store_file.empty())
     message += ", store '" + server->store_file + "'";
   if (!server)
     message += ", but does not answer";
   return message + "; end that one, or take another domain (--domain N)";
+}
+
+std::optional<TakenPlace> find_taken(std::uint32_t domain, std::uint32_t place) {
+  for (const std::uint16_t port : dds::server_ports(domain, place))
+    if (auto holder = find_port_holder(port))
+      return TakenPlace{port, *std::move(holder)};
+  return std::nullopt;
+}
+
+/// The first place of the domain that is free. Others hold those before it, e.g. ROS nodes; where a
+/// kinshipd does, it has the domain, whichever place is free.
+/// \throws Failure(Unavailable) then, and if none is free.
+std::uint32_t choose_place(const ServerOptions& options, const std::string& address) {
+  std::optional<std::uint32_t> place;
+  std::optional<TakenPlace> taken;
+  for (std::uint32_t each = 0; each < dds::kServerPlaces; ++each) {
+    auto holder = find_taken(options.domain, each);
+    if (!holder && !place)
+      place = each;
+    if (holder && (!taken || holder->holder.program == kProgram))
+      taken = std::move(holder);
+  }
+  if (!taken)
+    return 0;
+  const auto server = ask_server(options, address);
+  if (!place || server || taken->holder.program == kProgram)
+    throw Failure(ErrorCode::Unavailable,
+                  explain(options, *taken, server));
+  return *place;
 }
 
 dds::ParticipantOptions participant_options(
@@ -107,20 +143,13 @@ dds::ParticipantOptions participant_options(
 
 dds::Participant join_domain(const ServerOptions& options,
                              const std::shared_ptr<const security::ClientDirectory>& clients) {
-  try {
-    return dds::Participant(participant_options(options, clients));
-  } catch (const Failure& failure) {
-    const std::string address =
-        address_of(options.network_interface.empty() ? "lo" : options.network_interface);
-    // CYCLONEDDS_URI may name other ports.
-    if (failure.code() != ErrorCode::Unavailable || address.empty() ||
-        std::getenv("CYCLONEDDS_URI"))
-      throw;
-    for (const std::uint16_t port : dds::server_ports(options.domain))
-      if (const auto holder = find_port_holder(port))
-        throw Failure(ErrorCode::Unavailable, explain(options, port, *holder, address));
-    throw;
-  }
+  dds::ParticipantOptions participant = participant_options(options, clients);
+  const std::string address =
+      address_of(options.network_interface.empty() ? "lo" : options.network_interface);
+  // CYCLONEDDS_URI may name other ports.
+  if (!address.empty() && !std::getenv("CYCLONEDDS_URI"))
+    participant.place = choose_place(options, address);
+  return dds::Participant(participant);
 }
 
 }  // namespace kinship::app

@@ -380,7 +380,8 @@ namespace {
 
 /// The reason not to serve with these options; empty: none.
 std::string serving_fault(const ServerOptions& options) {
-  for (const std::string& fault : {store_option_fault(options), console_fault(options)})
+  for (const std::string& fault :
+       {store_option_fault(options), console_fault(options), ros2_fault(options)})
     if (!fault.empty())
       return fault;
   const std::string insecurity = insecurity_of(options);

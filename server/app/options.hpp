@@ -67,6 +67,8 @@ struct ServerOptions {
   std::string console;         ///< address and port to serve the live console at; empty: none
   bool console_admin = false;  ///< it may change something
   std::vector<std::string> console_hosts;  ///< names by which it may be asked for
+  bool ros2 = false;                       ///< serve ROS 2 nodes, too
+  std::uint32_t ros2_domain = 0;           ///< their ROS_DOMAIN_ID
   std::string log_level = "info";
 };
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "proto/dds/participant.hpp"
 #include "server/http/address.hpp"
 
 namespace kinship::app {
@@ -36,6 +37,20 @@ void add_port_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--console-host", options.console_hosts,
                  "A name by which the console may be asked for, besides addresses, localhost and "
                  "this machine's name; may be given again");
+  app.add_flag("--ros2", options.ros2,
+               "Serve ROS 2 nodes too (messages of kinship_msgs), on the same interface; not with "
+               "--security, whose certificates they do not have");
+  app.add_option("--ros2-domain", options.ros2_domain, "Of --ros2: their domain")
+      ->envname("ROS_DOMAIN_ID")
+      ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))
+      ->capture_default_str();
+}
+
+std::string ros2_fault(const ServerOptions& options) {
+  return options.ros2 && !options.security.empty()
+             ? "--ros2 is not for a server with --security: ROS 2 nodes have no certificate of it, "
+               "and would be let in without"
+             : "";
 }
 
 std::string console_fault(const ServerOptions& options) {

@@ -34,6 +34,7 @@
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
 #include "server/http/listener.hpp"
+#include "server/ros2/node.hpp"
 #include "server/runtime/memory_reserve.hpp"
 #include "server/service/service.hpp"
 #include "server/store/open_store.hpp"
@@ -122,15 +123,28 @@ void tell_insecurity(const ServerOptions& options) {
 using Events = dds::Publisher<codec::EventPublication>;
 using Announcements = dds::Publisher<codec::AnnouncementPublication>;
 
+/// Null without --ros2.
+std::unique_ptr<ros2::Node> join_ros2(const ServerOptions& options) {
+  if (!options.ros2)
+    return nullptr;
+  auto node = std::make_unique<ros2::Node>(
+      ros2::NodeOptions{options.ros2_domain, options.network_interface});
+  spdlog::info("ROS 2: serves domain {} (topics kinship/...)", options.ros2_domain);
+  return node;
+}
+
 /// The service's events and announcements go to these, which outlive it.
 void publish_with(service::ServiceOptions& settings, const Events& events,
-                  const Announcements& announcements, console::Broadcast& broadcast) {
+                  const Announcements& announcements, console::Broadcast& broadcast,
+                  ros2::Node* node) {
   settings.on_event = [&events, &broadcast](const Event& event) {
     events.publish(event);
     broadcast.publish(event);
   };
-  settings.on_announcement = [&announcements](const Announcement& announcement) {
+  settings.on_announcement = [&announcements, node](const Announcement& announcement) {
     announcements.publish(announcement);
+    if (node)
+      node->announce(announcement);
   };
   settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
 }
@@ -257,6 +271,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   const dds::Participant participant = join_domain(options, clients);
   std::optional<http::Port> metrics_port = open_metrics_port(options);
   std::optional<http::Port> console_port = open_console_port(options);
+  const std::unique_ptr<ros2::Node> node = join_ros2(options);
   console::Broadcast broadcast;
   dds::WaitLoop loop(participant);
   const Events events(participant, loop, access::may_hear);
@@ -267,7 +282,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   settings.credentials_expire_ms = expiry_ms(participant);
   settings.log = [&log](std::string_view line) { log.write(line); };
   set_upstream(options, settings);
-  publish_with(settings, events, announcements, broadcast);
+  publish_with(settings, events, announcements, broadcast, node.get());
   settings.wake = [&loop] { loop.wake(); };
   std::unique_ptr<store::Store> opened =
       store::open_store(options.store.string(), store_options(options));
@@ -290,6 +305,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   std::optional<ConsoleServer> console;
   if (console_port)
     console.emplace(std::move(*console_port), options, service, broadcast);
+  std::optional<ros2::Node::Serving> nodes;
+  if (node)
+    nodes.emplace(*node, service);
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
   run(loop, service, expiry);
@@ -297,6 +315,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   notify_service_manager("STOPPING=1");
   metrics.reset();
   console.reset();
+  nodes.reset();
   service.shutdown();
   spdlog::info("ended");
   return kDone;

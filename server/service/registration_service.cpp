@@ -94,28 +94,26 @@ void RegistrationService::refuse(const std::string& label, const std::string& wh
   done(reply);
 }
 
-void RegistrationService::name_robots(const std::set<Digest>& robots,
-                                      std::function<void(const RobotLabels&)> done,
+void RegistrationService::find_robots(const std::set<Digest>& robots,
+                                      std::function<void(const Robots&)> done,
                                       const std::string& client) {
-  RobotLabels labels;
+  Robots known;
   std::set<Digest> others;
   for (const Digest& robot : robots)
-    if (const auto known = parts_.robots.find_in_memory(robot))
-      labels.emplace(robot, known->label);
+    if (auto found = parts_.robots.find_in_memory(robot))
+      known.emplace(robot, std::move(found));
     else
       others.insert(robot);
   if (others.empty())
-    return done(labels);
+    return done(known);
   // Shared by the task and the answer if there is no room for it: `done` may be large.
-  const auto answer =
-      std::make_shared<const std::function<void(const RobotLabels&)>>(std::move(done));
-  auto run = [this, labels, others, answer]() mutable {
+  const auto answer = std::make_shared<const std::function<void(const Robots&)>>(std::move(done));
+  auto run = [this, known, others, answer]() mutable {
     for (const Digest& robot : others)
-      if (const auto found = parts_.robots.find(robot))
-        labels.emplace(robot, found.value()->label);
-      else if (found.error().code != ErrorCode::NotFound)
-        labels.emplace(robot, found.error());
-    (*answer)(labels);
+      if (auto found = parts_.robots.find(robot);
+          found || found.error().code != ErrorCode::NotFound)
+        known.emplace(robot, std::move(found));
+    (*answer)(known);
   };
   if (parts_.pools.store.submit(Priority::Interactive,
                                 {.run = std::move(run), .abandon = {}, .client = client}) ||
@@ -123,8 +121,22 @@ void RegistrationService::name_robots(const std::set<Digest>& robots,
     return;
   const Error busy{ErrorCode::Unavailable, parts_.pools.busy_message(client)};
   for (const Digest& robot : others)
-    labels.emplace(robot, busy);
-  (*answer)(labels);
+    known.emplace(robot, busy);
+  (*answer)(known);
+}
+
+void RegistrationService::name_robots(const std::set<Digest>& robots,
+                                      std::function<void(const RobotLabels&)> done,
+                                      const std::string& client) {
+  find_robots(
+      robots,
+      [done = std::move(done)](const Robots& found) {
+        RobotLabels labels;
+        for (const auto& [digest, robot] : found)
+          labels.emplace(digest, robot ? Result<std::string>(robot.value()->label) : robot.error());
+        done(labels);
+      },
+      client);
 }
 
 }  // namespace kinship::service

@@ -29,9 +29,14 @@ class RegistrationService {
   void refuse(const std::string& label, const std::string& why,
               const std::function<void(const RegisterReply&)>& done);
 
-  /// The labels of robots; those that are not registered are missing. An error says why a label
-  /// cannot be read now: the store's error, or Unavailable if too many tasks wait. `done` is called
-  /// at most once; not if the server is stopping.
+  /// Robots, from memory where possible; those that are not registered are missing. An error says
+  /// why one cannot be read now: the store's error, or Unavailable if too many tasks wait. `done` is
+  /// called at most once; not if the server is stopping.
+  using Robots = std::map<Digest, Result<runtime::RobotRegistry::RobotPointer>>;
+  void find_robots(const std::set<Digest>& robots, std::function<void(const Robots&)> done,
+                   const std::string& client);
+
+  /// The same for their labels.
   using RobotLabels = std::map<Digest, Result<std::string>>;
   void name_robots(const std::set<Digest>& robots, std::function<void(const RobotLabels&)> done,
                    const std::string& client);

@@ -76,6 +76,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string rehearsal = "server/rehearsal";
   const std::string sites = "server/sites";
   const std::string service = "server/service";
+  const std::string ros2_wire = "proto/ros2";
+  const std::string ros2 = "server/ros2";
   const std::string console = "server/console";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
@@ -96,6 +98,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {codec, {{types, idl}, {"Eigen"}}},
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, security, codec, idl}, {"Cyclone DDS"}}},
+      {ros2_wire, {{dds, codec, idl, types}, {"Eigen", "Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
       {security, {{files, types}, {"libcrypto", "toml"}}},
       {tables, {{types}, {}}},
@@ -132,8 +135,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          inverse, evidence, types},
         {"Eigen"}}},
       {console, {{service, runtime, http, page, plots, evidence, json, types}, {}}},
+      {ros2, {{ros2_wire, dds, service, quotas, runtime, types}, {"Eigen"}}},
       {"server/app",
-       {{console, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
+       {{console, ros2, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
          manual, sites, tables, types, store},
         {"CLI11", "spdlog"}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

@@ -1,0 +1,233 @@
+#include "proto/ros2/channel.hpp"
+
+#include <dds/dds.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "proto/dds/fair_queue.hpp"
+#include "proto/dds/loan.hpp"
+#include "proto/dds/matched_readers.hpp"
+#include "proto/dds/matched_writers.hpp"
+#include "proto/ros2/outlet.hpp"
+
+namespace kinship::ros2 {
+namespace {
+
+constexpr int kHeldQuestions = 256;  ///< by the reader, until they are taken
+constexpr int kKeptAnswers = 256;    ///< for a reader that is slow
+constexpr std::size_t kWaitingQuestions = 256;
+constexpr std::chrono::milliseconds kMaxHold{100};  ///< then its node sends it again
+
+/// Of a sample, as the head that queues know.
+codec::Head head_of(const void* sample) {
+  codec::Head head;
+  static_assert(sizeof head.client_id.bytes == wire::kKeyBytes);
+  std::memcpy(head.client_id.bytes.data(), sample, wire::kKeyBytes);
+  return head;
+}
+
+/// A node and its question.
+using Place = std::pair<std::string, codec::Head>;
+
+/// Answers leave here, from any thread.
+class AnswerLine {
+ public:
+  AnswerLine(const dds::Participant& participant, const ChannelTopics& topics)
+      : topic_(make_topic(participant, topics.answer_type, topics.answer)),
+        publisher_(dds_create_publisher(participant.get(), nullptr, nullptr), "publisher"),
+        readers_(participant),
+        writer_(readers_.make_writer(publisher_, topic_.get(),
+                                     node_qos(Durability::Volatile, kKeptAnswers).get(),
+                                     "writer " + topics.answer)) {}
+
+  const dds::MatchedReaders& readers() const noexcept { return readers_; }
+  bool reaches(const dds::Sender& sender) const { return readers_.has(writer_, sender.participant); }
+  void write(const void* sample) const noexcept { dds_write(writer_.get(), sample); }
+
+  bool begin(const Place& place) {
+    const std::lock_guard lock(mutex_);
+    return being_answered_.insert(place).second;
+  }
+  void end(const Place& place) {
+    const std::lock_guard lock(mutex_);
+    being_answered_.erase(place);
+  }
+
+ private:
+  dds::Entity topic_;
+  dds::Entity publisher_;
+  dds::MatchedReaders readers_;
+  dds::Entity writer_;
+  std::mutex mutex_;  // guards being_answered_
+  std::set<Place> being_answered_;
+};
+
+}  // namespace
+
+class Question::State {
+ public:
+  State(const std::shared_ptr<AnswerLine>& line, Place place, Caller caller)
+      : line_(line), place_(std::move(place)), caller_(std::move(caller)) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (is_sent_)
+      return;
+    if (const auto line = line_.lock())
+      line->end(place_);
+  }
+
+  const Caller& caller() const noexcept { return caller_; }
+  std::string key() const { return caller_.client + ' ' + place_.second.client_id.text(); }
+
+  void send(void* sample) {
+    if (is_sent_.exchange(true))
+      return;
+    std::memcpy(sample, place_.second.client_id.bytes.data(), wire::kKeyBytes);
+    if (const auto line = line_.lock()) {
+      line->end(place_);
+      line->write(sample);
+    }
+  }
+
+ private:
+  std::weak_ptr<AnswerLine> line_;
+  Place place_;
+  Caller caller_;
+  std::atomic<bool> is_sent_ = false;
+};
+
+const Caller& Question::caller() const noexcept { return state_->caller(); }
+std::string Question::key() const { return state_->key(); }
+void Question::send(void* sample) const noexcept { state_->send(sample); }
+
+class Channel::Implementation {
+ public:
+  Implementation(const dds::Participant& participant, dds::WaitLoop& loop,
+                 const ChannelTopics& topics, Reading reading)
+      : what_("questions of " + topics.question),
+        topic_(make_topic(participant, topics.question_type, topics.question)),
+        reader_(dds_create_reader(participant.get(), topic_.get(),
+                                  node_qos(Durability::Volatile, kHeldQuestions).get(), nullptr),
+                "reader " + topics.question),
+        senders_(participant),
+        line_(std::make_shared<AnswerLine>(participant, topics)),
+        reading_(std::move(reading)) {
+    loop.attach(
+        reader_, [this] { return serve_some(); }, &line_->readers().guard());
+  }
+
+ private:
+  struct Waiting {
+    dds::Sender sender;
+    Answering answering;
+  };
+  using Queue = dds::FairQueue<Waiting>;
+
+  /// \return when the next waiting question may be served.
+  Queue::Time serve_some() {
+    constexpr int kInTurn = 4;  // then the other channels
+    if (waiting_.holds_some())
+      waiting_.release_if([this](const codec::Head& /*head*/, const Waiting& each) {
+        return line_->reaches(each.sender);
+      });
+    for (int served = 0; served < kInTurn; ++served) {
+      take_questions();
+      auto next =
+          waiting_.pop(waiting_.holds_some() ? dds::WaitLoop::Clock::now() : Queue::kNever);
+      if (!next)
+        break;
+      serve(next->second.answering);
+    }
+    return waiting_.next();
+  }
+
+  /// All that the reader holds, before each one that is served: it keeps the newest of all nodes.
+  void take_questions() {
+    constexpr int kMaxLoans = 2 * kHeldQuestions / static_cast<int>(dds::Loan::kMaxSamples);
+    for (int i = 0; i < kMaxLoans; ++i) {
+      const dds::Loan questions(reader_, what_);
+      for (std::size_t j = 0; j < questions.size(); ++j)
+        if (questions[j])
+          take(questions[j], questions.writer(j));
+      if (questions.size() < dds::Loan::kMaxSamples)
+        return;
+    }
+  }
+
+  void take(const void* sample, std::uint64_t writer) {
+    if (const std::uint64_t departures = line_->readers().departures(); departures != departures_) {
+      departures_ = departures;
+      senders_.forget_heard();
+    }
+    dds::Sender* const known = senders_.find(reader_, writer);
+    if (!known)
+      return;  // its node is gone
+    const codec::Head head = head_of(sample);
+    const auto opening = waiting_.opening_for(known->client, head);
+    if (!opening)
+      return waiting_.release(known->client, head);
+    const Place place{known->client, head};
+    if (!line_->begin(place))
+      return;
+    const Question question(std::make_shared<Question::State>(
+        line_, place,
+        Caller{.client = known->client,
+               .role = AccessRole::Admin,
+               .is_local = known->is_local,
+               .address = known->address}));
+    Answering answering = read(sample, question);
+    if (!answering)
+      return;
+    const auto held_until = hold(*known);
+    waiting_.push(*opening, {*known, std::move(answering)}, held_until);
+  }
+
+  /// An exception of reading (no memory) concerns that question alone: it is sent again.
+  Answering read(const void* sample, const Question& question) const {
+    try {
+      return reading_(sample, question);
+    } catch (const std::exception&) {
+      return {};
+    }
+  }
+
+  static void serve(const Answering& answering) {
+    try {
+      answering();
+    } catch (const std::exception&) {  // as above
+    }
+  }
+
+  Queue::Time hold(dds::Sender& sender) const {
+    if (sender.hearing != dds::Hearing::Unknown)
+      return Queue::kNow;
+    const bool is_heard = line_->reaches(sender);
+    sender.hearing = is_heard ? dds::Hearing::Heard : dds::Hearing::Awaited;
+    return is_heard ? Queue::kNow : dds::WaitLoop::Clock::now() + kMaxHold;
+  }
+
+  const std::string what_;
+  dds::Entity topic_;
+  dds::Entity reader_;
+  dds::MatchedWriters senders_;
+  std::uint64_t departures_ = 0;      // known to senders_
+  std::shared_ptr<AnswerLine> line_;  // shared for the moment in which an answer is sent
+  Reading reading_;
+  Queue waiting_{kWaitingQuestions};
+};
+
+Channel::Channel(const dds::Participant& participant, dds::WaitLoop& loop,
+                 const ChannelTopics& topics, Reading reading)
+    : implementation_(
+          std::make_unique<Implementation>(participant, loop, topics, std::move(reading))) {}
+
+Channel::~Channel() = default;
+
+}  // namespace kinship::ros2
