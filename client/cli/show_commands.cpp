@@ -161,14 +161,23 @@ void print_replica(const ReplicaUse& replica, std::ostream& out) {
   out << '\n';
 }
 
-void print_status(const ServerStatus& status, std::ostream& out) {
+void print_wrong(const ServerStatus& status, std::ostream& out) {
+  if (!status.writable)
+    out << "not writable   " << status.storage_message << '\n';
+  for (const TroubleCount& trouble : status.troubles)
+    out << "trouble        " << trouble.count << " x " << trouble.what << ", last at "
+        << time_text(trouble.last_ms) << ": " << trouble.last << '\n';
+}
+
+/// What is wrong first. \param is_wide  bounds also where nothing hit them.
+void print_status(const ServerStatus& status, bool is_wide, std::ostream& out) {
+  print_wrong(status, out);
   out << "kinshipd       " << status.version << ", up " << status.uptime_s << " s\n"
       << "store          " << status.store_file << ", " << size_text(status.store_bytes)
       << ", schema " << status.schema_version << ", epoch " << status.store_epoch.text() << '\n'
       << "writable       " << (status.writable ? "yes" : "no") << '\n';
-  if (!status.storage_message.empty())
-    out << (status.writable ? "note           " : "because        ") << status.storage_message
-        << '\n';
+  if (status.writable && !status.storage_message.empty())
+    out << "note           " << status.storage_message << '\n';
   if (status.credentials_expire_ms > 0)
     out << "credentials    of the server end at " << time_text(status.credentials_expire_ms)
         << '\n';
@@ -197,11 +206,9 @@ void print_status(const ServerStatus& status, std::ostream& out) {
     print_replica(replica, out);
   if (status.upstream)
     print_upstream(*status.upstream, out);
-  for (const TroubleCount& trouble : status.troubles)
-    out << "trouble        " << trouble.count << " x " << trouble.what << ", last at "
-        << time_text(trouble.last_ms) << ": " << trouble.last << '\n';
   for (const BoundUse& bound : status.bounds)
-    out << "bound          " << bound.used << " of " << bound.limit << ' ' << bound.what << '\n';
+    if (is_wide || bound.used >= bound.limit)
+      out << "bound          " << bound.used << " of " << bound.limit << ' ' << bound.what << '\n';
 }
 
 constexpr const char* kExperienceCommand = "tasks experience";
@@ -229,8 +236,9 @@ std::map<Digest, std::string> labels_of(link::Client& server, const TaskExperien
 
 int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err) {
   return show(server, {"status", {.verb = AdminVerb::Status}, json}, out, err,
-              json::row_from_json<ServerStatus>,
-              [&](const ServerStatus& status) { print_status(status, out); });
+              json::row_from_json<ServerStatus>, [&](const ServerStatus& status) {
+                print_status(status, tables::table_layout(out).is_wide, out);
+              });
 }
 
 int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,

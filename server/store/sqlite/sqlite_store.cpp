@@ -120,8 +120,6 @@ class SqliteStore : public SqlStore {
     describe_damage(status, damaged_robots(), scrub_->findings());
     status.scrubbed_ms = scrub_->progress().ended_ms;
     status.scrub_part = scrub_->progress().part;
-    if (const std::string advice = library_advice(sqlite3_libversion_number()); !advice.empty())
-      status.message += advice + "; ";
     if (!status.message.empty())
       status.message.resize(status.message.size() - 2);
     return status;

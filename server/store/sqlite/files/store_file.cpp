@@ -138,11 +138,4 @@ void require_library(int number) {
                                           ", which a store needs; install a newer libsqlite3");
 }
 
-std::string library_advice(int number) {
-  constexpr int kFixed = 3'051'003;
-  return number < kFixed ? version_text(number) +
-                               " is older than 3.51.3: no other program may write to the store"
-                         : "";
-}
-
 }  // namespace kinship::store

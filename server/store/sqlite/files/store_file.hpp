@@ -46,8 +46,4 @@ inline constexpr int kOldestSqlite = 3'037'000;
 /// \throws Failure(Storage) with both versions for an older one.
 void require_library(int number);
 
-/// Advice about this version of SQLite; empty if none. Before 3.51.3 a WAL may be corrupted when
-/// one process writes and another checkpoints.
-std::string library_advice(int number);
-
 }  // namespace kinship::store

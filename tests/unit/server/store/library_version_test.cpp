@@ -24,11 +24,5 @@ TEST(LibraryVersion, AnOlderOneIsRefusedWithBothVersions) {
   }
 }
 
-TEST(LibraryVersion, WarnsOfTheRaceBetweenCheckpointAndWriter) {
-  EXPECT_EQ(library_advice(3'040'001),
-            "SQLite 3.40.1 is older than 3.51.3: no other program may write to the store");
-  EXPECT_EQ(library_advice(3'051'003), "");
-}
-
 }  // namespace
 }  // namespace kinship::store::library_version_test
