@@ -26,8 +26,12 @@ const kinshipCamera = (() => {
       }
       return {middle: (most + least) / 2, distance: (most - least) / (2 * tangent)};
     });
-    const depths = balls.map(([x, y, z]) => back.x * x + back.y * y + back.z * z);
-    const nearest = Math.max(...depths), farthest = Math.min(...depths);
+    let nearest = -Infinity, farthest = Infinity;
+    for (const [x, y, z] of balls) {
+      const depth = back.x * x + back.y * y + back.z * z;
+      nearest = Math.max(nearest, depth);
+      farthest = Math.min(farthest, depth);
+    }
     const distance = Math.max(sides[0].distance, sides[1].distance, nearest + 0.05);
     const place = (depth) => right.clone().multiplyScalar(sides[0].middle).addScaledVector(up, sides[1].middle)
                                   .addScaledVector(back, depth);

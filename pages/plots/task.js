@@ -63,7 +63,7 @@ kinshipFigures.task = (element, data, {href = () => null} = {}) => {
   const ratioText = (benefit) => `${fixed(benefit.ratio, 2)} (${fixed(benefit.low, 2)} to ${fixed(benefit.high, 2)})`;
 
   function tell() {
-    byId("title").textContent = `\u201c${data.task}\u201d over time`;
+    byId("title").textContent = `\u201c${data.task}\u201d`;
     byId("lead").textContent = `${listed(robots.map((robot) => robot.label))} reported ${several(sum("attempts"), "attempt")} of the task ` +
       `\u201c${data.task}\u201d between ${timeText(data.from_ms)} and ${timeText(until)}. Times are those of arrival at the server, in UTC; ` +
       `a bin is ${lengthText(data.bin_ms)} long.`;

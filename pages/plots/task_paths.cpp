@@ -42,6 +42,18 @@ Eigen::Matrix3Xd hand_of(const Path& path, const kinematics::Chain& chain,
   return way(Eigen::all, simplified(way, kWayTolerance_m));
 }
 
+/// Origins of base, joints and transfer frame.
+Eigen::Matrix3Xd arm_of(const Eigen::Ref<const Eigen::VectorXd>& q, const kinematics::Chain& chain,
+                        const Eigen::Isometry3d& T_task_base) {
+  const std::vector<Eigen::Isometry3d> joints = kinematics::joint_poses(chain, q);
+  Eigen::Matrix3Xd arm(3, chain.dof() + 2);
+  arm.col(0) = T_task_base.translation();
+  for (Eigen::Index i = 0; i < chain.dof(); ++i)
+    arm.col(i + 1) = T_task_base * joints[static_cast<std::size_t>(i)].translation();
+  arm.rightCols<1>() = T_task_base * kinematics::T_base_transfer(chain, joints).translation();
+  return arm;
+}
+
 /// Scenes by their drawing, so that equal ones are one.
 class Scenes {
  public:
@@ -112,9 +124,8 @@ bool add_path(const PathSummary& summary, const LookUp& look_up, DrawnRobots& ro
     const auto known = std::ranges::find(figure.robots, summary.robot, &TaskArm::robot);
     path.robot = static_cast<std::size_t>(known - figure.robots.begin());
     if (known == figure.robots.end())
-      figure.robots.push_back(
-          {summary.robot, summary.label,
-           page::bones_of(drawn->robot, T_task_base, attempt.path->waypoints().col(0))});
+      figure.robots.push_back({summary.robot, summary.label,
+                               arm_of(attempt.path->waypoints().col(0), chain, T_task_base)});
     if (attempt.scene)
       path.scene = scenes.add(*attempt.scene);
     figure.paths.push_back(std::move(path));
@@ -187,7 +198,7 @@ std::string json_of(const TaskPath& path) {
 std::string json_of(const TaskArm& robot) {
   return object({{"robot", json_string(robot.robot.hex())},
                  {"label", json_string(robot.label)},
-                 {"bones", page::json_of(robot.bones)}});
+                 {"arm", page::millimetres(robot.arm)}});
 }
 
 std::string json_of(const TaskScene& scene) {

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "pages/page/bones.hpp"
 #include "pages/plots/look_up.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/scene.hpp"
@@ -18,7 +17,7 @@
 /// them.
 namespace kinship::plots {
 
-/// Bounds of the picture: 2000 ways are some 25 000 segments and, with their table, 0.7 MB of text.
+/// Bounds of the picture: 2000 ways are some 34 000 segments and 0.8 MB of text (0.3 MB zipped).
 inline constexpr std::size_t kMaxTaskPaths = 2000;    ///< the newest
 inline constexpr std::size_t kMaxTaskScenes = 24;     ///< those of most paths ...
 inline constexpr std::size_t kMaxTaskObjects = 4096;  ///< ... whose objects are so many together
@@ -41,7 +40,7 @@ struct TaskScene {
 struct TaskArm {
   Digest robot;
   std::string label;
-  std::vector<page::Bone> bones;
+  Eigen::Matrix3Xd arm;  ///< origins of base, joints and transfer frame in the task frame, m
 };
 
 struct TaskPaths {

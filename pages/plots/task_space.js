@@ -72,15 +72,15 @@ const kinshipTaskSpace = (() => {
       byId("space-scenes").hidden = scenes.length === 0;
     }
 
+    const wayOf = ({arm}) => ({positions: metres(arm), width: 0.03}); // slim, so that it hides no paths
     const layers = [
       {name: "scene", text: scenes.length ? "obstacles" : "", color: "scene", fits: false, objects: []},
-      {name: "arms", text: robots.length > 1 ? "robots where their newest paths start" : "robot where its newest path starts", color: "arm", arms: []},
-      ...Array.from({length: kHues}, (none, i) => ({name: `group-${i}`, text: "", color: hueOf(i), lines: []})),
-      {name: "starts", text: "starts", color: "start", points: []},
-      {name: "goals", text: "goals", color: "goal", points: []},
+      {name: "arms", text: robots.length > 1 ? "robots where their newest paths start" : "robot where its newest path starts", color: "arm", ways: robots.map(wayOf)},
+      ...Array.from({length: kHues}, (none, i) => ({name: `group-${i}`, text: "", color: hueOf(i), fits: false, lines: []})),
+      {name: "starts", text: "starts", color: "start", fits: false, points: []},
+      {name: "goals", text: "goals", color: "goal", fits: false, points: []},
       {name: "picked", text: "", color: "picked", fits: false, ways: []},
       {name: "room", color: "scene", shown: false, points: [{positions: paths.flatMap((path) => path.hand), size: 0.02}]}];
-    layers[1].arms = robots.map(({bones}) => ({bones, opacity: 0.3}));
     const view = kinshipView.show(byId("space"), {
       label: `${several(paths.length, "path")} of the hand of ${robots.map((robot) => robot.label).join(", ")} in space; the table beside has each of them.`,
       from: [-1.1, -1.5, 1], layers, onPick: (path) => pick(path, "picture")});
@@ -102,14 +102,14 @@ const kinshipTaskSpace = (() => {
         starts.push(hand[0], hand[1], hand[2]);
         goals.push(...hand.slice(-3));
       });
-      const opacity = (brush.picked === null ? 1 : 0.4) * (shown > 400 ? 0.45 : shown > 60 ? 0.7 : 0.95);
+      const opacity = (brush.picked === null ? 1 : 0.4) * (shown > 1000 ? 0.5 : shown > 300 ? 0.65 : shown > 60 ? 0.8 : 0.95);
       groups.forEach(({positions, owners}, group) => view.replace(`group-${group}`, {
         color: owners.length ? coloring.hue(group) : hueOf(group), text: owners.length ? coloring.text(group) : "",
         lines: owners.length ? [{positions, owners, opacity}] : []}));
-      const size = shown > 400 ? 0.014 : 0.022;
+      const size = shown > 300 ? 0.018 : 0.024;
       view.replace("starts", {points: [{positions: starts, size, opacity: 0.85}]});
       view.replace("goals", {points: [{positions: goals, size, opacity: 0.85}]});
-      view.replace("arms", {arms: robots.filter((robot, i) => brush.robots.has(i)).map(({bones}) => ({bones, opacity: 0.3}))});
+      view.replace("arms", {ways: robots.filter((robot, i) => brush.robots.has(i)).map(wayOf)});
       byId("space-shown").textContent = `${count(shown)} of ${several(paths.length, "path")} shown.`;
     }
 

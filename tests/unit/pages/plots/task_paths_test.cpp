@@ -65,7 +65,10 @@ TEST(TaskPaths, AreTheWaysOfHandsFromStartToGoal) {
   EXPECT_TRUE(hand.rightCols<1>().isApprox(hand_at(1), 1e-9));
   EXPECT_GT(hand.cols(), 3) << "an arc";
   EXPECT_LT(hand.cols(), 30);
-  EXPECT_FALSE(figure.robots[0].bones.empty());
+  const Eigen::Matrix3Xd& arm = figure.robots[0].arm;
+  ASSERT_EQ(arm.cols(), 8) << "base, six joints, hand";
+  EXPECT_TRUE(arm.col(0).isApprox(placement.translation()));
+  EXPECT_TRUE(arm.rightCols<1>().isApprox(hand_at(0), 1e-9));
 }
 
 TEST(TaskPaths, StandInTheOrderOfArrivalWithRobotsByLabel) {
@@ -160,7 +163,7 @@ TEST(TaskPaths, TheirJsonHasWaysInMillimetres) {
   const auto json = nlohmann::json::parse(to_json(figure));
   EXPECT_EQ(json["in_use"], 1);
   EXPECT_EQ(json["robots"][0]["label"], "ur10e");
-  EXPECT_EQ(json["robots"][0]["bones"][0].size(), 7U);
+  EXPECT_EQ(json["robots"][0]["arm"].size(), 24U);
   const auto& path = json["paths"][0];
   EXPECT_EQ(path["uuid"], attempt.report_uuid.text());
   EXPECT_EQ(path["checks"], 17);
