@@ -147,7 +147,7 @@ class Pages(unittest.TestCase):
             self.browser.press("input[type=search]", "no such word")
             self.assertEqual(self.table(label), [])
             self.browser.element("input[type=search]").clear()
-            self.browser.press("input[type=search]", before[0][1].split()[0], Keys.SPACE)
+            self.browser.press("input[type=search]", before[0][1 if label != "Clients" else 0].split()[0])
             self.assertGreater(len(self.table(label)), 0)
 
     def test_the_keyboard_reaches_everything(self):

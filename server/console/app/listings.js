@@ -6,7 +6,7 @@
   const timeText = (ms) => (ms ? new Date(ms).toISOString().slice(0, 19).replace("T", " ") : null);
   const text = (title, of, show) => ({title, of, show, kind: "text"});
   const long = (title, of) => ({title, of, kind: "long"});
-  const time = (title, of) => ({title: title + ", UTC", of, show: (row) => timeText(of(row)), kind: "text"});
+  const time = (title, of) => ({title: title + ", UTC", of, show: (row) => timeText(of(row)), text: (row) => timeText(of(row)), kind: "text"});
   const fraction = (of, digits) => (row) => (of(row) === undefined ? null : fixed(of(row), digits));
 
   /// \param listing.columns  as kinshipTables has them

@@ -35,7 +35,7 @@
     {title: "time", of: (a) => a.record.planning_time_s, show: (a) => timeOf(a.record)},
     {title: "checks", of: (a) => a.record.collision_checks, show: (a) => checksOf(a.record)},
     {title: "sampling", of: (a) => samplingText(a.record), kind: "text"},
-    {title: "received, UTC", of: (a) => a.received_ms, show: (a) => timeText(a.received_ms), kind: "text"},
+    {title: "received, UTC", of: (a) => a.received_ms, show: (a) => timeText(a.received_ms), text: (a) => timeText(a.received_ms), kind: "text"},
     {title: "planner", of: (a) => a.record.planner, kind: "text"},
     {title: "machine", of: (a) => a.machine, kind: "text"}];
 

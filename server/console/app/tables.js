@@ -10,6 +10,7 @@ const kinshipTables = (() => {
   ///
   /// \param table.label    what a reader hears
   /// \param table.columns  each {title, of(row): the value that is sorted and filtered by, show(row): what is seen if that differs,
+  ///   text(row): what it is filtered by if that differs,
   ///   kind: "text", "long" or "reason" (longer still) for what is read from the left}
   /// \param table.sort     [title, "ascending" or "descending"] at first; as they come without
   /// \param table.empty    what is said without rows
@@ -44,7 +45,7 @@ const kinshipTables = (() => {
         else heads[i].removeAttribute("aria-sort");
       });
       const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-      const textOf = (row) => columns.map((column) => column.of(row)).join(" ").toLowerCase();
+      const textOf = (row) => columns.map((column) => (column.text || column.of)(row)).join(" ").toLowerCase();
       let kept = words.length === 0 ? rows.slice() : rows.filter((row) => words.every((word) => textOf(row).includes(word)));
       const column = columns.find((each) => each.title === by);
       if (column) kept.sort((a, b) => (direction === "ascending" ? 1 : -1) * compare(column.of(a), column.of(b)));
