@@ -211,12 +211,14 @@ class MoveItData(unittest.TestCase):
         insert({}, cdr("RobotTrajectory", trajectory(sweep(3)))[:-40])
         insert({}, bytes([0, 7, 0, 0]) + bytes(100))
         insert(trajectory(sweep(4) + [0, 9, 0, 0, 0, 0, 0]))
+        insert(trajectory(sweep(7), [*JOINTS[:6], "\x1b[31mred\n"]))
         warehouse.insert("move_group_cartesian_trajectory_cache", "cell@home", "RobotTrajectory", cdr("RobotTrajectory", trajectory(sweep(6))))
         warehouse.close()
         done = self.import_warehouse("cache.sqlite", "--task", "cached")
         self.assertEqual(done.returncode, 1, done.stderr)
         counts = json.loads(done.stdout)
-        self.assertEqual((counts["stored"], counts["refused"]), (2, 6), done.stderr)
+        self.assertEqual((counts["stored"], counts["refused"]), (2, 7), done.stderr)
+        self.assertNotIn("\x1b", done.stderr)
         row = "paths import: move_group_trajectory_cache/cell@home {}: "
         for number, why in ((2, "no motion of the robot's joints"), (3, "joint 'panda_joint7' of the robot is not among them"),
                             (4, "a base that moves"), (5, "the message ends before it"), (6, "is no plain CDR"), (7, "panda_joint2")):
