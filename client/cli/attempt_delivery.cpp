@@ -5,6 +5,7 @@
 
 #include "client/cli/cell_text.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -36,7 +37,7 @@ void AttemptDelivery::refuse(const std::string& place, const std::string& why) {
 
 void AttemptDelivery::tell(const std::string& place, const std::string& what) {
   progress_.clear();
-  err_ << kImportPaths << ": " << place << ": " << what << '\n';
+  err_ << kImportPaths << ": " << on_one_line(place + ": " + what) << '\n';
 }
 
 void AttemptDelivery::deliver() {

@@ -15,6 +15,7 @@
 #include "client/moveit/warehouse.hpp"
 #include "client/ompl/planner_data.hpp"
 #include "proto/json/robot_description_json.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/sha256.hpp"
 #include "robots/geometry/mesh.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -89,7 +90,7 @@ class ForeignImport {
     const int code = delivery_.finish("path", options_.json, out);
     for (const auto& [what, count] : left_out_)
       if (count > 0)
-        err_ << "left out: " << count << " x " << what << '\n';
+        err_ << "left out: " << count << " x " << on_one_line(what) << '\n';
     return code;
   }
 

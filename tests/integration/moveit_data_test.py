@@ -211,19 +211,21 @@ class MoveItData(unittest.TestCase):
         insert({}, cdr("RobotTrajectory", trajectory(sweep(3)))[:-40])
         insert({}, bytes([0, 7, 0, 0]) + bytes(100))
         insert(trajectory(sweep(4) + [0, 9, 0, 0, 0, 0, 0]))
+        insert(trajectory(np.hstack([sweep(7), np.arange(4)[:, None]]), [*JOINTS, "\x1b[31mred"]))
         warehouse.insert("move_group_cartesian_trajectory_cache", "cell@home", "RobotTrajectory", cdr("RobotTrajectory", trajectory(sweep(6))))
         warehouse.close()
         done = self.import_warehouse("cache.sqlite", "--task", "cached")
         self.assertEqual(done.returncode, 1, done.stderr)
         counts = json.loads(done.stdout)
-        self.assertEqual((counts["stored"], counts["refused"]), (2, 6), done.stderr)
+        self.assertEqual((counts["stored"], counts["refused"]), (3, 6), done.stderr)
+        self.assertIn("the motion of joint '?[31mred'", done.stderr)
         row = "paths import: move_group_trajectory_cache/cell@home {}: "
         for number, why in ((2, "no motion of the robot's joints"), (3, "joint 'panda_joint7' of the robot is not among them"),
                             (4, "a base that moves"), (5, "the message ends before it"), (6, "is no plain CDR"), (7, "panda_joint2")):
             (line,) = [line for line in done.stderr.splitlines() if line.startswith(row.format(number))]
             self.assertIn(why, line)
         paths = [attempt["waypoints"] for attempt in self.stored("cached")]
-        self.assertEqual(sorted(paths), sorted([sweep(5).tolist(), sweep(6).tolist()]))
+        self.assertEqual(sorted(paths), sorted(sweep(number).tolist() for number in (5, 6, 7)))
         self.assertEqual({attempt["record"]["planning_time_s"] for attempt in self.stored("cached")}, {0, 0.25})
 
     def test_other_files_are_refused_by_name(self):
