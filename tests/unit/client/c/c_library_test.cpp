@@ -355,7 +355,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_robot_file, xacro_count), 128U);
   EXPECT_EQ(offsetof(kinship_object, pose), 48U);
   EXPECT_EQ(offsetof(kinship_object, point_count), 112U);
-  EXPECT_EQ(offsetof(kinship_query, user), 128U);
+  EXPECT_EQ(offsetof(kinship_query, user), 120U);
   EXPECT_EQ(offsetof(kinship_plan_info, planner), 72U);
   EXPECT_EQ(sizeof(kinship_held_joint), 16U);
   EXPECT_EQ(offsetof(kinship_attempt, share), 112U);
