@@ -1,0 +1,386 @@
+// A ROS 2 node as far as kinshipd sees it: rosidl's messages over a middleware of ROS. Each verb prints what is answered, one
+// line each, and ends with 0; with 1 if nothing is answered.
+
+#include <messages.h>
+#include <ros_messages.h>
+#include <rosidl_runtime_c/primitives_sequence_functions.h>
+#include <rosidl_runtime_c/string_functions.h>
+#include <trajectory_msgs/msg/detail/joint_trajectory_point__functions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <copies.hpp>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/integration/ros2/transport.hpp"
+#include "tests/support/ros2/message_cdr.hpp"
+
+namespace kinship::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Bytes = std::vector<std::uint8_t>;
+using Words = std::vector<std::string>;
+
+constexpr std::chrono::seconds kPatience{30};
+constexpr std::chrono::seconds kResend{1};
+
+/// A type's names in C, of rosidl and of idlc.
+#define KINSHIP_TYPE(KIND, NAME)                                                                   \
+  struct NAME {                                                                                    \
+    using Ros = kinship_msgs__##KIND##__##NAME;                                                    \
+    using Wire = kinship_msgs_##KIND##_dds__##NAME##_;                                             \
+    static const rosidl_message_type_support_t* support() {                                        \
+      return ROSIDL_TYPESUPPORT_INTERFACE__MESSAGE_SYMBOL_NAME(                                    \
+          rosidl_typesupport_introspection_c, kinship_msgs, KIND, NAME)();                         \
+    }                                                                                              \
+    static TopicType type() {                                                                      \
+      return {"kinship_msgs::" #KIND "::dds_::" #NAME "_",                                         \
+              &kinship_msgs_##KIND##_dds__##NAME##__desc};                                         \
+    }                                                                                              \
+    static void init(Ros& message) { kinship_msgs__##KIND##__##NAME##__init(&message); }           \
+  };
+KINSHIP_TYPE(msg, Registration)
+KINSHIP_TYPE(msg, Registered)
+KINSHIP_TYPE(msg, PlannedPath)
+KINSHIP_TYPE(msg, Receipt)
+KINSHIP_TYPE(msg, DistributionQuery)
+KINSHIP_TYPE(msg, DistributionAnswer)
+KINSHIP_TYPE(msg, Distribution)
+KINSHIP_TYPE(msg, StatusQuery)
+KINSHIP_TYPE(msg, Status)
+KINSHIP_TYPE(srv, Report_Request)
+KINSHIP_TYPE(srv, Report_Response)
+KINSHIP_TYPE(srv, Fetch_Request)
+KINSHIP_TYPE(srv, Fetch_Response)
+#undef KINSHIP_TYPE
+
+template <typename Type>
+typename Type::Ros made() {
+  typename Type::Ros message;
+  Type::init(message);
+  return message;
+}
+
+void set(rosidl_runtime_c__String& to, const std::string& text) {
+  rosidl_runtime_c__String__assignn(&to, text.data(), text.size());
+}
+
+std::string hex(const std::uint8_t* bytes, std::size_t size) {
+  std::string text;
+  for (std::size_t i = 0; i < size; ++i) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", bytes[i]);
+    text += digits;
+  }
+  return text;
+}
+
+void read_hex(const std::string& text, std::uint8_t* bytes) {
+  for (std::size_t i = 0; 2 * i + 1 < text.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(std::stoul(text.substr(2 * i, 2), nullptr, 16));
+}
+
+void make_uuid(std::uint8_t* bytes) {
+  std::random_device random;
+  for (int i = 0; i < 16; ++i)
+    bytes[i] = static_cast<std::uint8_t>(random());
+}
+
+/// Words of the command line: "name=value".
+class Options {
+ public:
+  explicit Options(Words words) : words_(std::move(words)) {}
+
+  std::string text(const std::string& name, const std::string& otherwise = "") const {
+    for (const std::string& word : words_)
+      if (word.starts_with(name + "="))
+        return word.substr(name.size() + 1);
+    return otherwise;
+  }
+  long number(const std::string& name, long otherwise) const {
+    return std::stol(text(name, std::to_string(otherwise)));
+  }
+
+ private:
+  Words words_;
+};
+
+/// A question and its answer by two topics, sent again each second as the messages ask for.
+template <typename Question, typename Answer>
+std::optional<typename Answer::Ros> ask(Transport& node, const std::string& question_topic,
+                                        const std::string& answer_topic,
+                                        const typename Question::Ros& question) {
+  const int writer = node.open_writer("rt/kinship/" + question_topic, Question::type());
+  const int reader = node.open_reader("rt/kinship/" + answer_topic, Answer::type(), false);
+  const auto deadline = Clock::now() + kPatience;
+  if (!node.wait_for_writer_match(writer, deadline) ||
+      !node.wait_for_reader_match(reader, deadline))
+    return std::nullopt;
+  typename Question::Wire wire{};
+  copy(question, wire);
+  const Outgoing outgoing{&wire, to_cdr(Question::support(), &question)};
+  while (Clock::now() < deadline) {
+    node.write(writer, outgoing);
+    const auto resend = Clock::now() + kResend;
+    while (const auto bytes = node.take(reader, resend)) {
+      auto answer = made<Answer>();
+      from_cdr(Answer::support(), *bytes, &answer);
+      if (std::memcmp(answer.uuid.uuid, question.uuid.uuid, sizeof answer.uuid.uuid) == 0)
+        return answer;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A service's call as rmw_cyclonedds makes it.
+template <typename Request, typename Response>
+std::optional<typename Response::Ros> call(Transport& node, const std::string& service,
+                                           const typename Request::Ros& request) {
+  const int writer = node.open_writer("rq/kinship/" + service + "Request", Request::type());
+  const int reader = node.open_reader("rr/kinship/" + service + "Reply", Response::type(), false);
+  const auto deadline = Clock::now() + kPatience;
+  if (!node.wait_for_writer_match(writer, deadline) ||
+      !node.wait_for_reader_match(reader, deadline))
+    return std::nullopt;
+  typename Request::Wire wire{};
+  copy(request, wire);
+  std::random_device random;
+  wire.guid = (std::uint64_t{random()} << 32U) | random();
+  wire.sequence_number = 7;
+  Bytes identity(16);
+  std::memcpy(identity.data(), &wire.guid, 8);
+  std::memcpy(identity.data() + 8, &wire.sequence_number, 8);
+  node.write(writer, {&wire, {}});
+  while (const auto bytes = node.take(reader, deadline)) {
+    if (bytes->size() < 20 || !std::equal(identity.begin(), identity.end(), bytes->begin() + 4))
+      continue;  // another client's
+    Bytes message(bytes->begin(), bytes->begin() + 4);
+    message.insert(message.end(), bytes->begin() + 20, bytes->end());
+    auto response = made<Response>();
+    from_cdr(Response::support(), message, &response);
+    return response;
+  }
+  return std::nullopt;
+}
+
+int none() {
+  std::cout << "no answer" << std::endl;
+  return 1;
+}
+
+int register_robot(Transport& node, const Options& options) {
+  auto question = made<Registration>();
+  make_uuid(question.uuid.uuid);
+  std::ifstream file(options.text("urdf"));
+  set(question.urdf, std::string(std::istreambuf_iterator<char>(file), {}));
+  set(question.label, options.text("label"));
+  set(question.base_link, options.text("base"));
+  set(question.tip_link, options.text("tip"));
+  const auto answer = ask<Registration, Registered>(node, "register", "registered", question);
+  if (!answer)
+    return none();
+  std::cout << "registered " << int{answer->status} << ' ' << hex(answer->robot, 32) << ' ';
+  for (std::size_t i = 0; i < answer->joint_names.size; ++i)
+    std::cout << (i > 0 ? "," : "") << answer->joint_names.data[i].data;
+  std::cout << ' ' << answer->message.data << std::endl;
+  return 0;
+}
+
+/// Options: robot, task, joints, points, uuid, extra (numbers of effort a point).
+PlannedPath::Ros path_of(const Options& options) {
+  auto path = made<PlannedPath>();
+  make_uuid(path.uuid.uuid);
+  read_hex(options.text("uuid"), path.uuid.uuid);
+  read_hex(options.text("robot"), path.robot);
+  set(path.task, options.text("task", "shelf"));
+  set(path.planner, "a ROS planner");
+  path.planning_time = 0.5;
+  path.collision_checks = 1000;
+  path.outcome = kinship_msgs__msg__PlannedPath__SOLVED;
+  Words joints;
+  for (std::string rest = options.text("joints"); !rest.empty();) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    joints.push_back(rest.substr(0, end));
+    rest = rest.substr(std::min(end + 1, rest.size()));
+  }
+  std::reverse(joints.begin(), joints.end());  // another order than the chain's
+  rosidl_runtime_c__String__Sequence__init(&path.trajectory.joint_names, joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    set(path.trajectory.joint_names.data[i], joints[i]);
+  const auto points = static_cast<std::size_t>(options.number("points", 12));
+  const auto extra = static_cast<std::size_t>(options.number("extra", 0));
+  trajectory_msgs__msg__JointTrajectoryPoint__Sequence__init(&path.trajectory.points, points);
+  std::mt19937 generator(static_cast<unsigned>(options.number("seed", 1)));
+  std::uniform_real_distribution<double> offset(-0.2, 0.2);
+  const double phase = offset(generator);
+  for (std::size_t i = 0; i < points; ++i) {
+    trajectory_msgs__msg__JointTrajectoryPoint& point = path.trajectory.points.data[i];
+    rosidl_runtime_c__double__Sequence__init(&point.positions, joints.size());
+    for (std::size_t j = 0; j < joints.size(); ++j)
+      point.positions.data[j] = phase + 0.5 * std::sin(0.1 * static_cast<double>(i * (j + 1)));
+    rosidl_runtime_c__double__Sequence__init(&point.effort, extra);
+    point.time_from_start.sec = static_cast<std::int32_t>(i);
+  }
+  return path;
+}
+
+void print(const kinship_msgs__msg__Receipt& receipt) {
+  std::cout << "receipt " << int{receipt.status} << ' ' << hex(receipt.store_epoch.uuid, 16) << ' '
+            << receipt.message.data << std::endl;
+}
+
+int report(Transport& node, const Options& options) {
+  const auto answer = ask<PlannedPath, Receipt>(node, "report", "receipt", path_of(options));
+  if (!answer)
+    return none();
+  print(*answer);
+  return 0;
+}
+
+int call_report(Transport& node, const Options& options) {
+  auto request = made<Report_Request>();
+  request.path = path_of(options);
+  const auto answer = call<Report_Request, Report_Response>(node, "report", request);
+  if (!answer)
+    return none();
+  print(answer->receipt);
+  return 0;
+}
+
+void print(const kinship_msgs__msg__Distribution& distribution) {
+  std::cout << "distribution " << distribution.revision << ' ' << distribution.task.data << ' '
+            << distribution.joint_names.size << ' ' << distribution.weights.size << ' '
+            << distribution.means.size << ' ' << distribution.covariances.size << ' '
+            << distribution.lower.size << ' ' << distribution.is_continuous.size << ' '
+            << (distribution.joint_names.size > 0 ? distribution.joint_names.data[0].data : "-")
+            << std::endl;
+}
+
+DistributionQuery::Ros query_of(const Options& options) {
+  auto query = made<DistributionQuery>();
+  make_uuid(query.uuid.uuid);
+  read_hex(options.text("robot"), query.robot);
+  set(query.task, options.text("task", "shelf"));
+  query.deadline.sec = static_cast<std::int32_t>(options.number("deadline", 20));
+  query.follow.sec = static_cast<std::int32_t>(options.number("follow", 0));
+  return query;
+}
+
+void print(const kinship_msgs__msg__DistributionAnswer& answer) {
+  std::cout << "fetched " << int{answer.status} << ' ' << answer.revision << ' '
+            << answer.message.data << std::endl;
+}
+
+/// The next distribution of this revision or a later one.
+bool print_distribution(Transport& node, int reader, std::uint64_t revision) {
+  const auto deadline = Clock::now() + kPatience;
+  while (const auto bytes = node.take(reader, deadline)) {
+    auto distribution = made<Distribution>();
+    from_cdr(Distribution::support(), *bytes, &distribution);
+    if (distribution.revision < revision)
+      continue;
+    print(distribution);
+    return true;
+  }
+  return false;
+}
+
+/// With `more=N` also N later revisions.
+int fetch(Transport& node, const Options& options) {
+  const int reader =
+      node.open_reader("rt/kinship/distribution", Distribution::type(), true);
+  const auto answer = ask<DistributionQuery, DistributionAnswer>(node, "fetch", "fetched",
+                                                                 query_of(options));
+  if (!answer)
+    return none();
+  print(*answer);
+  std::uint64_t revision = answer->revision;
+  if (answer->status != kinship_msgs__msg__DistributionAnswer__READY)
+    return 0;
+  for (long left = options.number("more", 0); left >= 0; --left)
+    if (!print_distribution(node, reader, revision++))
+      return none();
+  return 0;
+}
+
+int call_fetch(Transport& node, const Options& options) {
+  auto request = made<Fetch_Request>();
+  request.query = query_of(options);
+  const auto answer = call<Fetch_Request, Fetch_Response>(node, "fetch", request);
+  if (!answer)
+    return none();
+  print(answer->answer);
+  for (std::size_t i = 0; i < answer->distribution.size; ++i)
+    print(answer->distribution.data[i]);
+  return 0;
+}
+
+/// What was published before it came.
+int listen(Transport& node, const Options& /*options*/) {
+  const int reader =
+      node.open_reader("rt/kinship/distribution", Distribution::type(), true);
+  return print_distribution(node, reader, 0) ? 0 : none();
+}
+
+int status(Transport& node, const Options& /*options*/) {
+  auto question = made<StatusQuery>();
+  make_uuid(question.uuid.uuid);
+  const auto answer = ask<StatusQuery, Status>(node, "status_query", "status", question);
+  if (!answer)
+    return none();
+  std::cout << "status " << answer->robots << " robots " << answer->paths << " paths "
+            << answer->attempts << " attempts, version " << answer->version.data << std::endl;
+  return 0;
+}
+
+/// A node that is there and does nothing, until its input ends: it holds a place of the domain.
+int stay(Transport& /*node*/, const Options& /*options*/) {
+  std::cout << "here" << std::endl;
+  std::cin.get();
+  return 0;
+}
+
+int run(std::uint32_t domain, const std::string& verb, const Words& words) {
+  const std::unique_ptr<Transport> node = join(domain);
+  const Options options(words);
+  if (verb == "register")
+    return register_robot(*node, options);
+  if (verb == "report")
+    return report(*node, options);
+  if (verb == "call_report")
+    return call_report(*node, options);
+  if (verb == "fetch")
+    return fetch(*node, options);
+  if (verb == "call_fetch")
+    return call_fetch(*node, options);
+  if (verb == "listen")
+    return listen(*node, options);
+  if (verb == "status")
+    return status(*node, options);
+  if (verb == "stay")
+    return stay(*node, options);
+  throw std::runtime_error("no verb '" + verb + "'");
+}
+
+}  // namespace
+}  // namespace kinship::test
+
+int main(int argc, char** argv) try {
+  if (argc < 3)
+    throw std::runtime_error("usage: ros_peer DOMAIN VERB [NAME=VALUE ...]");
+  return kinship::test::run(static_cast<std::uint32_t>(std::stoul(argv[1])), argv[2],
+                            {argv + 3, argv + argc});
+} catch (const std::exception& error) {
+  std::cerr << argv[0] << ": " << error.what() << '\n';
+  return 2;
+}
