@@ -80,7 +80,7 @@ void bind_loading(RobotClass& robot) {
                   const std::map<std::string, double>& held,
                   const std::optional<std::filesystem::path>& srdf,
                   const std::map<std::string, std::string>& packages, bool collision_from_visual,
-                  const std::vector<std::string>& without_collision) {
+                  const std::vector<std::string>& without_collision, bool without_meshes) {
         models::RobotArguments arguments{
             .source = source,
             .base_link = base,
@@ -92,6 +92,7 @@ void bind_loading(RobotClass& robot) {
             .srdf = srdf.value_or(std::filesystem::path()),
             .packages = pairs_of(packages, [](const auto& folder) { return folder; }),
             .collision_from_visual = collision_from_visual,
+            .without_meshes = without_meshes,
             .without_collision = without_collision};
         if (transfer)
           arguments.transfer = words_of(read_pose(*transfer, "transfer"));
@@ -117,6 +118,7 @@ srdf      its disabled pairs of links are never checked
 packages  folders of the packages that meshes are in, by name
 collision_from_visual  links that are drawn and have no solids: what is drawn is solid
 without_collision      names of links that are drawn and need no solid
+without_meshes         the meshes stay here: a server gets solids around them alone
 
 Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("source"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
@@ -125,7 +127,8 @@ Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("held") = std::map<std::string, double>(), py::arg("srdf") = py::none(),
       py::arg("packages") = std::map<std::string, std::string>(),
       py::arg("collision_from_visual") = false,
-      py::arg("without_collision") = std::vector<std::string>());
+      py::arg("without_collision") = std::vector<std::string>(),
+      py::arg("without_meshes") = false);
 }
 
 void bind_properties(RobotClass& robot) {

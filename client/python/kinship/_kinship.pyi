@@ -24,6 +24,7 @@ class Robot:
         packages: Mapping[str, str] = ...,
         collision_from_visual: bool = ...,
         without_collision: Sequence[str] = ...,
+        without_meshes: bool = ...,
     ) -> None: ...
     @property
     def label(self) -> str: ...
