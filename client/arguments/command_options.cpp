@@ -63,6 +63,11 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
       ->allow_extra_args(false);
 }
 
+void add_without_meshes(CLI::App& app, models::RobotArguments& arguments) {
+  app.add_flag("--without-meshes", arguments.without_meshes,
+               "keep the robot's meshes here: the server gets only the solids around them");
+}
+
 void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
   app.add_option("--sources", arguments.sources,
                  "only experience of these robots: labels or digests, separated by commas")

@@ -27,6 +27,9 @@ std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profil
 /// \param arguments  filled when the command line is parsed; must outlive that.
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
 
+/// --without-meshes, of programs that register the robot.
+void add_without_meshes(CLI::App& app, models::RobotArguments& arguments);
+
 /// The address of a server, and the client's credentials.
 struct ServerAddress {
   std::string& host;

@@ -141,11 +141,12 @@ typedef struct kinship_robot_file {
   size_t without_collision_count;
   const char* const* xacro; /**< "NAME:=VALUE" each, for a URDF or SRDF that is xacro */
   size_t xacro_count;
+  int without_meshes; /**< not 0: the meshes stay here, a server gets solids around them alone */
 } kinship_robot_file;
 
-/** Reads the files and registers the robot as kinship_register() does. A server has no meshes: it
- * is told of solids around them, which are fitted here; that may take seconds. Meshes that cannot
- * be read are an error. */
+/** Reads the files and registers the robot as kinship_register() does. A server that takes
+ * meshes is sent them, and solids around them, which are fitted here; that may take seconds.
+ * Meshes that cannot be read are an error. */
 KINSHIP_API kinship_code kinship_register_file(kinship_client* client,
                                                const kinship_robot_file* file, kinship_robot* robot,
                                                size_t* dof);

@@ -80,18 +80,22 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   arguments.srdf = text_or_empty(given.srdf);
   arguments.packages = read_texts(given.packages, given.package_count, "file->packages");
   arguments.collision_from_visual = given.collision_from_visual != 0;
+  arguments.without_meshes = given.without_meshes != 0;
   arguments.without_collision =
       read_texts(given.without_collision, given.without_collision_count, "file->without_collision");
   arguments.xacro = read_texts(given.xacro, given.xacro_count, "file->xacro");
   return arguments;
 }
 
-/// With solids around its meshes, if it has any.
+/// With its meshes, and solids around them, if it has any.
 kinematics::RobotModel read_file(const kinship_robot_file& given) {
   models::LoadedRobot robot = read_robot_file(given);
   kinematics::RobotModel& model = robot;
   model.description.mesh_solids =
       collision::fit_robot(robot.chain, robot.shapes).value_or_throw().mesh_solids;
+  auto meshes = models::load_meshes(read_file_arguments(given), model).value_or_throw();
+  model.description.meshes = std::move(meshes.meshes);
+  model.description.contents = std::move(meshes.contents);
   return model;
 }
 

@@ -45,6 +45,17 @@ std::optional<Distribution> find_distribution(link::Client& server, const Distri
   return std::nullopt;
 }
 
+/// The contents of a robot's meshes; none of a server that knows of none.
+std::vector<StoredMesh> read_meshes(link::Client& server, const std::string& name) {
+  std::vector<StoredMesh> meshes;
+  const AdminRequest request{.verb = AdminVerb::ListMeshes, .argument = name};
+  static_cast<void>(link::for_each_row(server, request, [&](const std::string& row) {
+    meshes.push_back(json::row_from_json<StoredMesh>(row).value_or_throw());
+    return true;
+  }));
+  return meshes;
+}
+
 /// The rows of one task: the client that asks for them, and the stream for its messages.
 struct TaskRows {
   link::Client& server;
@@ -127,7 +138,9 @@ int plot_robot(link::Client& server, const std::string& name, const PlotOptions&
   const auto robot = find_known_robot(server, name);
   if (!robot)
     return refuse(kPlotRobot, robot.error(), err);
-  plots::write_page(plots::robot_figure(robot->summary, robot->description), page.stream());
+  plots::write_page(
+      plots::robot_figure(robot->summary, robot->description, read_meshes(server, name)),
+      page.stream());
   page.keep(err);
   return kDone;
 }

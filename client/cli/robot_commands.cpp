@@ -24,6 +24,7 @@
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -37,6 +38,21 @@ void warn_of_geometry(const char* command, const kinematics::Chain& chain,
                       const geometry::RobotShapes& shapes, std::ostream& err) {
   for (const std::string& doubt : geometry::find_doubts(chain, shapes))
     err << command << ": warning: " << doubt << '\n';
+}
+
+/// Adds the meshes that are here, or tells `err` why not.
+void add_meshes(const char* command, const models::RobotArguments& arguments,
+                const kinematics::RobotModel& robot, RobotDescription& description,
+                std::ostream& err) {
+  auto meshes = models::load_meshes(arguments, robot);
+  if (!meshes) {
+    err << command << ": no meshes: " << meshes.error().message << '\n';
+    return;
+  }
+  for (const std::string& note : meshes->notes)
+    err << command << ": " << note << '\n';
+  description.meshes = std::move(meshes->meshes);
+  description.contents = std::move(meshes->contents);
 }
 
 /// Tells the server of the meshes that are here, or `err` why not.
@@ -264,8 +280,11 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
   print_warnings(kCommand, described->warnings, err);
   RobotDescription description = described->description;
   warn_without_transfer(kCommand, arguments, description, err);
-  if (const auto robot = models::read_model(*std::move(described)))  // else the server says why not
+  if (const auto robot =
+          models::read_model(*std::move(described))) {  // else the server says why not
     add_mesh_solids(kCommand, arguments, *robot, description, err);
+    add_meshes(kCommand, arguments, *robot, description, err);
+  }
   const auto reply = server.register_robot(description);
   if (!reply)
     return refuse(kCommand, reply.error(), err);
@@ -286,6 +305,8 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
     out << (reply->took_geometry ? "better geometry than before, it counts from now on: "
                                  : "the server filters with: ")
         << reply->geometry << '\n';
+  if (!json && !description.meshes.empty())
+    out << "meshes: " << (reply->meshes.empty() ? "the server takes none" : reply->meshes) << '\n';
   if (!json)
     print_same_arms(reply->same_arms, out);
   return kDone;

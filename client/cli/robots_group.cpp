@@ -121,6 +121,7 @@ void add_register(CLI::App& group, Session& session) {
       add_command(group, "register", "Hand a robot's description to the server",
                   "kinship robots register arm.urdf --base base_link --tip tool0 --label arm7");
   add_robot_arguments(*command, *robot);
+  arguments::add_without_meshes(*command, *robot);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, robot](link::Client& server) {
     return register_robot(server, *robot, session.json, session.out, session.err);

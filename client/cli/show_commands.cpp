@@ -63,6 +63,8 @@ void print_robot(const RobotSummary& robot, const RobotDescription& description,
   if (!robot.geometry.empty())
     out << "geometry    " << robot.geometry
         << (robot.geometry_ms > 0 ? ", taken over at " + time_text(robot.geometry_ms) : "") << '\n';
+  if (!description.meshes.empty())
+    out << "meshes      " << robot.meshes << '\n';
   out << "solver      " << robot.solver << '\n'
       << "experience  " << robot.paths << " paths, " << robot.attempts << " attempts\n"
       << "registered  " << time_text(robot.registered_ms) << '\n';

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "client/link/delivery.hpp"
 #include "client/link/environment.hpp"
 #include "client/link/interruptible_sleep.hpp"
+#include "client/link/mesh_upload.hpp"
 #include "client/link/outbox.hpp"
 #include "client/link/report_sender.hpp"
 #include "proto/dds/participant.hpp"
@@ -88,7 +90,9 @@ struct Client::Line {
           return reporting.call(batch, Clock::now() + kReceiptTime);
         },
         [this](const RobotDescription& description) {
-          return registering.call(description, Clock::now() + kReceiptTime);
+          return register_robot(description, [this](const RobotDescription& part) {
+            return registering.call(part, Clock::now() + kReceiptTime);
+          });
         },
         Clock::now, [this] { return reporting.count_servers(); });
   }
@@ -96,6 +100,8 @@ struct Client::Line {
   Line& operator=(const Line&) = delete;
 
   Result<RegisterReply> send(const RobotDescription& description);
+  Result<RegisterReply> register_robot(const RobotDescription& description,
+                                       const RegisterOnce& register_once);
 
   const dds::OwningProcess process;
   const milliseconds timeout;
@@ -147,10 +153,32 @@ Result<RegisterReply> Client::register_robot(const kinematics::RobotModel& robot
   return line_->send(robot.description);
 }
 
+/// With the contents of its meshes, of the description or of the outbox, which lets them go once
+/// the server has them or takes none.
+Result<RegisterReply> Client::Line::register_robot(const RobotDescription& description,
+                                                   const RegisterOnce& register_once) {
+  std::map<Digest, MeshContent> contents;
+  for (const MeshContent& content : description.contents)
+    if (const auto mesh = TriangleMesh::read(content))
+      contents.emplace(mesh->digest(), content);
+  const auto find = [&](const Digest& content) {
+    const auto found = contents.find(content);
+    if (found != contents.end())
+      return std::optional(found->second);
+    return outbox ? outbox->content(content) : std::nullopt;
+  };
+  Result<RegisterReply> reply = register_with_meshes(description, find, register_once);
+  if (outbox && reply && reply->status != RegisterStatus::Refused && reply->wanted.empty())
+    outbox->drop_contents(description);
+  return reply;
+}
+
 Result<RegisterReply> Client::Line::send(const RobotDescription& description) {
-  const Clock::time_point deadline = Clock::now() + timeout;
-  Result<RegisterReply> reply = ask_until_final<RegisterReply>(
-      deadline, sleep, [&] { return registering.call(description, deadline); });
+  Result<RegisterReply> reply = register_robot(description, [&](const RobotDescription& part) {
+    const Clock::time_point deadline = Clock::now() + timeout;
+    return ask_until_final<RegisterReply>(deadline, sleep,
+                                          [&] { return registering.call(part, deadline); });
+  });
   if (sender && reply && reply->status != RegisterStatus::Refused)
     sender->retry();
   return reply;

@@ -32,7 +32,8 @@ struct ClientOptions {
   std::filesystem::path token = {};
   std::filesystem::path outbox;  ///< folder; empty: default_outbox_folder()
   bool has_outbox = true;        ///< false: delivers nothing, report() is not allowed
-  /// Of register, deliver (per batch, without the pauses that the server asks for) and admin.
+  /// Of register (per message, see mesh_upload.hpp), deliver (per batch, without the pauses that
+  /// the server asks for) and admin.
   std::chrono::milliseconds timeout{5000};
 };
 

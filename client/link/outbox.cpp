@@ -24,6 +24,7 @@ constexpr std::string_view kPending = "pending";
 constexpr std::string_view kRejected = "rejected";
 constexpr std::string_view kSetAside = "set_aside";
 constexpr std::string_view kRobots = "robots";
+constexpr std::string_view kMeshes = "meshes";
 constexpr std::string_view kEpoch = "store_epoch";
 constexpr std::string_view kToken = "consistency_token";
 constexpr std::string_view kSuffix = ".json";
@@ -47,6 +48,29 @@ Result<std::string> read_limited(const fs::path& path) {
   } catch (const Failure& failure) {
     return failure.error();
   }
+}
+
+/// A content as a file: the number of its bytes in little endian, then the zlib stream.
+std::string file_text(const MeshContent& content) {
+  std::string text;
+  for (unsigned shift = 0; shift < 32; shift += 8)
+    text.push_back(static_cast<char>((content.bytes >> shift) & 0xffU));
+  text.append(content.zlib.begin(), content.zlib.end());
+  return text;
+}
+
+/// \return nothing if it is not that content.
+std::optional<MeshContent> content_of(std::string_view text, const Digest& digest) {
+  if (text.size() < 4)
+    return std::nullopt;
+  MeshContent content;
+  for (unsigned i = 0; i < 4; ++i)
+    content.bytes |= std::uint32_t{static_cast<std::uint8_t>(text[i])} << (8 * i);
+  content.zlib.assign(text.begin() + 4, text.end());
+  const auto mesh = TriangleMesh::read(content);
+  if (!mesh || mesh->digest() != digest)
+    return std::nullopt;
+  return content;
 }
 
 bool is_missing(const fs::path& path) {
@@ -198,11 +222,52 @@ std::vector<OutboxEntry> Outbox::entries() const {
 void Outbox::keep_robot(const Digest& robot, const RobotDescription& description) {
   RobotDescription kept = description;
   // A server that does not know the robot yet shall get its known meshes, too.
-  if (kept.mesh_solids.solids.empty())
-    if (const auto before = this->robot(robot); before && before->urdf == description.urdf)
-      kept.mesh_solids = before->mesh_solids;
+  if (kept.mesh_solids.solids.empty() || kept.meshes.empty())
+    if (const auto before = this->robot(robot); before && before->urdf == description.urdf) {
+      if (kept.mesh_solids.solids.empty())
+        kept.mesh_solids = before->mesh_solids;
+      if (kept.meshes.empty())
+        kept.meshes = before->meshes;
+    }
+  if (!description.contents.empty())
+    make_folder_durably(folder_ / kMeshes);
+  for (const MeshContent& content : description.contents)  // before what names them
+    if (const auto mesh = TriangleMesh::read(content))
+      write_durably(folder_ / kMeshes / mesh->digest().hex(), file_text(content));
   write_durably(folder_ / kRobots / (robot.hex() + std::string(kSuffix)),
                 json::to_json(kept) + "\n");
+}
+
+std::optional<MeshContent> Outbox::content(const Digest& content) const {
+  const fs::path path = folder_ / kMeshes / content.hex();
+  std::error_code error;
+  if (!fs::exists(path, error))
+    return std::nullopt;
+  const Result<std::string> text = read_limited(path);
+  return text ? content_of(*text, content) : std::nullopt;
+}
+
+void Outbox::drop_contents(const RobotDescription& description) {
+  std::error_code error;  // what stays is offered again
+  for (const LinkMesh& mesh : description.meshes)
+    fs::remove(folder_ / kMeshes / mesh.content.hex(), error);
+}
+
+std::vector<Digest> Outbox::robots_with_contents() const {
+  std::vector<Digest> robots;
+  std::error_code error;
+  if (is_missing(folder_ / kMeshes) || fs::is_empty(folder_ / kMeshes, error))
+    return robots;
+  for_each_entry(folder_ / kRobots, [&](const fs::directory_entry& entry) {
+    const auto digest = Digest::from_hex(entry.path().stem().string());
+    const auto description =
+        digest ? robot(*digest) : Result<RobotDescription>(Error{ErrorCode::NotFound, ""});
+    if (description && std::ranges::any_of(description->meshes, [&](const LinkMesh& mesh) {
+          return fs::exists(folder_ / kMeshes / mesh.content.hex(), error);
+        }))
+      robots.push_back(*digest);
+  });
+  return robots;
 }
 
 Result<RobotDescription> Outbox::robot(const Digest& robot) const {
@@ -264,8 +329,8 @@ ConsistencyToken Outbox::known_token() const {
 void Outbox::age(std::chrono::milliseconds sending) {
   sent_.make_folders();  // a rotating process may have been killed in between
   sent_.age(sending);
-  for (const fs::path& folder :
-       {folder_ / kPending, folder_ / kRejected, folder_ / kSetAside, folder_ / kRobots, folder_})
+  for (const fs::path& folder : {folder_ / kPending, folder_ / kRejected, folder_ / kSetAside,
+                                 folder_ / kRobots, folder_ / kMeshes, folder_})
     if (!is_missing(folder))
       for_each_entry(folder, [](const fs::directory_entry& entry) {
         if (files::is_part(entry.path()))

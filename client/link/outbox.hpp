@@ -24,7 +24,7 @@ namespace kinship::link {
 /// Reports of a client on disk, one file each, named by report UUID: `pending/` until the server's
 /// receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good. `set_aside/`: those that the
 /// server neither takes nor refuses, until resend(). Beside them `robots/`: the descriptions that
-/// register their robots.
+/// register their robots; `meshes/`: contents of their meshes, by digest, until a server has them.
 ///
 /// Processes may share one: each may add, only the holder of the sender lock (ReportSender) moves.
 /// Methods throw Failure(Storage) naming the file. May be shared between threads.
@@ -60,7 +60,15 @@ class Outbox {
   /// Reports that wait or are kept apart, by folder and file. Reads all pending ones.
   std::vector<OutboxEntry> entries() const;
 
-  void keep_robot(const Digest& robot, const RobotDescription& description);  ///< durably
+  /// Durably, with the contents of its meshes that come with it.
+  void keep_robot(const Digest& robot, const RobotDescription& description);
+
+  /// Nothing also if its file is damaged.
+  std::optional<MeshContent> content(const Digest& content) const;
+  /// Drops the contents of a robot's meshes: a server has them.
+  void drop_contents(const RobotDescription& description);
+  /// Robots that name contents which are kept.
+  std::vector<Digest> robots_with_contents() const;
 
   /// \return the description that keep_robot() kept last; NotFound if there is none, InvalidInput,
   ///         TooLarge or Storage if its file is damaged or cannot be read.

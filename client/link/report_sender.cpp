@@ -142,6 +142,8 @@ std::chrono::milliseconds ReportSender::work(std::optional<files::LockFile>& loc
   is_resending_ = false;
   retry_after_ = 0ms;
   const bool gets_on = send_all_pending() && probe_epoch();
+  if (gets_on)
+    send_contents();
   if (!gets_on)  // a server that is busy says when it will not be
     return retry_after_ > 0ms ? std::max<std::chrono::milliseconds>(retry_after_, kShortestRetry)
                               : kRetry;
@@ -224,6 +226,18 @@ bool ReportSender::probe_epoch() {
     return true;
   ReportRequest probe;
   return exchange(probe).has_value();
+}
+
+/// Registers the robots with contents of meshes in the outbox again, once a server that came: an
+/// earlier registration ended before it had them.
+void ReportSender::send_contents() {
+  const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
+  if (servers == servers_with_contents_ || !register_robot_)
+    return;
+  servers_with_contents_ = servers;
+  for (const Digest& robot : outbox_.robots_with_contents())
+    if (const Result<RobotDescription> description = outbox_.robot(robot))
+      static_cast<void>(register_robot_(*description));
 }
 
 /// Sends a batch with the known token of the store, and notes the epoch and token in the reply.

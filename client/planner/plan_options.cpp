@@ -75,6 +75,7 @@ void add_inputs(CLI::App& app, PlanOptions& options) {
       ->required()
       ->type_name("FILE");
   arguments::add_robot_options(app, options.robot);
+  arguments::add_without_meshes(app, options.robot);
 }
 
 void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {

@@ -239,9 +239,10 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());
   const kinematics::RobotModel& model = robot;
-  ServerLine server(
-      options, model, [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
-      streams.messages, stop);
+  ServerLine server(options, model,
+                    {[&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
+                     [&options, &model] { return models::load_meshes(options.robot, model); }},
+                    streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};

@@ -24,11 +24,11 @@ guided::NoGuidance why_not(const Error& error) {
 
 }  // namespace
 
-ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot, FitRobot fit,
+ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot, Geometry geometry,
                        std::ostream& messages, const std::function<bool()>& stop)
     : options_(options),
       robot_(std::move(robot)),
-      fit_(std::move(fit)),
+      geometry_(std::move(geometry)),
       messages_(messages),
       stop_(stop) {
   if (options_.guidance == GuidanceMode::Uniform)
@@ -77,7 +77,7 @@ Result<RegisterReply> ServerLine::send_description() {
 bool ServerLine::add_mesh_solids() {
   if (!robot_.description.mesh_solids.solids.empty())
     return false;
-  Result<collision::FittedRobot> fitted = fit_();
+  Result<collision::FittedRobot> fitted = geometry_.fit();
   if (!fitted)
     messages_ << "robot '" << robot_.description.label
               << "': no solids around its meshes: " << fitted.error().message << '\n';
@@ -86,11 +86,32 @@ bool ServerLine::add_mesh_solids() {
   return !robot_.description.mesh_solids.solids.empty();
 }
 
+/// \return whether there are any, which were not there before.
+bool ServerLine::add_meshes() {
+  if (options_.robot.without_meshes || !robot_.description.meshes.empty())
+    return false;
+  Result<geometry::LinkMeshes> meshes = geometry_.meshes();
+  if (!meshes) {
+    messages_ << "robot '" << robot_.description.label << "': no meshes: " << meshes.error().message
+              << '\n';
+    return false;
+  }
+  for (const std::string& note : meshes->notes)
+    messages_ << "robot '" << robot_.description.label << "': " << note << '\n';
+  robot_.description.meshes = std::move(meshes->meshes);
+  robot_.description.contents = std::move(meshes->contents);
+  return !robot_.description.meshes.empty();
+}
+
 void ServerLine::register_robot() {
   Result<RegisterReply> reply = send_description();
-  // A server that does not tell has no use for solids.
-  if (reply && reply->status != RegisterStatus::Refused && !reply->geometry.empty() &&
-      reply->geometry_grade < GeometryGrade::Approximate && add_mesh_solids())
+  // A server that does not tell has no use for them.
+  const bool is_taken = reply && reply->status != RegisterStatus::Refused;
+  const bool has_solids = is_taken && !reply->geometry.empty() &&
+                          reply->geometry_grade < GeometryGrade::Approximate && add_mesh_solids();
+  const bool has_meshes = is_taken && !reply->meshes.empty() &&
+                          reply->geometry_grade < GeometryGrade::Exact && add_meshes();
+  if (has_solids || has_meshes)
     reply = send_description();
   if (reply && !reply->geometry.empty() && reply->geometry_grade != GeometryGrade::Exact)
     messages_ << "robot '" << robot_.description.label

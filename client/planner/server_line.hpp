@@ -13,6 +13,7 @@
 #include "client/planner/problem_lines.hpp"
 #include "proto/types/attempt.hpp"
 #include "robots/collision/fitted_links.hpp"
+#include "robots/geometry/link_meshes.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::planner {
@@ -22,14 +23,19 @@ namespace kinship::planner {
 class ServerLine {
  public:
   using FitRobot = std::function<Result<collision::FittedRobot>()>;
+  using LoadMeshes = std::function<Result<geometry::LinkMeshes>()>;
+  /// What a server may be told of the robot's meshes, each when it has use for it.
+  struct Geometry {
+    FitRobot fit;       ///< solids around them
+    LoadMeshes meshes;  ///< themselves
+  };
 
   /// Registers the robot if the options need the server. A failed connection or a refused
   /// registration is written to `messages` and means no guidance.
-  /// \param fit       fits solids around the robot's meshes; called if the server has no better
-  ///                  geometry of the robot. Borrowed.
+  /// \param geometry  called if the server has no better geometry of the robot. Borrowed.
   /// \param messages  for people; borrowed.
   /// \param stop      called during waits for a server; true ends the wait. Borrowed.
-  ServerLine(const PlanOptions& options, kinematics::RobotModel robot, FitRobot fit,
+  ServerLine(const PlanOptions& options, kinematics::RobotModel robot, Geometry geometry,
              std::ostream& messages, const std::function<bool()>& stop);
 
   /// Fetches guidance for every placement of the problems and writes the answers to `messages`.
@@ -63,12 +69,13 @@ class ServerLine {
   void register_robot();
   Result<RegisterReply> send_description();
   bool add_mesh_solids();
+  bool add_meshes();
   std::optional<Error> find_sources(Selection& selection);
   void flush();
 
   const PlanOptions options_;
   kinematics::RobotModel robot_;
-  const FitRobot fit_;
+  const Geometry geometry_;
   std::ostream& messages_;
   const std::function<bool()>& stop_;
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had

@@ -34,7 +34,7 @@ std::shared_ptr<Robot> Robot::load(const models::RobotArguments& arguments,
   warnings = std::move(described.warnings);
   kinematics::RobotModel model = models::read_model(std::move(described)).value_or_throw();
   auto shapes = models::load_shapes(arguments, model);
-  return std::make_shared<Robot>(std::move(model), std::move(shapes));
+  return std::make_shared<Robot>(std::move(model), std::move(shapes), arguments);
 }
 
 std::shared_ptr<Robot> Robot::of_description(RobotDescription description) {
@@ -43,10 +43,12 @@ std::shared_ptr<Robot> Robot::of_description(RobotDescription description) {
   return std::make_shared<Robot>(std::move(model), std::move(shapes));
 }
 
-Robot::Robot(kinematics::RobotModel model, Result<geometry::RobotShapes> shapes)
+Robot::Robot(kinematics::RobotModel model, Result<geometry::RobotShapes> shapes,
+             std::optional<models::RobotArguments> files)
     : model_(std::move(model)),
       digest_(chain().digest()),
       shapes_(std::move(shapes)),
+      files_(std::move(files)),
       solver_(chain()) {}
 
 std::vector<Eigen::Isometry3d> Robot::poses(const Eigen::MatrixXd& qs,
@@ -90,6 +92,12 @@ kinematics::RobotModel Robot::model_for_server() const {
     return model;
   if (auto fitted = collision::fit_robot(model.chain, *shapes_))
     model.description.mesh_solids = std::move(fitted).value().mesh_solids;
+  if (!files_)
+    return model;
+  if (auto meshes = models::load_meshes(*files_, model)) {
+    model.description.meshes = std::move(meshes->meshes);
+    model.description.contents = std::move(meshes->contents);
+  }
   return model;
 }
 

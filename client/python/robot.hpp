@@ -29,7 +29,9 @@ class Robot {
   /// A robot of a server's or file's description, which has no files: its meshes are not known.
   static std::shared_ptr<Robot> of_description(RobotDescription description);
 
-  Robot(kinematics::RobotModel model, Result<geometry::RobotShapes> shapes);
+  /// \param files  of the robot, with its meshes for a server.
+  Robot(kinematics::RobotModel model, Result<geometry::RobotShapes> shapes,
+        std::optional<models::RobotArguments> files = {});
 
   const RobotDescription& description() const noexcept { return model_.description; }
   const kinematics::Chain& chain() const noexcept { return model_.chain; }
@@ -54,13 +56,14 @@ class Robot {
   /// Its collision geometry; to be called after planned(), which checks that it is known.
   const geometry::RobotShapes& shapes() const { return shapes_.value(); }
 
-  /// The robot with solids around its known meshes, if any, in its description.
+  /// The robot with its known meshes and solids around them, if any, in its description.
   kinematics::RobotModel model_for_server() const;
 
  private:
   kinematics::RobotModel model_;
   Digest digest_;
   Result<geometry::RobotShapes> shapes_;
+  std::optional<models::RobotArguments> files_;
   inverse::Solver solver_;
   mutable std::mutex mutex_;  // guards what follows
   mutable std::shared_ptr<const guided::PlannedRobot> planned_;

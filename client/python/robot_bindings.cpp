@@ -81,7 +81,7 @@ void bind_loading(RobotClass& robot) {
                   const std::optional<std::filesystem::path>& srdf,
                   const std::map<std::string, std::string>& packages, bool collision_from_visual,
                   const std::vector<std::string>& without_collision,
-                  const std::map<std::string, std::string>& xacro) {
+                  const std::map<std::string, std::string>& xacro, bool without_meshes) {
         models::RobotArguments arguments{
             .source = source,
             .base_link = base,
@@ -93,6 +93,7 @@ void bind_loading(RobotClass& robot) {
             .srdf = srdf.value_or(std::filesystem::path()),
             .packages = pairs_of(packages, [](const auto& folder) { return folder; }),
             .collision_from_visual = collision_from_visual,
+            .without_meshes = without_meshes,
             .without_collision = without_collision};
         for (const auto& [name, value] : xacro)
           arguments.xacro.push_back(name + ":=" + value);
@@ -121,6 +122,7 @@ packages  folders of the packages that meshes are in, by name; others are search
 collision_from_visual  links that are drawn and have no solids: what is drawn is solid
 without_collision      names of links that are drawn and need no solid
 xacro     arguments of a URDF or SRDF that is xacro, which the program xacro expands
+without_meshes         the meshes stay here: a server gets solids around them alone
 
 Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("source"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
@@ -130,7 +132,7 @@ Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("packages") = std::map<std::string, std::string>(),
       py::arg("collision_from_visual") = false,
       py::arg("without_collision") = std::vector<std::string>(),
-      py::arg("xacro") = std::map<std::string, std::string>());
+      py::arg("xacro") = std::map<std::string, std::string>(), py::arg("without_meshes") = false);
 }
 
 void bind_properties(RobotClass& robot) {

@@ -93,6 +93,46 @@ const kinshipSolids = (() => {
     }
   }
 
+  /// A mesh from its canonical bytes in base64: uint32 vertices, uint32 triangles, float32 x y z, uint32 corners.
+  function meshGeometry(text) {
+    const raw = atob(text);
+    const bytes = new Uint8Array(raw.length);
+    for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
+    const [vertices, triangles] = new Uint32Array(bytes.buffer, 0, 2);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytes.buffer, 8, 3 * vertices), 3));
+    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes.buffer, 8 + 12 * vertices, 3 * triangles), 1));
+    geometry.computeBoundingSphere();
+    geometry.userData.isKept = true; // others place it too
+    return geometry;
+  }
+
+  /// Meshes in their places, in their own colours if they have some.
+  function addMeshes(group, layer) {
+    for (const {geometry, pose, rgba} of layer.meshes) {
+      const hue = rgba && rgba.length ? new THREE.Color(rgba[0], rgba[1], rgba[2]) : new THREE.Color(color(layer.color));
+      const opacity = (layer.opacity || 1) * (rgba && rgba.length ? rgba[3] : 1);
+      const mesh = new THREE.Mesh(geometry, new THREE.MeshPhongMaterial({color: hue, flatShading: true, shininess: 18, specular: 0x222222,
+        transparent: opacity < 1, opacity, depthWrite: opacity >= 1, side: THREE.DoubleSide}));
+      mesh.matrixAutoUpdate = false;
+      mesh.matrix.copy(matrixOf(pose));
+      mesh.renderOrder = opacity < 1 ? 20 : 0;
+      group.add(mesh);
+    }
+  }
+
+  /// The edges of a mesh as pairs of points in their places, for a drawing without WebGL.
+  function meshEdgesOf({geometry, pose}) {
+    const edges = [];
+    const {position} = geometry.attributes;
+    const corner = (i) => new THREE.Vector3().fromBufferAttribute(position, i).applyMatrix4(matrixOf(pose)).toArray();
+    const {array} = geometry.index;
+    for (let i = 0; i + 2 < array.length; i += 3)
+      for (const [a, b] of [[0, 1], [1, 2], [2, 0]])
+        if (array[i + a] < array[i + b]) edges.push(...corner(array[i + a]), ...corner(array[i + b]));
+    return edges;
+  }
+
   /// A round dot, so that points are not squares.
   let dot = null;
   function dotTexture() {
@@ -167,6 +207,7 @@ const kinshipSolids = (() => {
   function groupOf(layer, index) {
     const group = new THREE.Group();
     if (layer.objects) addObjects(group, layer);
+    if (layer.meshes) addMeshes(group, layer);
     if (layer.lines) addLines(group, layer);
     if (layer.points) addPoints(group, layer);
     const hue = new THREE.Color(color(layer.color));
@@ -178,7 +219,7 @@ const kinshipSolids = (() => {
   /// Gives back what a group holds of the graphics card.
   function dispose(group) {
     for (const drawn of group.children) {
-      drawn.geometry.dispose();
+      if (!drawn.geometry.userData.isKept) drawn.geometry.dispose();
       drawn.material.dispose();
     }
   }
@@ -191,6 +232,8 @@ const kinshipSolids = (() => {
         balls.push([positions[i], positions[i + 1], positions[i + 2], radius]);
     };
     for (const object of layer.objects || []) each(pointsOf(object), 0);
+    for (const {geometry, pose} of layer.meshes || [])
+      each(geometry.boundingSphere.center.clone().applyMatrix4(matrixOf(pose)).toArray(), geometry.boundingSphere.radius);
     for (const lines of layer.lines || []) each(lines.positions, 0);
     for (const points of layer.points || []) each(points.positions, (points.size || 0.02) / 2);
     for (const way of layer.ways || []) each(way.positions, (way.width || 0.008) / 2);
@@ -199,5 +242,5 @@ const kinshipSolids = (() => {
     return balls;
   }
 
-  return {groupOf, dispose, ballsOf, edgesOf, bonesOfWay, matrixOf};
+  return {groupOf, dispose, ballsOf, edgesOf, meshGeometry, meshEdgesOf, bonesOfWay, matrixOf};
 })();

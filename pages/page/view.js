@@ -2,7 +2,7 @@
 "use strict";
 const kinshipView = (() => {
   const {color, make, onColors, onSize} = kinshipPage;
-  const {groupOf, dispose, ballsOf, edgesOf, bonesOfWay} = kinshipSolids;
+  const {groupOf, dispose, ballsOf, edgesOf, meshEdgesOf, bonesOfWay} = kinshipSolids;
   const views = new WeakMap(); // by their figures
 
   function hasWebGl() {
@@ -134,6 +134,7 @@ const kinshipView = (() => {
         }
       }
       for (const object of layer.objects || []) stroke(edgesOf(object), 0.85, 2);
+      for (const mesh of layer.meshes || []) stroke(meshEdgesOf(mesh), 0.35, 1);
       for (const way of layer.ways || []) {
         pen.strokeStyle = color(way.color || layer.color);
         strokeBones(bonesOfWay(way), 1);
@@ -225,12 +226,12 @@ const kinshipView = (() => {
   /// \param view.from    direction from which one looks at first, [x, y, z]
   /// \param view.layers  each {name, color (of the style, without --), and any of: text (in the legend, which hides and
   ///   shows the layer; "": not now), shown (true), fits (true: the camera sees all of it), objects [{pose, box | cylinder | capsule |
-  ///   sphere}] with opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity, owners: of each pair, to be picked}], ways [{positions: one line, width, color}],
+  ///   sphere}] with opacity, meshes [{geometry, pose, rgba}] with opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity, owners: of each pair, to be picked}], ways [{positions: one line, width, color}],
   ///   points [{positions, size, opacity}]}. Solids and bones are those of pages/page/json_text.hpp.
   /// \param view.onPick  called with the owner of a line that is clicked, and with null for a click beside all of them
   /// \return {replace(name, layer): other content, colour or text for a layer; show(name, shown); grow(name, lines, points):
   ///   only so many segments and points of it; follow(other): turns as another figure does; fit(); count(name): drawn solids,
-  ///   arms, ways, segments and points of a layer, and what grow() left of it}; counts(figure, name) is the same from outside.
+  ///   meshes, arms, ways, segments and points of a layer, and what grow() left of it}; counts(figure, name) is the same from outside.
   ///   Without its figure in the page it gives back what it holds.
   function show(figure, view) {
     const layers = view.layers.map((layer) => ({shown: true, fits: true, ...layer}));
@@ -285,9 +286,9 @@ const kinshipView = (() => {
         button.hidden = !layers[index].text;
       },
       count(name) {
-        const {objects = [], arms = [], ways = [], lines = [], points = []} = layers[indexOf(name)];
+        const {objects = [], meshes = [], arms = [], ways = [], lines = [], points = []} = layers[indexOf(name)];
         const numbers = (list) => list.reduce((sum, each) => sum + each.positions.length, 0);
-        return {objects: objects.length, arms: arms.length, ways: ways.length, segments: numbers(lines) / 6, points: numbers(points) / 3, grown: grown.get(name)};
+        return {objects: objects.length, meshes: meshes.length, arms: arms.length, ways: ways.length, segments: numbers(lines) / 6, points: numbers(points) / 3, grown: grown.get(name)};
       },
       grow(name, lines, points) {
         grown.set(name, [lines, points]);

@@ -44,6 +44,14 @@ const kinshipChain = (() => {
       transfer};
   }
 
+  /// The robot's meshes of a role ("visual", "collision"), for a layer of kinshipView.
+  /// \param geometries  by content
+  function meshesOf(robot, geometries, role, q) {
+    const {links} = posesOf(robot, q);
+    return robot.meshes.filter((mesh) => mesh.role === role || mesh.role === "both").map((mesh) =>
+      ({geometry: geometries[mesh.content], pose: times(links[mesh.link], matrixOf(mesh.pose)), rgba: role === "visual" ? mesh.rgba : []}));
+  }
+
   const originOf = (matrix) => new THREE.Vector3().setFromMatrixPosition(matrix).toArray();
 
   /// The axes of a frame as ways of a layer: x, y and z in three colours.
@@ -59,5 +67,5 @@ const kinshipChain = (() => {
     return [...position.toArray(), ...quaternion.toArray()];
   }
 
-  return {posesOf, solidsOf, originOf, axesOf, poseOf};
+  return {posesOf, solidsOf, meshesOf, originOf, axesOf, poseOf};
 })();

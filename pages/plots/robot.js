@@ -37,6 +37,8 @@ kinshipFigures.robot = (element, data) => {
   const {robot, summary} = data;
   const solids = total(robot.links.map((link) => link.solids.length));
   const identity = [0, 0, 0, 0, 0, 0, 1];
+  const geometries = Object.fromEntries(Object.entries(robot.contents).map(([content, text]) => [content, kinshipSolids.meshGeometry(text)]));
+  const drawnAs = (role) => robot.meshes.filter((mesh) => mesh.role === role || mesh.role === "both").length;
   let q = [...data.shown];
 
   function tell() {
@@ -47,16 +49,19 @@ kinshipFigures.robot = (element, data) => {
       [count(robot.joints.length), "joints"], [count(solids), `solids of ${several(robot.links.filter((link) => link.solids.length).length, "link")}`],
       [count(summary.paths), "paths that it reported"], [count(summary.attempts), "attempts"]]);
     byId("shapes-text").textContent = `Known to the server: ${robot.shapes}. What it does not know is not drawn, nor does a filter see it. ` +
+      (robot.meshes.length ? `Drawn are ${several(drawnAs("visual"), "visual")} and ${several(drawnAs("collision"), "collision part")} of meshes` +
+        (robot.meshes.some((mesh) => mesh.error_m) ? `, simplified within ${fixed(1000 * Math.max(...robot.meshes.map((mesh) => mesh.error_m)), 1)} mm. ` : ". ") : "") +
       (data.touches_itself ? "In every configuration that was tried these solids touch each other. " : "") +
       "The three lines are the axes of the transfer frame, which robots place alike: x red, y green, z blue.";
     fillFacts(byId("facts"), [
-      ["Digest", robot.digest], ["Solver", summary.solver], ["Shapes", summary.geometry],
+      ["Digest", robot.digest], ["Solver", summary.solver], ["Shapes", summary.geometry], ["Meshes", summary.meshes],
       ["Registered", timeText(summary.registered_ms)], ["Better shapes", summary.geometry_ms ? timeText(summary.geometry_ms) : ""]]);
   }
 
   function layers() {
     const {links, transfer} = kinshipChain.solidsOf(robot, q, identity);
-    return {links: {objects: links}, transfer: {ways: kinshipChain.axesOf(transfer)}, pose: kinshipChain.poseOf(transfer)};
+    return {links: {objects: links}, visual: {meshes: kinshipChain.meshesOf(robot, geometries, "visual", q)},
+            collision: {meshes: kinshipChain.meshesOf(robot, geometries, "collision", q)}, transfer: {ways: kinshipChain.axesOf(transfer)}, pose: kinshipChain.poseOf(transfer)};
   }
 
   /// Where the arm could be, so that the camera need not follow it.
@@ -72,12 +77,15 @@ kinshipFigures.robot = (element, data) => {
   const first = layers();
   const view = kinshipView.show(byId("robot"), {
     label: `${robot.label}: ${several(solids, "solid")} of its links, and its transfer frame`, from: [-1, -1.5, 0.8], layers: [
-      {name: "links", text: "links", color: "arm", opacity: 1, ...first.links},
+      ...(drawnAs("visual") ? [{name: "visual", text: "as it looks", color: "arm", opacity: 1, ...first.visual}] : []),
+      ...(drawnAs("collision") ? [{name: "collision", text: "collision meshes", color: "goal", opacity: 0.4, shown: !drawnAs("visual"), ...first.collision}] : []),
+      {name: "links", text: "solids", color: "arm", opacity: robot.meshes.length ? 0.22 : 1, shown: !robot.meshes.length, ...first.links},
       {name: "transfer", text: "transfer frame", color: "axis-z", ...first.transfer},
       {name: "room", color: "scene", shown: false, points: [{positions: room()}]}]});
 
   function put() {
     const now = layers();
+    for (const name of ["visual", "collision"]) if (drawnAs(name)) view.replace(name, now[name]);
     view.replace("links", now.links);
     view.replace("transfer", now.transfer);
     byId("pose").textContent = `Transfer frame in \u201c${robot.base_link}\u201d: ${now.pose.slice(0, 3).map((n) => fixed(n, 3)).join(" ")} m, ` +

@@ -21,8 +21,9 @@ Eigen::VectorXd random_configuration(const kinematics::Chain& chain, std::mt1993
 
 }  // namespace
 
-RobotFigure robot_figure(const RobotSummary& summary, const RobotDescription& description) {
-  RobotFigure figure{summary, drawn_robot(description), {}};
+RobotFigure robot_figure(const RobotSummary& summary, const RobotDescription& description,
+                         const std::vector<StoredMesh>& contents) {
+  RobotFigure figure{summary, drawn_robot(description, contents), {}};
   const kinematics::Chain& chain = figure.drawn.robot.chain;
   collision::CollisionWorld world(chain, figure.drawn.robot.shapes, {});
   const Eigen::VectorXd zero =

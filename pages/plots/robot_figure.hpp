@@ -20,7 +20,8 @@ struct RobotFigure {
 /// Shows all joints at 0, moved into their limits, or the first configuration in which the known
 /// shapes do not touch: the middle of the limits, then random ones (seeded).
 /// \throws Failure as drawn_robot.
-RobotFigure robot_figure(const RobotSummary& summary, const RobotDescription& description);
+RobotFigure robot_figure(const RobotSummary& summary, const RobotDescription& description,
+                         const std::vector<StoredMesh>& contents = {});
 
 std::string to_json(const RobotFigure& figure);
 

@@ -22,6 +22,10 @@ template <>
 struct WireMember<std::vector<NamePair>> {
   using Type = decltype(kinship_wire_RegisterRequest::never_colliding);
 };
+template <>
+struct WireMember<std::vector<MeshDigest>> {
+  using Type = decltype(kinship_wire_RegisterReply::wanted);
+};
 
 namespace {
 
@@ -75,6 +79,40 @@ static void read_part(const kinship_wire_LinkSolid& wire, Reader& reader, LinkSo
   solid.T_link_shape = reader.pose("mesh_solids", wire.pose);
 }
 
+static void write_part(const LinkMesh& mesh, Arena& arena, kinship_wire_LinkMesh& wire) {
+  wire.link = arena.text(mesh.link);
+  wire.role = static_cast<std::uint32_t>(mesh.role);
+  write_pose(mesh.T_link_mesh, wire.T_link_mesh);
+  write_value(mesh.rgba, {}, arena, wire.rgba);
+  wire.error_m = mesh.error_m;
+  write_digest(mesh.content, wire.content);
+}
+
+static void read_part(const kinship_wire_LinkMesh& wire, Reader& reader, LinkMesh& mesh) {
+  mesh.link = read_text(wire.link);
+  mesh.role = reader.enumerator("meshes: role", wire.role, MeshRole::Both);
+  mesh.T_link_mesh = reader.pose("meshes", wire.T_link_mesh);
+  mesh.rgba = read_value<std::vector<double>>({"meshes: rgba"}, wire.rgba, {.limit = 4}, reader);
+  mesh.error_m = wire.error_m;
+  mesh.content = read_digest(wire.content);
+}
+
+static void write_part(const MeshContent& content, Arena& arena, kinship_wire_MeshContent& wire) {
+  wire.bytes = content.bytes;
+  arena.resize(wire.zlib, content.zlib.size());
+  std::copy(content.zlib.begin(), content.zlib.end(), wire.zlib._buffer);
+}
+
+static void read_part(const kinship_wire_MeshContent& wire, Reader& reader, MeshContent& content) {
+  const auto zlib = elements(wire.zlib);
+  reader.rules.at_most("contents: bytes", wire.bytes, kMaxCanonicalMeshBytes)
+      .at_most("contents: zlib", zlib.size(), kMaxMeshZlibBytes);
+  if (reader.rules.broken())
+    return;
+  content.bytes = wire.bytes;
+  content.zlib.assign(zlib.begin(), zlib.end());
+}
+
 std::optional<Error> validate(const RobotDescription& description) {
   Rules rules;
   rules.not_empty("urdf", description.urdf)
@@ -93,7 +131,13 @@ std::optional<Error> validate(const RobotDescription& description) {
       rules.not_empty("never_colliding", *link).text("never_colliding", *link, kMaxLinkNameBytes);
   if (rules.broken())
     return rules.broken();
-  return check_mesh_solids(description.mesh_solids);
+  rules.name(check_mesh_solids(description.mesh_solids))
+      .name(check_link_meshes(description.meshes))
+      .at_most("contents", description.contents.size(), kMaxContentsARequest);
+  for (const MeshContent& content : description.contents)
+    rules.at_most("contents: bytes", content.bytes, kMaxCanonicalMeshBytes)
+        .at_most("contents: zlib", content.zlib.size(), kMaxMeshZlibBytes);
+  return rules.broken();
 }
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
@@ -106,6 +150,8 @@ Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
   write_members(description, kFields, kBegin, arena, wire);
   write_value(description.mesh_solids.solids, {}, arena, wire.mesh_solids);
   write_value(description.mesh_solids.unfiltered, {}, arena, wire.unfiltered);
+  write_value(description.meshes, {}, arena, wire.meshes);
+  write_value(description.contents, {}, arena, wire.contents);
   return limited(std::move(message));
 }
 
@@ -117,6 +163,10 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
       {"mesh_solids"}, wire.mesh_solids, {.limit = kMaxMeshSolids}, reader);
   description.mesh_solids.unfiltered = read_value<std::vector<NamePair>>(
       {"unfiltered"}, wire.unfiltered, {.limit = kMaxCollisionPairs}, reader);
+  description.meshes =
+      read_value<std::vector<LinkMesh>>({"meshes"}, wire.meshes, {.limit = kMaxLinkMeshes}, reader);
+  description.contents = read_value<std::vector<MeshContent>>(
+      {"contents"}, wire.contents, {.limit = kMaxContentsARequest}, reader);
   if (!reader.rules.broken())
     reader.rules.name(validate(description));
   if (reader.rules.broken())

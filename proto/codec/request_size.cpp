@@ -12,14 +12,18 @@ constexpr std::size_t kFixedBytes = 256;
 constexpr std::size_t kAttemptBytes = 256;  // its record, digest and UUID
 constexpr std::size_t kSolidBytes = 128;
 constexpr std::size_t kPairBytes = 64;
+constexpr std::size_t kMeshBytes = 256;
 
 }  // namespace
 
 RequestSize size_of(const kinship_wire_RegisterRequest& wire) {
-  return {.bytes = kFixedBytes + text_bytes(wire.urdf) +
-                   kSolidBytes * elements(wire.mesh_solids).size() +
-                   kPairBytes *
-                       (elements(wire.never_colliding).size() + elements(wire.unfiltered).size())};
+  std::size_t bytes =
+      kFixedBytes + text_bytes(wire.urdf) + kSolidBytes * elements(wire.mesh_solids).size() +
+      kPairBytes * (elements(wire.never_colliding).size() + elements(wire.unfiltered).size()) +
+      kMeshBytes * elements(wire.meshes).size();
+  for (const kinship_wire_MeshContent& content : elements(wire.contents))
+    bytes += elements(content.zlib).size();
+  return {.bytes = bytes};
 }
 
 RequestSize size_of(const kinship_wire_ReportRequest& wire) {

@@ -80,6 +80,8 @@ std::string to_json(const RegisterReply& reply, const std::string& label) {
   document["geometry"] = reply.geometry;
   document["geometry_grade"] = to_text(reply.geometry_grade);
   document["took_geometry"] = reply.took_geometry;
+  document["meshes"] = reply.meshes;
+  document["meshes_missing"] = reply.wanted.size();
   return write(document);
 }
 

@@ -9,6 +9,7 @@
 #include "proto/json/reader.hpp"
 #include "proto/json/scene_json.hpp"
 #include "proto/json/writer.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -53,6 +54,44 @@ OrderedJson mesh_solids_object(const MeshSolids& mesh_solids) {
   return object;
 }
 
+std::vector<LinkMesh> read_meshes(const Reader& reader) {
+  std::vector<LinkMesh> meshes;
+  for (const Reader& each : reader.elements(kMaxLinkMeshes)) {
+    each.allow_only({"link", "role", "T_link_mesh", "rgba", "error_m", "content"});
+    LinkMesh mesh;
+    mesh.link = each.at("link").text(kMaxLinkNameBytes);
+    mesh.role = parse_word<MeshRole>(each.at("role").text(kMaxWordBytes)).value_or_throw();
+    mesh.T_link_mesh = each.at("T_link_mesh").pose();
+    if (const auto rgba = each.find("rgba"))
+      for (const Reader& part : rgba->elements(4))
+        mesh.rgba.push_back(part.number(0, 1));
+    if (const auto error = each.find("error_m"))
+      mesh.error_m = error->number(0, kMaxPlacement_m);
+    mesh.content = each.at("content").digest();
+    meshes.push_back(std::move(mesh));
+  }
+  if (const auto error = check_link_meshes(meshes))
+    throw Failure(*error);
+  return meshes;
+}
+
+OrderedJson mesh_list(const std::vector<LinkMesh>& meshes) {
+  OrderedJson list = OrderedJson::array();
+  for (const LinkMesh& mesh : meshes) {
+    OrderedJson entry;
+    entry["link"] = mesh.link;
+    entry["role"] = to_text(mesh.role);
+    entry["T_link_mesh"] = pose_list(mesh.T_link_mesh);
+    if (!mesh.rgba.empty())
+      entry["rgba"] = mesh.rgba;
+    if (mesh.error_m > 0)
+      entry["error_m"] = mesh.error_m;
+    entry["content"] = mesh.content.hex();
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 }  // namespace
 
 RobotDescription read_robot_description(const Reader& reader) {
@@ -78,6 +117,8 @@ RobotDescription read_robot_description(const Reader& reader) {
     description.never_colliding = read_pairs(*pairs);
   if (const auto mesh_solids = reader.find("mesh_solids"))
     description.mesh_solids = read_mesh_solids(*mesh_solids);
+  if (const auto meshes = reader.find("meshes"))
+    description.meshes = read_meshes(*meshes);
   return description;
 }
 
@@ -99,6 +140,8 @@ OrderedJson robot_description_object(const RobotDescription& description) {
   object["never_colliding"] = pair_list(description.never_colliding);
   if (!description.mesh_solids.solids.empty())
     object["mesh_solids"] = mesh_solids_object(description.mesh_solids);
+  if (!description.meshes.empty())
+    object["meshes"] = mesh_list(description.meshes);
   return object;
 }
 

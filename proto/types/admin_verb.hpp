@@ -39,9 +39,10 @@ enum class AdminVerb {
   ListBackups,           ///< rows: BackupSummary, the newest first
   HashBackup,            ///< begins a job; row: Job. Rows of the job: SHA-256 in hex, bytes
   ReadBackup,            ///< row: bytes of a backup from `cursor` on, in base64
-  FindAttempts           ///< rows: AttemptSummary as AttemptFilter says; filters robot and task
+  FindAttempts,          ///< rows: AttemptSummary as AttemptFilter says; filters robot and task
+  ListMeshes             ///< rows: StoredMesh, the contents of a robot's meshes that are here
 };
-inline constexpr AdminVerb kLastVerb = AdminVerb::FindAttempts;
+inline constexpr AdminVerb kLastVerb = AdminVerb::ListMeshes;
 
 /// Kind of object that `argument` of a request names, where a narrowed certificate or the owner of
 /// a job limits it.
@@ -117,8 +118,8 @@ inline constexpr auto kVerbRules = [] {
       VerbRule{HashBackup, "hash_backup", "digest backups", kOperator, Is::Other, Changes | OfAll},
       VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::Other,
                Changes | OfAll},
-      VerbRule{FindAttempts, "find_attempts", "find attempts", kReader, Is::Other,
-               Lists | Filters}};
+      VerbRule{FindAttempts, "find_attempts", "find attempts", kReader, Is::Other, Lists | Filters},
+      VerbRule{ListMeshes, "list_meshes", "see a robot's meshes", kReader, Is::Robot, Lists}};
 }();
 
 /// Whether a table has one row for each verb, in their order.

@@ -32,6 +32,16 @@ using RetryAfter = std::chrono::milliseconds;
 inline constexpr FieldRules kRetryAfterRules{
     .min = 0, .max = kMaxRetryAfter_ms, .is_clamped = true};
 
+/// Names the content of a mesh.
+struct MeshDigest {
+  Digest content;
+
+  auto operator<=>(const MeshDigest&) const = default;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<MeshDigest>{Field{"content", &MeshDigest::content}};
+
 enum class RegisterStatus { Registered, Known, Refused };
 
 struct RegisterReply {
@@ -47,6 +57,10 @@ struct RegisterReply {
   /// servers.
   std::string geometry = {};
   RetryAfter retry_after{0};  ///< above 0: Refused only for now
+  /// Contents of this registration's meshes that the server lacks and takes; empty from servers
+  /// that take none.
+  std::vector<MeshDigest> wanted = {};
+  std::string meshes = {};  ///< what of the meshes is there; empty: the server takes none
 };
 
 template <>
@@ -64,7 +78,9 @@ inline constexpr std::tuple kFieldsOf<RegisterReply>{
           {.max = static_cast<double>(GeometryGrade::Exact)}},
     Field{"took_geometry", &RegisterReply::took_geometry},
     Field{"geometry", &RegisterReply::geometry, {.limit = kMaxMessageBytes}},
-    Field{"retry_after_ms", &RegisterReply::retry_after, kRetryAfterRules}};
+    Field{"retry_after_ms", &RegisterReply::retry_after, kRetryAfterRules},
+    Field{"wanted", &RegisterReply::wanted, {.limit = kMaxLinkMeshes}},
+    Field{"meshes", &RegisterReply::meshes, {.limit = kMaxMessageBytes}}};
 
 enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, UnknownRobot };
 

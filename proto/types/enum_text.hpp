@@ -10,6 +10,7 @@
 #include "proto/types/audit.hpp"
 #include "proto/types/caller.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/link_mesh.hpp"
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/profile.hpp"
 #include "proto/types/publications.hpp"
@@ -70,6 +71,11 @@ struct Words<GeometryGrade> {
   static constexpr std::string_view kWhat = "geometry_grade";
   static constexpr std::array<std::string_view, 4> kWords = {"none", "partial", "approximate",
                                                              "exact"};
+};
+template <>
+struct Words<MeshRole> {
+  static constexpr std::string_view kWhat = "role";
+  static constexpr std::array<std::string_view, 3> kWords = {"visual", "collision", "both"};
 };
 template <>
 struct Words<Relation> {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/link_mesh.hpp"
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/task_axes.hpp"
 
@@ -21,7 +22,10 @@ struct RobotDescription {
   TaskAxes task_axes;
   std::map<std::string, double> held_joints;  ///< joints off the chain, joint units
   std::vector<std::pair<std::string, std::string>> never_colliding;  ///< pairs of link names
-  MeshSolids mesh_solids = {};  ///< for a server, which cannot read the URDF's meshes
+  MeshSolids mesh_solids = {};        ///< for a server, which cannot read the URDF's meshes
+  std::vector<LinkMesh> meshes = {};  ///< of the URDF, by their contents
+  /// Some contents of `meshes`, in a request only: neither stored with it nor part of its JSON.
+  std::vector<MeshContent> contents = {};
 };
 
 }  // namespace kinship

@@ -35,6 +35,7 @@ struct RobotSummary {
   std::int64_t registered_ms = 0;
   std::string geometry = {};     ///< description of its shapes
   std::int64_t geometry_ms = 0;  ///< when better geometry was last taken over; 0: never
+  std::string meshes = {};       ///< what of its meshes is here and what is missing; may be empty
 };
 
 template <>
@@ -49,7 +50,21 @@ inline constexpr std::tuple kFieldsOf<RobotSummary>{
     Field{"attempts", &RobotSummary::attempts},
     Field{"registered_ms", &RobotSummary::registered_ms},
     Field{"geometry", &RobotSummary::geometry, {.limit = kMaxMessageBytes, .may_be_missing = true}},
-    Field{"geometry_ms", &RobotSummary::geometry_ms, {.may_be_missing = true}}};
+    Field{"geometry_ms", &RobotSummary::geometry_ms, {.may_be_missing = true}},
+    Field{"meshes", &RobotSummary::meshes, {.limit = kMaxMessageBytes, .may_be_missing = true}}};
+
+/// The content of a mesh, as a server keeps it.
+struct StoredMesh {
+  Digest content;
+  std::uint64_t bytes = 0;  ///< before compression
+  std::string zlib;         ///< in base64
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<StoredMesh>{
+    Field{"content", &StoredMesh::content},
+    Field{"bytes", &StoredMesh::bytes, between(0, kMaxCanonicalMeshBytes)},
+    Field{"zlib", &StoredMesh::zlib, {.limit = kMaxMeshZlibBytes / 3 * 4 + 4}}};
 
 struct TaskRobotSummary {
   Digest robot;
@@ -377,6 +392,8 @@ struct ServerStatus {
   std::vector<ReplicaUse> replicas = {};        ///< hosts of a database that fits may read
   /// Goes into the proof that a change needs (AdminRequest::proof); empty: none is needed.
   std::string challenge = {};
+  std::uint64_t meshes = 0;      ///< contents of robots' meshes
+  std::uint64_t mesh_bytes = 0;  ///< of them, compressed
 };
 
 template <>
@@ -415,7 +432,9 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"credentials_expire_ms", &ServerStatus::credentials_expire_ms, {.may_be_missing = true}},
     Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}},
     Field{"replicas", &ServerStatus::replicas, {.limit = kMaxStatusRows, .may_be_missing = true}},
-    Field{"challenge", &ServerStatus::challenge, {.limit = kMaxWordBytes, .may_be_missing = true}}};
+    Field{"challenge", &ServerStatus::challenge, {.limit = kMaxWordBytes, .may_be_missing = true}},
+    Field{"meshes", &ServerStatus::meshes, {.may_be_missing = true}},
+    Field{"mesh_bytes", &ServerStatus::mesh_bytes, {.may_be_missing = true}}};
 
 /// A row of the admin conversation, and its name in a refusal.
 template <typename Row>
@@ -437,6 +456,7 @@ inline constexpr std::tuple kAdminRows{RowName<RobotSummary>{"robot"},
                                        RowName<Job>{"job"},
                                        RowName<ClientUse>{"client"},
                                        RowName<BackupSummary>{"backup"},
-                                       RowName<AuditEntry>{"audit entry"}};
+                                       RowName<AuditEntry>{"audit entry"},
+                                       RowName<StoredMesh>{"mesh"}};
 
 }  // namespace kinship

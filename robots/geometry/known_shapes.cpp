@@ -1,12 +1,17 @@
 #include "robots/geometry/known_shapes.hpp"
 
+#include <urdf_model/model.h>
+
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "proto/types/limits.hpp"
 #include "robots/geometry/fitted_shape.hpp"
 #include "robots/geometry/mesh_cover.hpp"
+#include "robots/kinematics/urdf_model.hpp"
 
 namespace kinship::geometry {
 namespace {
@@ -53,6 +58,55 @@ std::optional<Error> add_solids(const MeshSolids& mesh_solids, const kinematics:
   return std::nullopt;
 }
 
+/// Meshes for collision of each link that has some in the URDF, by index.
+std::map<int, int> count_meshes(const kinematics::RobotModel& robot) {
+  std::map<int, int> meshes;
+  for (const auto& [name, link] : robot.urdf.tree->links_)
+    for (const auto& collision : link->collision_array)
+      if (collision && dynamic_cast<const urdf::Mesh*>(collision->geometry.get()) != nullptr)
+        ++meshes[robot.chain.find_link(name)];
+  return meshes;
+}
+
+/// \return the solid with the triangles of a mesh; nothing if its content is not here.
+std::optional<LinkShape> read_shape(const LinkMesh& mesh, int link, const FindMesh& find) {
+  const std::optional<MeshContent> content = find(mesh.content);
+  const auto triangles = content ? TriangleMesh::read(*content)
+                                 : Result<TriangleMesh>(invalid_input("it is not here"));
+  if (!triangles)
+    return std::nullopt;
+  const auto fitted = fit_mesh(triangles->corners());
+  if (!fitted)
+    return std::nullopt;
+  return LinkShape{link, fitted->fitted.shape, mesh.T_link_mesh * fitted->fitted.T_points_shape,
+                   true, fitted->triangles};
+}
+
+/// Adds the meshes of all links in place of their solids.
+/// \return false, and nothing changes, if one is not here.
+bool add_meshes(const kinematics::RobotModel& robot, const FindMesh& find, KnownShapes& known) {
+  if (!find || !names_all_meshes(robot))
+    return false;
+  std::vector<LinkShape> read;
+  std::set<int> links;
+  for (const LinkMesh& mesh : robot.description.meshes) {
+    if (!is_collision(mesh))
+      continue;
+    const int link = robot.chain.find_link(mesh.link);
+    std::optional<LinkShape> shape = read_shape(mesh, link, find);
+    if (!shape)
+      return false;
+    read.push_back(*std::move(shape));
+    links.insert(link);
+  }
+  std::vector<LinkShape>& shapes = known.shapes.shapes;
+  std::ranges::move(read, std::back_inserter(shapes));
+  std::ranges::stable_sort(shapes, {}, &LinkShape::link);
+  known.shapes.left_out.clear();
+  known.mesh_links = static_cast<int>(links.size());
+  return true;
+}
+
 GeometryGrade grade_of(const KnownShapes& known) {
   if (known.shapes.shapes.empty())
     return GeometryGrade::None;
@@ -63,13 +117,29 @@ GeometryGrade grade_of(const KnownShapes& known) {
 
 }  // namespace
 
-Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot) {
+bool names_all_meshes(const kinematics::RobotModel& robot) {
+  std::map<int, int> named;
+  for (const LinkMesh& mesh : robot.description.meshes)
+    if (is_collision(mesh))
+      ++named[robot.chain.find_link(mesh.link)];
+  return !named.empty() && named == count_meshes(robot);
+}
+
+Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot, const FindMesh& find) {
   const MeshSolids& mesh_solids = robot.description.mesh_solids;
   auto shapes = read_shapes(robot, leave_out_mesh);
   if (!shapes)
     return shapes.error();
   KnownShapes known;
   known.shapes = *std::move(shapes);
+  if (add_meshes(robot, find, known)) {
+    std::set<int> links;
+    for (const LinkShape& shape : known.shapes.shapes)
+      links.insert(shape.link);
+    known.exact_links = static_cast<int>(links.size()) - known.mesh_links;
+    known.grade = grade_of(known);
+    return known;
+  }
   const std::size_t pairs_before = known.shapes.never_colliding.size();
   std::set<int> covered;
   if (const auto error = add_solids(mesh_solids, robot.chain, known.shapes, covered))
@@ -92,7 +162,7 @@ Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot) {
 }
 
 std::string describe(const KnownShapes& known) {
-  if (known.exact_links + known.approximate_links + known.unknown_links == 0)
+  if (known.exact_links + known.mesh_links + known.approximate_links + known.unknown_links == 0)
     return "no link has a collision shape";
   std::string words;
   const auto add = [&words](const std::string& part) {
@@ -100,6 +170,8 @@ std::string describe(const KnownShapes& known) {
   };
   if (known.exact_links > 0)
     add(counted(known.exact_links, "link") + " by exact shapes");
+  if (known.mesh_links > 0)
+    add(counted(known.mesh_links, "link") + " by the triangles of their meshes");
   if (known.approximate_links > 0) {
     std::string part = counted(known.approximate_links, "link") + " by " +
                        counted(known.mesh_solids, "solid") + " around meshes (approximate";

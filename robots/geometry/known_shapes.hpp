@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 
+#include "proto/types/link_mesh.hpp"
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/result.hpp"
 #include "robots/geometry/link_shapes.hpp"
@@ -9,10 +12,14 @@
 
 namespace kinship::geometry {
 
-/// The shapes of a robot known from its description alone, without its meshes.
+/// Gives the content of a mesh by its digest; nothing: it is not here.
+using FindMesh = std::function<std::optional<MeshContent>(const Digest& content)>;
+
+/// The shapes of a robot known from its description and the contents of its meshes.
 struct KnownShapes {
   RobotShapes shapes;         ///< never_colliding includes the pairs that the mesh solids exclude
   int exact_links = 0;        ///< made of primitives only
+  int mesh_links = 0;         ///< with the triangles of all their meshes
   int approximate_links = 0;  ///< with a mesh known as solids around it
   int unknown_links = 0;      ///< with an unknown mesh: shapes may be missing
   int mesh_solids = 0;
@@ -20,9 +27,16 @@ struct KnownShapes {
   GeometryGrade grade = GeometryGrade::None;
 };
 
+/// By the triangles of its meshes if those for collision of all links are here, else by its mesh
+/// solids.
+/// \param find  empty: no content is here.
 /// \return also the errors of read_shapes; InvalidInput for mesh solids of a link that
 ///         is missing or has no mesh, and for an invalid size or pair.
-Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot);
+Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot,
+                                      const FindMesh& find = {});
+
+/// Whether a robot names as many meshes for collision as its URDF has, and at least one.
+bool names_all_meshes(const kinematics::RobotModel& robot);
 
 /// E.g. "7 links by exact shapes, 1 link by 3 solids around meshes (approximate; 2 pairs of links
 /// not compared)".

@@ -53,15 +53,6 @@ Result<std::optional<FittedMesh>> read_fitted(const urdf::Mesh& mesh, const Mesh
   return std::optional<FittedMesh>(*std::move(fitted));
 }
 
-Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << pose.position.x, pose.position.y, pose.position.z;
-  const Eigen::Quaterniond rotation(pose.rotation.w, pose.rotation.x, pose.rotation.y,
-                                    pose.rotation.z);
-  T.linear() = rotation.normalized().toRotationMatrix();
-  return T;
-}
-
 /// The shape of one collision element; nothing if the element is empty or its mesh left out.
 Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision, int link,
                                                 const MeshSource& meshes) {
@@ -177,6 +168,15 @@ void add_collision(const tinyxml2::XMLElement& visual, tinyxml2::XMLElement& lin
 }
 
 }  // namespace
+
+Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << pose.position.x, pose.position.y, pose.position.z;
+  const Eigen::Quaterniond rotation(pose.rotation.w, pose.rotation.x, pose.rotation.y,
+                                    pose.rotation.z);
+  T.linear() = rotation.normalized().toRotationMatrix();
+  return T;
+}
 
 std::vector<LinkShape> fuse_capsules(const std::vector<LinkShape>& shapes) {
   std::vector<LinkShape> fused = shapes;

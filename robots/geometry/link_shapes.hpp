@@ -12,6 +12,10 @@
 #include "proto/types/scene.hpp"
 #include "robots/kinematics/urdf.hpp"
 
+namespace urdf {
+class Pose;
+}
+
 namespace kinship::geometry {
 
 /// A collision solid of a robot's link.
@@ -62,6 +66,9 @@ inline constexpr double kFusionTolerance_m = 1e-5;
 /// capsule that the three make up, and drops the spheres. URDF has no capsule of its own. Two
 /// capsules may share an end sphere. The other shapes keep their order.
 std::vector<LinkShape> fuse_capsules(const std::vector<LinkShape>& shapes);
+
+/// A pose of the URDF's tree.
+Eigen::Isometry3d to_isometry(const urdf::Pose& pose);
 
 /// Name of the collision elements that with_visual_solids() makes.
 inline constexpr const char* kFromVisual = "kinship:from_visual";

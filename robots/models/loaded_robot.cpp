@@ -27,24 +27,43 @@ std::optional<Error> excuse(const std::vector<std::string>& links, const kinemat
   return std::nullopt;
 }
 
-}  // namespace
-
-Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
-                                          const kinematics::RobotModel& robot) {
+/// The files that the robot's URDF names.
+Result<MeshFiles> files_of(const RobotArguments& arguments) {
   auto packages = parse_packages(arguments.packages);
   if (!packages)
     return packages.error();
   std::error_code unreadable;
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
-  const MeshFiles files(is_folder ? arguments.source : arguments.source.parent_path(),
-                        *std::move(packages));
-  auto read = geometry::read_shapes(robot, [&](const std::string& uri) { return files.read(uri); });
+  return MeshFiles(is_folder ? arguments.source : arguments.source.parent_path(),
+                   *std::move(packages));
+}
+
+}  // namespace
+
+Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
+                                          const kinematics::RobotModel& robot) {
+  const auto files = files_of(arguments);
+  if (!files)
+    return files.error();
+  auto read =
+      geometry::read_shapes(robot, [&](const std::string& uri) { return files->read(uri); });
   if (!read)
     return read.error();
   geometry::RobotShapes shapes = *std::move(read);
   if (const auto error = excuse(arguments.without_collision, robot.chain, shapes))
     return *error;
   return shapes;
+}
+
+Result<geometry::LinkMeshes> load_meshes(const RobotArguments& arguments,
+                                         const kinematics::RobotModel& robot) {
+  if (arguments.without_meshes)
+    return geometry::LinkMeshes();
+  const auto files = files_of(arguments);
+  if (!files)
+    return files.error();
+  return geometry::read_link_meshes(robot,
+                                    [&](const std::string& uri) { return files->read(uri); });
 }
 
 Result<LoadedRobot> load_robot(const RobotArguments& arguments) {

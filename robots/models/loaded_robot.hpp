@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "proto/types/result.hpp"
+#include "robots/geometry/link_meshes.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/robot_arguments.hpp"
@@ -27,5 +28,12 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 /// \return also InvalidInput if such a link is missing or has solids.
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const kinematics::RobotModel& robot);
+
+/// The meshes of a robot's links, for its description.
+/// \param robot  made of the arguments.
+/// \return none if the arguments say so; the error of parse_packages; a mesh that cannot be read is
+///         a note.
+Result<geometry::LinkMeshes> load_meshes(const RobotArguments& arguments,
+                                         const kinematics::RobotModel& robot);
 
 }  // namespace kinship::models

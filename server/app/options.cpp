@@ -129,6 +129,11 @@ void add_retention_options(CLI::App& app, ServerOptions& options) {
                  "Distributions that the store keeps; those not used for longest go first; 0: all")
       ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
       ->capture_default_str();
+  app.add_option("--stored-meshes-mb", options.stored_meshes_mb,
+                 "Meshes of robots that the store keeps, each once for all; beyond that solids "
+                 "around them serve; 0: none is taken")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
+      ->capture_default_str();
   constexpr std::uint32_t kMaxDays = 100'000;
   app.add_option("--search-records-mb", options.search_records_mb,
                  "Search records of attempts that the store keeps, the oldest go first; 0: none is "

@@ -52,6 +52,7 @@ struct ServerOptions {
   /// Paths that a robot and task keep; 0: all.
   std::uint64_t max_paths_per_pair = 20'000;
   std::uint64_t stored_distributions_mb = 1024;  ///< distributions that the store keeps; 0: all
+  std::uint64_t stored_meshes_mb = 256;          ///< of robots, that the store keeps; 0: none
   std::uint64_t search_records_mb = 256;         ///< that the store keeps; 0: none
   std::uint32_t search_record_days = 90;         ///< 0: no limit
   std::size_t distribution_memory_mb = 128;      ///< distributions in memory

@@ -72,6 +72,7 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service.fit_threads = options.workers;
   service.backups.folder = options.backup_folder;
   service.fit_memory_bytes = options.fit_memory_mb << 20U;
+  service.max_mesh_bytes = options.stored_meshes_mb << 20U;
   service.fit_niceness = options.fit_niceness;
   service.rehearsal_fraction = options.rehearsal_fraction;
   service.catalog.memory.bytes = options.distribution_memory_mb << 20U;

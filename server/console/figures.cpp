@@ -89,8 +89,10 @@ std::string task_figure(Questions& questions, const std::string& task) {
 
 std::string robot_figure(Questions& questions, const std::string& label) {
   const AdminRequest request{.verb = AdminVerb::ShowRobot, .argument = label};
+  const auto meshes = questions.rows<StoredMesh>({.verb = AdminVerb::ListMeshes, .argument = label},
+                                                 kMaxLinkMeshes);
   return plots::to_json(plots::robot_figure(questions.row<RobotSummary>(request),
-                                            questions.row<RobotDescription>(request)));
+                                            questions.row<RobotDescription>(request), meshes));
 }
 
 /// The attempt of the same query by guidance where this one had none, or the other way round: the

@@ -41,10 +41,58 @@ void describe_known(const Robot& known, const std::string& label, RegisterReply&
     reply.message = "known already, as '" + known.label + "'";
 }
 
+/// Which of two geometries of a robot is better: the filters', then that of pictures.
+struct GeometryRank {
+  GeometryGrade grade = GeometryGrade::None;
+  std::ptrdiff_t collision = 0;  ///< meshes
+  std::size_t meshes = 0;
+
+  explicit GeometryRank(const Robot& robot)
+      : grade(robot.grade),
+        collision(std::ranges::count_if(robot.meshes, is_collision)),
+        meshes(robot.meshes.size()) {}
+
+  auto operator<=>(const GeometryRank&) const = default;
+};
+
+std::set<Digest> contents_of(const std::vector<LinkMesh>& meshes) {
+  std::set<Digest> contents;
+  for (const LinkMesh& mesh : meshes)
+    contents.insert(mesh.content);
+  return contents;
+}
+
+}  // namespace
+
+std::string describe_meshes(const Robot& robot) {
+  if (robot.meshes.empty())
+    return "no mesh is named";
+  const std::size_t all = contents_of(robot.meshes).size();
+  const auto collision = std::ranges::count_if(robot.meshes, is_collision);
+  return std::to_string(robot.meshes.size()) + " meshes, " + std::to_string(collision) +
+         " of them for collision; " + std::to_string(all - robot.missing_meshes.size()) + " of " +
+         std::to_string(all) + " contents are here, " + std::to_string(robot.mesh_bytes) +
+         " bytes compressed";
+}
+
 /// A robot whose geometry cannot be read is a robot all the same: nothing is filtered then.
-Robot robot_of(const kinematics::RobotModel& model) {
+/// \param from_memory  without the store: no content of a mesh is known.
+Robot RobotRegistry::robot_of(const kinematics::RobotModel& model, bool from_memory) const {
   Robot robot{model.chain.digest(), model.description.label, model.chain};
-  if (Result<geometry::KnownShapes> known = geometry::read_known_shapes(model)) {
+  robot.meshes = model.description.meshes;
+  robot.missing_meshes = contents_of(robot.meshes);
+  if (!robot.meshes.empty() && !from_memory)
+    for (const auto& [known, bytes] : store_.known_meshes(robot.missing_meshes)) {
+      robot.missing_meshes.erase(known);
+      robot.mesh_bytes += bytes;
+    }
+  const bool are_all_here = std::ranges::none_of(robot.meshes, [&](const LinkMesh& mesh) {
+    return is_collision(mesh) && robot.missing_meshes.contains(mesh.content);
+  });
+  geometry::FindMesh find;
+  if (are_all_here)
+    find = [this](const Digest& content) { return store_.find_mesh(content); };
+  if (Result<geometry::KnownShapes> known = geometry::read_known_shapes(model, find)) {
     robot.geometry = geometry::describe(*known);
     robot.grade = known->grade;
     robot.shapes = std::move(known).value().shapes;
@@ -53,8 +101,6 @@ Robot robot_of(const kinematics::RobotModel& model) {
   }
   return robot;
 }
-
-}  // namespace
 
 RobotRegistry::RobotRegistry(store::RobotStore& store, Options options)
     : store_(store), options_(std::move(options)) {
@@ -101,8 +147,11 @@ RegisterReply RobotRegistry::register_robot(const Candidate& candidate, std::int
         throw;  // else it is known all the same, and its geometry is offered again
     }
   }
-  if (const Result<RobotPointer> known = find(reply.robot, &robot))
+  const bool has_room = take_contents(robot.description, now_ms, reply);
+  if (const Result<RobotPointer> known = find(reply.robot, &robot)) {
     describe_known(*known.value(), robot.description.label, reply);
+    name_meshes(robot.description, *known.value(), has_room, reply);
+  }
   return reply;
 }
 
@@ -122,9 +171,12 @@ std::optional<RegisterReply> RobotRegistry::register_known(const Candidate& cand
       return refused(*refusal);
   reply.status = RegisterStatus::Known;
   reply.same_arms = same_arms_in_memory(reply.robot, robot.chain);
-  if (robot_of(robot).grade > known->grade)
+  if (!robot.description.contents.empty() || robot.description.meshes.size() > known->meshes.size())
+    return std::nullopt;
+  if (GeometryRank(robot_of(robot, true)) > GeometryRank(*known))
     return std::nullopt;  // which is to be written
   describe_known(*known, robot.description.label, reply);
+  name_meshes(robot.description, *known, true, reply);
   return reply;
 }
 
@@ -136,6 +188,7 @@ bool RobotRegistry::offer_geometry(const Digest& robot, const RobotDescription& 
   RegisterReply reply;
   reply.robot = robot;
   take_geometry(*offered, now_ms, reply);
+  static_cast<void>(take_contents(description, now_ms, reply));
   return reply.took_geometry;
 }
 
@@ -177,8 +230,10 @@ void RobotRegistry::take_geometry(const kinematics::RobotModel& robot, std::int6
                                   RegisterReply& reply) {
   const std::uint64_t changes_before = changes();
   const Result<RobotPointer> known = find(reply.robot, &robot);
+  if (!known)
+    return;
   Robot better = robot_of(robot);
-  if (!known || known.value()->grade >= better.grade)
+  if (GeometryRank(better) <= GeometryRank(*known.value()))
     return;
   better.label = known.value()->label;
   better.geometry_revision = known.value()->geometry_revision + 1;
@@ -194,6 +249,38 @@ void RobotRegistry::take_geometry(const kinematics::RobotModel& robot, std::int6
   // A robot renamed or removed meanwhile is not kept; nor may one read before the write be.
   if (keep(std::move(better), changes_before) != find_in_memory(reply.robot))
     forget(reply.robot, false);
+}
+
+/// The store counts geometry that is complete now as better, in the same transaction.
+/// \return whether there was room for all.
+bool RobotRegistry::take_contents(const RobotDescription& description, std::int64_t now_ms,
+                                  RegisterReply& reply) {
+  if (description.contents.empty() || options_.max_mesh_bytes == 0)
+    return true;
+  const store::MeshesPut put =
+      store_.put_meshes(reply.robot, description.contents, {options_.max_mesh_bytes, now_ms});
+  if (put.stored > 0)
+    static_cast<void>(read_again(reply.robot));
+  reply.took_geometry = reply.took_geometry || put.is_complete;
+  if (put.over > 0)
+    reply.meshes = std::to_string(put.over) + " contents are beyond the " +
+                   std::to_string(options_.max_mesh_bytes >> 20U) + " MB of all robots; ";
+  if (put.refused > 0)
+    reply.meshes += std::to_string(put.refused) + " contents were not taken: " + put.why + "; ";
+  return put.over == 0;
+}
+
+/// What of a registration's meshes is known, and which contents the server would take.
+void RobotRegistry::name_meshes(const RobotDescription& asked, const Robot& known, bool has_room,
+                                RegisterReply& reply) const {
+  if (options_.max_mesh_bytes == 0)
+    return;
+  reply.meshes = cut_text(reply.meshes + describe_meshes(known), kMaxMessageBytes);
+  if (!has_room)
+    return;
+  for (const Digest& content : contents_of(asked.meshes))
+    if (known.missing_meshes.contains(content))
+      reply.wanted.push_back({content});
 }
 
 Result<bool> RobotRegistry::rename_robot(const Digest& robot, const std::string& label,

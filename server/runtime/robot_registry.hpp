@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -32,9 +33,16 @@ struct Robot {
   /// geometry cannot be read.
   geometry::RobotShapes shapes = {};
   GeometryGrade grade = GeometryGrade::None;
-  std::string geometry = {};            ///< description of the shapes
-  std::uint64_t geometry_revision = 0;  ///< number of times better geometry was taken over
+  std::string geometry = {};             ///< description of the shapes
+  std::uint64_t geometry_revision = 0;   ///< number of times better geometry was taken over
+  std::vector<LinkMesh> meshes = {};     ///< of the URDF, by their contents
+  std::set<Digest> missing_meshes = {};  ///< contents of these that the store lacks
+  std::uint64_t mesh_bytes = 0;          ///< of those it has, compressed
 };
+
+/// What of a robot's meshes is here, e.g. "20 meshes, 8 of them for collision; 18 of 18 contents
+/// are here, 1 234 bytes compressed".
+std::string describe_meshes(const Robot& robot);
 
 /// A robot that asks to be registered: its description, read once, or why it is none.
 class Candidate {
@@ -61,6 +69,8 @@ class RobotRegistry {
 
   struct Options {
     std::size_t max_robots = 1024;  ///< in memory; the least recently used is dropped first
+    /// Of contents of meshes in the store, compressed; 0: none are taken.
+    std::uint64_t max_mesh_bytes = std::uint64_t{256} << 20U;
     /// Called if a stored robot cannot be read, with its name and the reason. Called from any
     /// thread.
     std::function<void(const std::string& message)> on_unreadable = [](const std::string&) {};
@@ -79,8 +89,10 @@ class RobotRegistry {
   /// now, if `may_take` has to judge a label that a damaged row does not give.
   ///
   /// The description replaces a known robot's, except the label, if its geometry is better: exact
-  /// shapes before solids around meshes before those of some links only before none; of equals the
-  /// first stays.
+  /// shapes (primitives, or meshes whose contents are all here) before solids around meshes before
+  /// those of some links only before none; then the one that names more meshes; of equals the first
+  /// stays. Contents that come with it are stored, up to Options::max_mesh_bytes; the reply names
+  /// those of its meshes that are still missing.
   ///
   /// It is compared with the first kMaxSameArms robots of as many joints; those not in memory are
   /// read.
@@ -147,6 +159,11 @@ class RobotRegistry {
 
   Result<RobotPointer> find(const Digest& robot, const kinematics::RobotModel* candidate);
   Result<RobotPointer> read(const Digest& robot, const kinematics::RobotModel* candidate);
+  Robot robot_of(const kinematics::RobotModel& model, bool from_memory = false) const;
+  bool take_contents(const RobotDescription& description, std::int64_t now_ms,
+                     RegisterReply& reply);
+  void name_meshes(const RobotDescription& asked, const Robot& known, bool has_room,
+                   RegisterReply& reply) const;
   RobotPointer keep(Robot robot, std::uint64_t changes);
   std::uint64_t changes() const;
   void forget(const Digest& robot, bool is_deleted);

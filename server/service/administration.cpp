@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "proto/types/base64.hpp"
 #include "proto/types/limits.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "server/catalog/freshness.hpp"
@@ -109,6 +111,7 @@ const std::array<Administration::VerbHandler, kVerbRules.size()> Administration:
       {HashBackup, &run<&A::hash_backup>},
       {ReadBackup, &run<&A::read_backup>},
       {FindAttempts, &run<&A::find_attempts>},
+      {ListMeshes, &run<&A::list_meshes>},
   });
   static_assert(is_complete_for_verbs(kAll));
   return kAll;
@@ -161,6 +164,27 @@ AdminPage Administration::show_robot(const Call& call) {
   name_solver(summary);
   AdminPage page = page_of(std::move(summary));
   page.rows.emplace_back(std::move(record->description));
+  return page;
+}
+
+AdminPage Administration::list_meshes(const Call& call) {
+  const std::string& name = call.request.argument;
+  const Digest robot = find_robot(parts_.store, name).value_or_throw().robot;
+  const std::optional<store::RobotRecord> record = parts_.store.find_robot(robot);
+  if (!record)
+    return page_of(not_found("robot", name));
+  std::set<Digest> contents;
+  for (const LinkMesh& mesh : record->description.meshes)
+    contents.insert(mesh.content);
+  const std::vector<Digest> all(contents.begin(), contents.end());
+  AdminPage page;
+  page.status = AdminStatus::Ok;
+  std::size_t next = row_number(call.request.cursor).value_or_throw();
+  for (; next < all.size() && page.rows.size() < page_size(call.request); ++next)
+    if (const std::optional<MeshContent> content = parts_.store.find_mesh(all[next]))
+      page.rows.emplace_back(StoredMesh{all[next], content->bytes, to_base64(content->zlib)});
+  if (next < all.size())
+    page.next_cursor = std::to_string(next);
   return page;
 }
 
@@ -229,6 +253,8 @@ void Administration::name_solver(RobotSummary& summary) {
   summary.solver = robot ? inverse::solver_name(robot.value()->chain) : robot.error().message;
   if (robot)
     summary.geometry = robot.value()->geometry;
+  if (robot)
+    summary.meshes = runtime::describe_meshes(*robot.value());
 }
 
 }  // namespace kinship::service

@@ -105,6 +105,7 @@ class Administration {
   AdminPage show_robot(const Call& call);
   AdminPage rename_robot(const Call& call);
   AdminPage remove_robot(const Call& call);
+  AdminPage list_meshes(const Call& call);
   AdminPage show_task(const Call& call);
   AdminPage reset_task(const Call& call);
   AdminPage show_path(const Call& call);

@@ -29,8 +29,9 @@ concept OfTaskAndRobot = requires(Row row) {
 
 /// Rows that name neither a task nor a robot of others, or whose request was checked.
 template <typename Row>
-constexpr bool kIsPassedWhole = kIsOneOf<Row, ServerStatus, Explanation, ExportedRobot, Eviction,
-                                         Job, ClientUse, BackupSummary, AuditEntry, TextLine>;
+constexpr bool kIsPassedWhole =
+    kIsOneOf<Row, ServerStatus, Explanation, ExportedRobot, Eviction, Job, ClientUse, BackupSummary,
+             AuditEntry, StoredMesh, TextLine>;
 
 /// Troubles of others may name their tasks and robots.
 void strip(ServerStatus& status) {

@@ -17,6 +17,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       events_(options_.clock, options_.on_event),
       clients_(options_.clock, options_.client_rates),
       robots_(*store_, {.max_robots = options_.max_robots,
+                        .max_mesh_bytes = options_.max_mesh_bytes,
                         .on_unreadable =
                             [this](const std::string& message) {
                               troubles_.add(runtime::Trouble::RobotUnreadable, message);
@@ -117,6 +118,8 @@ ServerStatus Service::status() const {
   status.troubles = troubles_.counts();
   std::ranges::move(options_.network_troubles(), std::back_inserter(status.troubles));
   status.dropped_paths = store.dropped_paths;
+  status.meshes = store.meshes;
+  status.mesh_bytes = store.mesh_bytes;
   status.bounds = bounds(store);
   status.credentials_expire_ms = options_.credentials_expire_ms;
   status.upstream = upstream_.status(store.attempts);
@@ -147,6 +150,9 @@ std::vector<BoundUse> Service::bounds(const store::StoreStatus& store) const {
   if (store.max_distribution_bytes > 0)
     bounds.push_back({"MB of distributions in the store", store.distribution_bytes >> 20U,
                       store.max_distribution_bytes >> 20U});
+  if (store.meshes > 0)
+    bounds.push_back(
+        {"MB of meshes in the store", store.mesh_bytes >> 20U, options_.max_mesh_bytes >> 20U});
   if (store.max_search_bytes > 0)
     bounds.push_back({"MB of search records in the store", store.search_bytes >> 20U,
                       store.max_search_bytes >> 20U});

@@ -112,6 +112,8 @@ void expose_store(Exposition& page, const store::StoreStatus& store) {
              store.distribution_bytes);
   page.gauge("kinship_store_distribution_limit_bytes", "Those that are kept; 0: all.",
              store.max_distribution_bytes);
+  page.gauge("kinship_store_meshes", "Contents of robots' meshes.", store.meshes);
+  page.gauge("kinship_store_mesh_bytes", "Of these, compressed.", store.mesh_bytes);
   page.gauge("kinship_store_search_bytes", "Of search records in the store, about.",
              store.search_bytes);
   page.gauge("kinship_store_search_limit_bytes", "Those that are kept; 0: none.",

@@ -44,6 +44,7 @@ struct ServiceOptions {
   std::size_t client_attempts = 1024;  ///< of one client, taken in and not yet answered
   quotas::ClientRates client_rates;    ///< quotas of one client over time
   std::size_t max_robots = 1024;       ///< parsed and in memory; others are read when needed
+  std::uint64_t max_mesh_bytes = std::uint64_t{256} << 20U;  ///< of robots' meshes; 0: none
   /// Of replies, leases, waiting fetches and fits, in all and of one client.
   catalog::CatalogState::Limits catalog;
   catalog::ExperienceIndex::Limits experience;

@@ -23,6 +23,20 @@ std::optional<store::RobotRecord> find_whole(const store::RobotStore& site, cons
   }
 }
 
+/// A description with the contents of its meshes that the other store lacks.
+RobotDescription with_contents(RobotDescription description, const store::RobotStore& from,
+                               const store::RobotStore& to) {
+  std::set<Digest> lacking;
+  for (const LinkMesh& mesh : description.meshes)
+    lacking.insert(mesh.content);
+  for (const auto& [known, bytes] : to.known_meshes(lacking))
+    lacking.erase(known);
+  for (const Digest& content : lacking)
+    if (std::optional<MeshContent> found = from.find_mesh(content))
+      description.contents.push_back(*std::move(found));
+  return description;
+}
+
 }  // namespace
 
 GeometryExchange::GeometryExchange(store::RobotStore& here, store::RobotStore& above,
@@ -40,8 +54,8 @@ void GeometryExchange::compare(const Digest& robot) {
   if (!of_memory)
     return;
   compared_[robot] = {of_site->geometry_revision, of_memory->geometry_revision};
-  if (!take_above_(robot, of_site->description))
-    take_here_(robot, of_memory->description);
+  if (!take_above_(robot, with_contents(of_site->description, here_, above_)))
+    take_here_(robot, with_contents(of_memory->description, above_, here_));
 }
 
 void GeometryExchange::compare_new(const Digest& robot) {

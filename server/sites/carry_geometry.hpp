@@ -15,7 +15,8 @@ namespace kinship::sites {
 /// for a repeated registration (RobotRegistry). \return whether it was better.
 using TakeGeometry = std::function<bool(const Digest& robot, const RobotDescription& description)>;
 
-/// Copies the better geometry of a robot to the one of two stores that has a worse one. If both are
+/// Copies the better geometry of a robot, with the contents of its meshes, to the one of two stores
+/// that has a worse one. If both are
 /// equally good each keeps its own, so better geometry spreads and none goes to and fro.
 class GeometryExchange {
  public:

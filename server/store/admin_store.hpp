@@ -30,6 +30,8 @@ struct StoreStatus {
   std::uint64_t max_distribution_bytes = 0;  ///< 0: no limit
   std::uint64_t search_bytes = 0;            ///< of search records, part of `bytes`, about
   std::uint64_t max_search_bytes = 0;        ///< 0: none is kept
+  std::uint64_t meshes = 0;                  ///< contents of robots' meshes
+  std::uint64_t mesh_bytes = 0;              ///< of these, compressed; part of `bytes`
   std::uint64_t queued = 0;
   std::uint64_t wal_bytes = 0;  ///< in use: changes that are not yet in the file
   bool writable = true;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -34,6 +35,27 @@ struct RemovedRobot {
   RobotRemoval removal;
   std::vector<std::string> tasks;     ///< of its attempts and distributions
   std::vector<Digest> distributions;  ///< of the robot, which are gone
+};
+
+/// What became of contents of meshes.
+struct MeshesPut {
+  std::size_t stored = 0;   ///< new
+  std::size_t over = 0;     ///< beyond the size of all
+  std::size_t refused = 0;  ///< that are none, or that the robot does not name
+  std::string why;          ///< the last was refused
+  /// With these, all meshes of the robot for collision are here: its geometry_revision rose.
+  bool is_complete = false;
+};
+
+struct MeshLimits {
+  std::uint64_t max_bytes = 0;  ///< of all contents, compressed
+  std::int64_t now_ms = 0;      ///< Unix time, UTC
+};
+
+/// Contents of meshes in a store.
+struct MeshUse {
+  std::uint64_t count = 0;
+  std::uint64_t bytes = 0;  ///< compressed
 };
 
 /// Keeps the registered robots; see Store.
@@ -70,6 +92,15 @@ class RobotStore {
   /// By robot; only robots whose geometry was ever replaced.
   virtual std::map<Digest, std::uint64_t> geometry_revisions() const = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
+  /// Keeps contents of meshes that a registered robot names, each once for all robots. Durable on
+  /// return. A content goes when no registered robot names it any more.
+  virtual MeshesPut put_meshes(const Digest& robot, const std::vector<MeshContent>& contents,
+                               const MeshLimits& limits) = 0;
+  /// Nothing also if it is damaged.
+  virtual std::optional<MeshContent> find_mesh(const Digest& content) const = 0;
+  /// Compressed bytes of those of the contents that are there.
+  virtual std::map<Digest, std::uint64_t> known_meshes(const std::set<Digest>& contents) const = 0;
+  virtual MeshUse mesh_use() const = 0;
   /// In order of labels. A robot with a damaged row is left out and counted in
   /// AdminStore::status().message; find_robot() throws for it.
   virtual std::vector<RobotRecord> robots() const = 0;

@@ -5,6 +5,7 @@
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/experience.hpp"
+#include "server/store/tables/meshes.hpp"
 #include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/searches.hpp"
@@ -59,6 +60,24 @@ std::vector<RobotRecord> SqlStore::robots() const {
   damaged_robots_ = found.damaged.size();
   return std::move(found.robots);
 }
+
+MeshesPut SqlStore::put_meshes(const Digest& robot, const std::vector<MeshContent>& contents,
+                               const MeshLimits& limits) {
+  return write([&](Session& session, const RetireSome&) {
+    return insert_meshes(session, robot, contents, limits);
+  });
+}
+
+std::optional<MeshContent> SqlStore::find_mesh(const Digest& content) const {
+  return read(View::EachStatement, [&](Session& session) { return select_mesh(session, content); });
+}
+
+std::map<Digest, std::uint64_t> SqlStore::known_meshes(const std::set<Digest>& contents) const {
+  return read(View::EachStatement,
+              [&](Session& session) { return select_known_meshes(session, contents); });
+}
+
+MeshUse SqlStore::mesh_use() const { return read(View::EachStatement, count_meshes); }
 
 std::vector<ExperienceSummary> SqlStore::experience(std::string_view task) const {
   return read(View::EachStatement, [&](Session& session) { return experience_of(session, task); });

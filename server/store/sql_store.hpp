@@ -31,6 +31,11 @@ class SqlStore : public Store {
   std::map<Digest, std::uint64_t> geometry_revisions() const override;
   std::optional<RobotRecord> find_robot(const Digest& robot) const override;
   std::vector<RobotRecord> robots() const override;
+  MeshesPut put_meshes(const Digest& robot, const std::vector<MeshContent>& contents,
+                       const MeshLimits& limits) override;
+  std::optional<MeshContent> find_mesh(const Digest& content) const override;
+  std::map<Digest, std::uint64_t> known_meshes(const std::set<Digest>& contents) const override;
+  MeshUse mesh_use() const override;
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override;
   std::uint64_t generation(const Digest& robot, std::string_view task) const override;

@@ -31,6 +31,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"OMPL", {"ompl/"}},
     {"SQLite", {"sqlite3.h"}},
     {"libpq", {"libpq-fe.h"}},
+    {"zlib", {"zlib.h"}},
     {"zstd", {"zstd.h", "zstd_errors.h"}},
     {"zlib", {"zlib.h"}},
     {"CLI11", {"CLI/"}},
@@ -91,7 +92,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   std::set<std::string> experiments = planner_programs;
   experiments.insert(page);
   return std::map<std::string, AllowedEdges>{
-      {types, {{}, {"Eigen", "libcrypto"}}},
+      {types, {{}, {"Eigen", "libcrypto", "zlib"}}},
       {idl, {{}, {"Cyclone DDS"}}},
       {mixture, {{types}, {"Eigen", "Boost.Random"}}},
       {evidence, {{types}, {}}},

@@ -122,6 +122,13 @@ RobotDescription every_robot_description() {
       {next.name("link"), BoxShape{{next.real(), next.real(), next.real()}}, next.pose()},
       {next.name("link"), CapsuleShape{next.real(), next.real()}, next.pose()}};
   robot.mesh_solids.unfiltered = {{next.name("link"), next.name("link")}};
+  robot.meshes = {{next.name("link"), MeshRole::Both, next.pose(), {}, 0, next.id<Digest>()},
+                  {next.name("link"),
+                   MeshRole::Visual,
+                   next.pose(),
+                   {0.25, 0.5, 0.75, 1},
+                   next.real(),
+                   next.id<Digest>()}};
   return robot;
 }
 
@@ -301,6 +308,8 @@ RegisterReply every_register_reply() {
   reply.took_geometry = true;
   reply.geometry = next.text("geometry");
   reply.retry_after = std::chrono::milliseconds(next.count());
+  reply.wanted = {{next.id<Digest>()}, {next.id<Digest>()}};
+  reply.meshes = next.text("meshes");
   return reply;
 }
 

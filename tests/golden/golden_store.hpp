@@ -86,6 +86,17 @@ inline MeshSolids golden_mesh_solids() {
           {{"arm", "hand"}}};
 }
 
+/// Of robot 0, in schemas that have meshes.
+inline TriangleMesh golden_mesh() {
+  Eigen::Matrix3Xd corners(3, 6);
+  corners << 0, 1, 0, 0, 0, 1, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0.25, 0.25;
+  return TriangleMesh::from_corners(corners).value_or_throw();
+}
+inline std::vector<LinkMesh> golden_link_meshes() {
+  return {
+      {"hand", MeshRole::Visual, make_pose(), {1, 0.5, 0.25, 1}, 0.001, golden_mesh().digest()}};
+}
+
 /// Kept after the entries of the retirement and the eviction.
 inline AuditEntry golden_audit_entry() {
   AuditEntry entry;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kAttempts = 17;
 constexpr std::uint64_t kPaths = 11;
-constexpr int kFirstWithRehearsals = 2, kFirstWithSearches = 3;
+constexpr int kFirstWithRehearsals = 2, kFirstWithSearches = 3, kFirstWithMeshes = 4;
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -183,6 +183,27 @@ TEST_P(GoldenStore, StillKnowsTheSolidsAroundItsMeshes) {
   EXPECT_EQ(found.unfiltered, wanted.unfiltered);
 }
 
+TEST_P(GoldenStore, StillHasItsMeshes) {
+  const Digest robot = test::golden_robots()[0].digest, content = test::golden_mesh().digest();
+  const std::vector<LinkMesh> wanted = test::golden_link_meshes(),
+                              found = store_->find_robot(robot)->description.meshes;
+  ASSERT_EQ(found.size(), GetParam() >= kFirstWithMeshes ? 1U : 0U);
+  if (!found.empty()) {
+    EXPECT_EQ(found[0].link, "hand");
+    EXPECT_EQ(found[0].role, MeshRole::Visual);
+    EXPECT_EQ(found[0].rgba, wanted[0].rgba);
+    EXPECT_EQ(found[0].error_m, wanted[0].error_m);
+    ASSERT_TRUE(store_->find_mesh(content));
+    EXPECT_EQ(TriangleMesh::read(*store_->find_mesh(content))->digest(), content);
+    return;
+  }
+  store::RobotRecord better = store_->find_robot(robot).value();
+  better.description.meshes = wanted;
+  ++better.geometry_revision;
+  EXPECT_TRUE(store_->replace_geometry(better));
+  EXPECT_EQ(store_->put_meshes(robot, {test::golden_mesh().content()}, {1U << 20U, 0}).stored, 1U);
+}
+
 TEST_P(GoldenStore, StillHasItsAuditLogAndTakesEntries) {
   const AuditEntry wanted = test::golden_audit_entry();
   const std::vector<AuditEntry> log = store_->list_audit("anna", "", 10).rows;
@@ -224,7 +245,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

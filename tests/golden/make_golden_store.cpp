@@ -38,8 +38,10 @@ int make(const std::filesystem::path& file) {
     store->add_audit(audit);
     store::RobotRecord robot = test::golden_robots()[0];
     robot.description.mesh_solids = test::golden_mesh_solids();
+    robot.description.meshes = test::golden_link_meshes();
     ++robot.geometry_revision;
     static_cast<void>(store->replace_geometry(robot));
+    store->put_meshes(robot.digest, {test::golden_mesh().content()}, {1U << 20U, 0});
   }
   {
     const std::unique_ptr<store::Store> store =

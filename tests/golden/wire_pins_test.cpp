@@ -78,6 +78,22 @@ void check_pin(const std::string& name, const Value& value, const dds_topic_desc
 TEST(WirePins, Register) {
   check_pin("register_request", test::every_robot_description(), kinship_wire_RegisterRequest_desc);
   check_pin("register_reply", test::every_register_reply(), kinship_wire_RegisterReply_desc);
+  RobotDescription uploading = test::every_robot_description();
+  uploading.contents = {{32, {1, 2, 3}}, {44, {4, 5, 6, 7, 8}}};
+  check_pin("register_request_contents", uploading, kinship_wire_RegisterRequest_desc);
+}
+
+/// From before there were meshes: never written again.
+TEST(WirePins, ARegistrationOfAnOlderClientIsRead) {
+  const Received<kinship_wire_RegisterRequest> received(
+      test::read_pinned_bytes("wire/register_request_without_meshes.hex"),
+      kinship_wire_RegisterRequest_desc);
+  const Result<RobotDescription> read = decode(received.wire());
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->label, test::every_robot_description().label);
+  EXPECT_EQ(read->mesh_solids.unfiltered.size(), 1U);
+  EXPECT_TRUE(read->meshes.empty());
+  EXPECT_TRUE(read->contents.empty());
 }
 
 TEST(WirePins, Report) {

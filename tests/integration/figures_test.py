@@ -22,6 +22,12 @@ SCENE = {"boxes": [{"name": "shelf", "size": [0.2, 0.8, 0.02], "pose": [0.95, -0
 START, GOAL = [0.1, -0.6, 0.2, -2.1, 0.1, 1.6, 0.8], [0.9, -0.2, -0.3, -1.8, 0.2, 1.9, 0.6]
 
 
+def orange_of(picture: np.ndarray) -> int:
+    """Pixels that are more red than anything else of a page is."""
+    red, green, blue = (picture[:, :, part].astype(int) for part in range(3))
+    return int(((red > 120) & (red - green > 60) & (green - blue > 15)).sum())
+
+
 def attempts() -> "list[dict]":
     """A solved one among obstacles, and one without a path."""
     record = {"outcome": "solved", "planner": "birrt", "planning_time_s": 0.5, "collision_checks": 1234}
@@ -29,6 +35,28 @@ def attempts() -> "list[dict]":
     middle = (0.5 * (np.array(START) + GOAL) + 0.1).tolist()
     return [{**of, "report_uuid": SOLVED, "waypoints": [START, middle, GOAL], "record": record, "scene": SCENE},
             {**of, "report_uuid": UNSOLVED, "waypoints": None, "record": {**record, "outcome": "timeout"}, "scene": None}]
+
+
+def box_stl(size: "list[float]") -> str:
+    """A box from the origin to its opposite corner, as twelve triangles."""
+    corner = [[size[axis] * (i >> axis & 1) for axis in range(3)] for i in range(8)]
+    faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+    facets = "".join("facet normal 0 0 0 outer loop " + " ".join("vertex %g %g %g" % tuple(corner[i]) for i in face) + " endloop endfacet\n"
+                     for face in faces)
+    return f"solid box\n{facets}endsolid box\n"
+
+
+def meshed_urdf() -> str:
+    """Two bars: the first is drawn as it collides, the second is drawn orange, in a mesh of its own."""
+    def mesh(name: str) -> str:
+        return f"<origin xyz='0.1 -0.02 -0.02'/><geometry><mesh filename='{name}.stl'/></geometry>"
+    orange = "<material name='orange'><color rgba='1 0.4 0 1'/></material>"
+    joint = "<axis xyz='0 0 1'/><limit lower='-2' upper='2' effort='1' velocity='1'/></joint>"
+    return ("<robot name='bars'><link name='base'/>"
+            f"<link name='one'><visual>{mesh('bar')}</visual><collision>{mesh('bar')}</collision></link>"
+            f"<link name='two'><visual>{mesh('thin')}{orange}</visual><collision>{mesh('bar')}</collision></link>"
+            f"<joint name='j1' type='revolute'><parent link='base'/><child link='one'/>{joint}"
+            f"<joint name='j2' type='revolute'><parent link='one'/><child link='two'/><origin xyz='0.5 0 0'/>{joint}</robot>")
 
 
 class Figures(unittest.TestCase):
@@ -40,6 +68,11 @@ class Figures(unittest.TestCase):
         cls.kinship = cls.server.kinship
         cls.server.register("panda", "panda_lift")
         cls.server.give(attempts())
+        for name, size in (("bar", [0.3, 0.04, 0.04]), ("thin", [0.3, 0.02, 0.02])):
+            (cls.folder / f"{name}.stl").write_text(box_stl(size))
+        (cls.folder / "bars.urdf").write_text(meshed_urdf())
+        cls.kinship("robots", "register", str(cls.folder / "bars.urdf"), "--base", "base", "--tip", "two", "--axes", "x,y,yaw", "--label", "bars")
+        cls.kinship("robots", "plot", "bars", "--output", str(cls.folder / "bars.html"))
         for robot in ("panda", "panda_lift"):
             cls.kinship("robots", "plot", robot, "--output", str(cls.folder / f"{robot}.html"))
         cls.kinship("paths", "plot", SOLVED, "--output", str(cls.folder / "path.html"))
@@ -101,6 +134,30 @@ class Figures(unittest.TestCase):
         self.assertNotEqual(self.browser.text("#pose"), pose)
         self.browser.click("#again")
         self.assertEqual(self.browser.text("#pose"), pose)
+
+    def test_meshes_are_drawn_as_the_robot_looks_and_as_it_collides(self):
+        data = self.load("bars.html")["robot"]
+        self.assertEqual([(mesh["role"], data["links"][mesh["link"]]["name"]) for mesh in data["meshes"]],
+                         [("both", "one"), ("collision", "two"), ("visual", "two")])
+        self.assertEqual(len(data["contents"]), 2, "a bar is there once")
+        for text in data["contents"].values():
+            parts = self.browser.run("const {attributes, index} = kinshipSolids.meshGeometry(arguments[0]); return [attributes.position.count, index.count]", text)
+            self.assertEqual(parts, [8, 36])
+        self.assertEqual(self.count("visual")["meshes"], 2)
+        self.assertEqual(self.count("collision")["meshes"], 2)
+        self.assertEqual(self.count("links")["objects"], 2, "solids around them, hidden at first")
+        pressed = {name: self.browser.element(f"[data-layer={name}]").get_attribute("aria-pressed") for name in ("visual", "collision", "links")}
+        self.assertEqual(pressed, {"visual": "true", "collision": "false", "links": "false"})
+        picture = self.browser.picture("#robot canvas")
+        self.assertGreater(orange_of(picture), 200, "the colour of the URDF")
+        self.browser.click("[data-layer=visual]")
+        self.assertEqual(orange_of(self.browser.picture("#robot canvas")), 0, "hidden")
+        self.browser.click("[data-layer=collision]")
+        collision = self.browser.picture("#robot canvas")
+        self.assertGreater(share_drawn(collision), 0.01)
+        self.set_slider("[data-joint=j2]", 1.5)
+        self.assertGreater(np.mean(self.browser.picture("#robot canvas") != collision), 0.005, "moved")
+        self.assertIn("2 links by the triangles of their meshes", self.browser.text("#shapes-text"))
 
     def test_a_path_is_drawn_in_its_scene(self):
         data = self.load("path.html")

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "client/link/outbox.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/problem_json.hpp"
+#include "robots/models/loaded_robot.hpp"
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/cell.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -85,16 +87,41 @@ class MeshRobots : public testing::Test {
 
   Answer plan_as_teacher() const {
     return cell_.run("kinship-plan",
-                     "--base base --tip tip --axes x,y,yaw --label teacher --task past "
+                     "--without-meshes --base base --tip tip --axes x,y,yaw --label teacher "
+                     "--task past "
                      "--guidance uniform --report yes --json --outbox " +
                          (directory_ / "plan_outbox").string() + " --robot " +
                          (directory_ / "teacher.urdf").string() + " --problems " +
                          (directory_ / "problems.jsonl").string());
   }
 
-  Answer register_pupil() const {
+  Answer register_pupil(const std::string& more = "") const {
     return cell_.kinship("robots register " + (directory_ / "pupil.urdf").string() +
-                         " --base base --tip tip --axes x,y,yaw --label pupil");
+                         " --base base --tip tip --axes x,y,yaw --label pupil " + more);
+  }
+
+  /// The pupil as a client describes it, with the contents of its meshes.
+  kinematics::RobotModel described_pupil() const {
+    models::RobotArguments arguments;
+    arguments.source = directory_ / "pupil.urdf";
+    arguments.base_link = "base";
+    arguments.tip_link = "tip";
+    arguments.axes = "x,y,yaw";
+    arguments.label = "pupil";
+    kinematics::RobotModel robot = models::load_robot(arguments).value_or_throw();
+    auto meshes = models::load_meshes(arguments, robot).value_or_throw();
+    robot.description.meshes = std::move(meshes.meshes);
+    robot.description.contents = std::move(meshes.contents);
+    return robot;
+  }
+
+  /// Waits until the server filters for the pupil as it says here.
+  testing::AssertionResult is_filtered_by(const std::string& geometry) {
+    const auto deadline = std::chrono::steady_clock::now() + test::Cell::kEnough;
+    while (pupil().geometry != geometry)
+      if (std::chrono::steady_clock::now() > deadline)
+        return testing::AssertionFailure() << pupil().geometry;
+    return testing::AssertionSuccess();
   }
 
   Distribution fetch(const Digest& robot) {
@@ -130,7 +157,7 @@ TEST_F(MeshRobots, AreFilteredWithSolidsAroundTheirMeshesAndTheServerSaysSo) {
       has(planned.err, "is reported with solids around its meshes and clouds (approximate)"));
   EXPECT_TRUE(has(planned.err, "6 acknowledged"));
 
-  const Answer registered = register_pupil();
+  const Answer registered = register_pupil("--without-meshes");
   ASSERT_EQ(registered.code, 0) << registered.err;
   EXPECT_TRUE(has(registered.out, "the server filters with: 4 links by 4 solids around meshes"));
   EXPECT_EQ(pupil().geometry_ms, 0);
@@ -147,6 +174,59 @@ TEST_F(MeshRobots, AreFilteredWithSolidsAroundTheirMeshesAndTheServerSaysSo) {
   const Answer explained =
       cell_.kinship("distributions explain --distribution " + distribution.id.hex());
   EXPECT_TRUE(has(explained.out, distribution.filters));
+}
+
+const std::string kByTriangles = "4 links by the triangles of their meshes";
+
+TEST_F(MeshRobots, AreFilteredByTheTrianglesOfTheirMeshesWhichTravelOnce) {
+  const Answer registered = register_pupil();
+  ASSERT_EQ(registered.code, 0) << registered.err;
+  EXPECT_TRUE(
+      has(registered.out, "better geometry than before, it counts from now on: " + kByTriangles));
+  EXPECT_TRUE(has(registered.out, "meshes: 4 meshes, 4 of them for collision; 4 of 4 contents"));
+  EXPECT_EQ(cell_.status().meshes, 4U);
+  const Answer shown = cell_.kinship("robots show pupil");
+  EXPECT_TRUE(has(shown.out, "meshes      4 meshes, 4 of them for collision; 4 of 4 contents"));
+
+  EXPECT_TRUE(
+      has(register_pupil("--without-meshes").out, "the server filters with: " + kByTriangles));
+  cell_.kill();
+  cell_.start();
+  EXPECT_EQ(pupil().geometry, kByTriangles);
+  EXPECT_TRUE(has(register_pupil().out, "the server filters with: " + kByTriangles));
+  EXPECT_EQ(cell_.status().meshes, 4U);
+}
+
+TEST_F(MeshRobots, WhatAClientThatDiedDidNotSendComesWhenAServerIsThere) {
+  const kinematics::RobotModel robot = described_pupil();
+  {  // a client that dies after its first message, and a server that dies with it
+    link::Outbox outbox(directory_ / "dead_client");
+    outbox.keep_robot(robot.chain.digest(), robot.description);
+    RobotDescription named = robot.description;
+    named.contents.clear();
+    const RegisterReply reply = cell_.client().register_robot(named).value_or_throw();
+    EXPECT_EQ(reply.wanted.size(), 4U);
+    EXPECT_TRUE(has(reply.meshes, "0 of 4 contents are here"));
+    cell_.kill();
+  }
+  cell_.start();
+  EXPECT_NE(pupil().geometry, kByTriangles);
+  link::Client next({.domain = cell_.domain(), .outbox = directory_ / "dead_client"});
+  EXPECT_TRUE(is_filtered_by(kByTriangles));
+  EXPECT_TRUE(link::Outbox(directory_ / "dead_client").robots_with_contents().empty());
+}
+
+TEST_F(MeshRobots, OfAServerThatTakesNoMeshesSolidsServe) {
+  cell_.kill();
+  test::Cell other({.folder = directory_ / "other", .arguments = {"--stored-meshes-mb", "0"}});
+  other.start();
+  const Answer registered =
+      other.kinship("robots register " + (directory_ / "pupil.urdf").string() +
+                    " --base base --tip tip --axes x,y,yaw --label pupil");
+  ASSERT_EQ(registered.code, 0) << registered.err;
+  EXPECT_TRUE(has(registered.out, "the server filters with: 4 links by 4 solids around meshes"));
+  EXPECT_TRUE(has(registered.out, "meshes: the server takes none"));
+  EXPECT_EQ(other.status().meshes, 0U);
 }
 
 }  // namespace

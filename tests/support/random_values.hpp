@@ -164,6 +164,13 @@ class RandomValues {
       robot.held_joints[name(100)] = number();
     for (int i = below(10); i > 0; --i)
       robot.never_colliding.emplace_back(name(50), name(50));
+    for (int i = below(5); i > 0; --i) {
+      const bool is_altered = coin();
+      robot.meshes.push_back(
+          {name(50), is_altered ? MeshRole::Visual : MeshRole::Both, pose(),
+           coin() ? std::vector<double>{0, 0.5, share(), 1} : std::vector<double>{},
+           is_altered ? share() : 0, digest()});
+    }
     return robot;
   }
 

@@ -25,6 +25,7 @@ class Robot:
         collision_from_visual: bool = ...,
         without_collision: Sequence[str] = ...,
         xacro: Mapping[str, str] = ...,
+        without_meshes: bool = ...,
     ) -> None: ...
     @property
     def label(self) -> str: ...

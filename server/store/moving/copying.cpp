@@ -94,7 +94,7 @@ void Copying::run() {
   copy_names();
   copy_pairs();
   for (const char* const name :
-       {"scene", "retired_report", "audit", "distribution", "rehearsal", "search"})
+       {"scene", "retired_report", "audit", "distribution", "rehearsal", "search", "mesh"})
     copy_by_id(moved_table(name));
   for (const char* const name : {"distribution_use", "evicted_distribution", "setting"})
     copy_whole(moved_table(name), source_.all(moved_table(name)));
@@ -200,7 +200,8 @@ void Copying::copy_pair(const Pair& pair) {
 void Copying::copy_by_id(const MovedTable& table) {
   const DifferingIds differing = compare_ids(source_.light(table), target_.light(table));
   // Of these alone rows go; elsewhere there is nothing that is gone.
-  if (table.name == "distribution" || table.name == "rehearsal" || table.name == "search")
+  if (table.name == "distribution" || table.name == "rehearsal" || table.name == "search" ||
+      table.name == "mesh")
     target_.in_transaction([&] { target_.erase(table, keys_of_ids(differing.extra)); });
   copy_ids(table, differing.changed);
   copy_ids(table, differing.missing);

@@ -226,6 +226,15 @@ MovedTable searches() {
           .postgres_light = light};
 }
 
+MovedTable meshes() {
+  const std::string light = "SELECT id, bytes, crc32c FROM mesh ORDER BY id";
+  return {.name = "mesh",
+          .reading = Reading::ById,
+          .columns = {{"id"}, {"digest", Blob}, {"bytes"}, {"crc32c"}, {"payload", Blob}},
+          .sqlite_light = light,
+          .postgres_light = light};
+}
+
 MovedTable audit() {
   return {.name = "audit",
           .reading = Reading::ById,
@@ -274,6 +283,7 @@ std::vector<MovedTable> all_tables() {
           evictions(),
           rehearsals(),
           searches(),
+          meshes(),
           audit(),
           settings(),
           {.name = "retired_report",

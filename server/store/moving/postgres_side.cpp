@@ -221,7 +221,8 @@ class PostgresSide : public Side {
     claim_.clear();
     in_transaction([&] {
       connection_->execute(
-          "DROP TABLE IF EXISTS audit, fit_lease, server, search, rehearsal, evicted_distribution,"
+          "DROP TABLE IF EXISTS audit, fit_lease, server, mesh, search, rehearsal, "
+          "evicted_distribution,"
           " distribution_use, distribution, retired_report, attempt, path, scene, experience, task,"
           " robot_geometry, robot_never_colliding, robot_held_joint, gone_robot, robot, run, epoch,"
           " setting, schema_migration; DROP FUNCTION IF EXISTS audit_is_append_only()");

@@ -136,6 +136,7 @@ Result<Step<RemovedRobot>> continue_removal(Session& session, const Digest& robo
     delete_robot(session, *id);
   else if (const auto relabelled = relabel_robot(session, robot, removed_label(robot)); !relabelled)
     return relabelled.error();
+  drop_unnamed_meshes(session);
   note_act(session, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
   return Step<RemovedRobot>{std::move(removed), true};
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/store/tables/audit.hpp"
+#include "server/store/tables/meshes.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/mesh_solids_blob.hpp"
@@ -107,8 +108,7 @@ std::int64_t upsert_row(Session& session, const RobotRecord& robot) {
           std::string(session.dialect().mark_changed) + " RETURNING id",
       robot.digest, description.label, robot.dof, description.base_link, description.tip_link,
       T_tip_transfer, mask_of(description.task_axes), robot.registered_ms,
-      robot_crc(robot, T_tip_transfer, encode_mesh_solids(description.mesh_solids)),
-      description.urdf);
+      robot_crc(robot, T_tip_transfer, encode_geometry(description)), description.urdf);
   return id.value();
 }
 
@@ -129,8 +129,7 @@ void insert_parts(Session& session, std::int64_t robot_id, const RobotRecord& ro
     session.query(
         "INSERT INTO robot_geometry (robot_id, revision, taken_ms, mesh_solids)"
         " VALUES ($1, $2, $3, $4)",
-        robot_id, robot.geometry_revision, robot.geometry_ms,
-        encode_mesh_solids(robot.description.mesh_solids));
+        robot_id, robot.geometry_revision, robot.geometry_ms, encode_geometry(robot.description));
 }
 
 /// Writes a robot's rows, anew if they are there.
@@ -208,9 +207,11 @@ bool update_robot(Session& session, const RobotRecord& robot) {
   const std::optional<std::int64_t> id = lock_robot(session, robot.digest);
   const std::optional<RobotRecord> written =
       with_better_geometry(id ? read_robot(session, *id) : std::nullopt, robot);
-  if (written)
-    write_robot(session, *written);
-  return written.has_value();
+  if (!written)
+    return false;
+  write_robot(session, *written);
+  drop_unnamed_meshes(session);
+  return true;
 }
 
 Result<bool> relabel_robot(Session& session, const Digest& robot, const std::string& label) {

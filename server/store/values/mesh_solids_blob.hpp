@@ -5,14 +5,21 @@
 #include <span>
 #include <vector>
 
-#include "proto/types/mesh_solids.hpp"
+#include "proto/types/robot_description.hpp"
 
 namespace kinship::store {
 
-/// \return bytes that keep every number, poses as 7 numbers; empty without solids.
-std::vector<std::uint8_t> encode_mesh_solids(const MeshSolids& mesh_solids);
+/// A robot's geometry beside its URDF, as in column mesh_solids.
+struct StoredGeometry {
+  MeshSolids solids;
+  std::vector<LinkMesh> meshes;
+};
 
-/// \return the solids, or nothing if the bytes are no solids that keep the rules.
-std::optional<MeshSolids> decode_mesh_solids(std::span<const std::uint8_t> bytes);
+/// \return bytes that keep every number, poses as 7 numbers; empty without solids and meshes. In
+///         format 1 without meshes, for which every release reads.
+std::vector<std::uint8_t> encode_geometry(const RobotDescription& description);
+
+/// \return nothing if the bytes are no solids and meshes that keep the rules.
+std::optional<StoredGeometry> decode_geometry(std::span<const std::uint8_t> bytes);
 
 }  // namespace kinship::store

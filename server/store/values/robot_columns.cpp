@@ -29,7 +29,8 @@ TaskAxes axes_of(std::int64_t mask) {
 }
 
 bool has_geometry_row(const RobotRecord& robot) {
-  return robot.geometry_revision > 0 || !robot.description.mesh_solids.solids.empty();
+  return robot.geometry_revision > 0 || !robot.description.mesh_solids.solids.empty() ||
+         !robot.description.meshes.empty();
 }
 
 std::uint32_t robot_crc(const RobotRecord& robot, Bytes T_tip_transfer, Bytes mesh_solids) {
@@ -51,10 +52,11 @@ std::uint32_t robot_crc(const RobotRecord& robot, Bytes T_tip_transfer, Bytes me
 
 std::optional<RobotRecord> complete_robot(RobotRecord robot, Bytes T_tip_transfer,
                                           Bytes mesh_solids, std::int64_t crc) {
-  const std::optional<MeshSolids> solids = decode_mesh_solids(mesh_solids);
-  if (!solids)
+  std::optional<StoredGeometry> geometry = decode_geometry(mesh_solids);
+  if (!geometry)
     return std::nullopt;
-  robot.description.mesh_solids = *solids;
+  robot.description.mesh_solids = std::move(geometry->solids);
+  robot.description.meshes = std::move(geometry->meshes);
   if (robot_crc(robot, T_tip_transfer, mesh_solids) != crc)
     return std::nullopt;
   const std::optional<Eigen::Isometry3d> pose = pose_from_blob(T_tip_transfer);

@@ -166,6 +166,17 @@ class TroubledStore final : public store::Store {
     ++descriptions_read;
     return store_.robots();
   }
+  store::MeshesPut put_meshes(const Digest& robot, const std::vector<MeshContent>& contents,
+                              const store::MeshLimits& limits) override {
+    return store_.put_meshes(robot, contents, limits);
+  }
+  std::optional<MeshContent> find_mesh(const Digest& content) const override {
+    return store_.find_mesh(content);
+  }
+  std::map<Digest, std::uint64_t> known_meshes(const std::set<Digest>& contents) const override {
+    return store_.known_meshes(contents);
+  }
+  store::MeshUse mesh_use() const override { return store_.mesh_use(); }
   std::vector<store::ExperienceSummary> experience(std::string_view task) const override {
     return store_.experience(task);
   }

@@ -43,6 +43,7 @@ const std::vector<CopiedTable>& copied_tables() {
       {"evicted_distribution", false},
       {"rehearsal"},
       {"search"},
+      {"mesh"},
       {"audit"},
       {"setting", false, "key = 'revision_floor'"},
       {"retired_report"},

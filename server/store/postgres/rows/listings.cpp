@@ -47,7 +47,8 @@ std::string newest_distributions(Session& session, const PairFilter& filter,
 constexpr std::string_view kCounts =
     "SELECT (SELECT count(*) FROM robot WHERE label NOT LIKE 'removed %'),"
     " (SELECT count(*) FROM task), count(*), coalesce(sum(bytes), 0)::bigint,"
-    " (SELECT max(version) FROM schema_migration) FROM distribution_use";
+    " (SELECT max(version) FROM schema_migration), (SELECT count(*) FROM mesh),"
+    " (SELECT coalesce(sum(length(payload)), 0)::bigint FROM mesh) FROM distribution_use";
 
 constexpr std::string_view kPairs =
     "SELECT coalesce(sum(paths), 0)::bigint, coalesce(sum(attempts), 0)::bigint,"
@@ -117,6 +118,8 @@ void count_rows(Connection& connection, StoreStatus& status) {
   status.distributions = count_of(counts, 2);
   status.distribution_bytes = count_of(counts, 3);
   status.schema_version = static_cast<std::uint32_t>(counts.column_integer(4));
+  status.meshes = count_of(counts, 5);
+  status.mesh_bytes = count_of(counts, 6);
   status.paths = count_of(pairs, 0);
   status.attempts = count_of(pairs, 1);
   status.dropped_paths = count_of(pairs, 2);

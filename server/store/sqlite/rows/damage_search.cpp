@@ -12,6 +12,7 @@
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/meshes.hpp"
 #include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/tables/searches.hpp"
@@ -35,6 +36,8 @@ bool has_right_content(Database& database, const std::string& table, std::int64_
     return is_rehearsal_sound(database, id);
   if (table == "search")
     return is_search_sound(database, id);
+  if (table == "mesh")
+    return is_mesh_sound(database, id);
   if (table == "robot")
     return is_robot_readable(database, id);
   return true;
@@ -148,7 +151,7 @@ RowsChecked check_rows(Database& database, const std::string& table, std::int64_
 }
 
 bool is_dropped_if_damaged(std::string_view table) {
-  return table == "rehearsal" || table == "search";
+  return table == "rehearsal" || table == "search" || table == "mesh";
 }
 
 void DamageItem::apply(Batch& batch) {
@@ -163,6 +166,8 @@ void DamageItem::apply(Batch& batch) {
       drop_rehearsal(batch.database(), row);
     else if (table_ == "search")
       drop_search(batch.database(), row);
+    else if (table_ == "mesh")
+      drop_mesh(batch.database(), row);
     else
       quarantine_row(batch.database(), table_, row);
 }

@@ -416,7 +416,7 @@ Salvaged Salvager::run(const Progress& progress) {
   add_placeholder_tasks();
   add_placeholder_robots();
   for (const char* const small : {"robot_held_joint", "robot_never_colliding", "robot_geometry",
-                                  "retired_report", "same_content", "search"})
+                                  "retired_report", "same_content", "search", "mesh"})
     copy_table(small);
   add_placeholder_paths();
   add_placeholder_scenes();

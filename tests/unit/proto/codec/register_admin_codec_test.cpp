@@ -89,6 +89,43 @@ TEST(RegisterCodec, MeshSolidsThatAreNoneAreRefused) {
   EXPECT_TRUE(decode(message.wire).value_or_throw().mesh_solids.solids.empty());
 }
 
+TEST(RegisterCodec, MeshesThatBreakARuleAreRefusedByName) {
+  RobotDescription bad = robot();
+  bad.meshes = {{"arm"}};
+  EXPECT_EQ(complaint(bad), "");
+  bad.meshes[0].error_m = 0.001;
+  EXPECT_EQ(complaint(bad), "meshes: 'arm': a mesh for collision is altered");
+  bad.meshes[0].role = MeshRole::Visual;
+  EXPECT_EQ(complaint(bad), "");
+  bad.meshes[0].rgba = {0, 0, 0};
+  EXPECT_EQ(complaint(bad), "meshes: 'arm': a colour of 3 numbers, not 4");
+  bad.meshes[0].rgba = {0, 0, 0, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(complaint(bad), "meshes: 'arm': colour nan is not between 0 and 1");
+  bad.meshes.assign(257, {"arm"});
+  EXPECT_EQ(complaint(bad), "meshes: 257 exceed 256");
+  bad.meshes.resize(1);
+  auto message = encode({}, bad).value_or_throw();
+  message.wire.meshes._buffer[0].role = 3;
+  EXPECT_FALSE(decode(message.wire));
+  message.wire.meshes._buffer = nullptr;  // what a shorter message leaves
+  message.wire.contents._buffer = nullptr;
+  EXPECT_TRUE(decode(message.wire).value_or_throw().meshes.empty());
+}
+
+TEST(RegisterCodec, ContentsAreLimitedBeforeTheyAreCopied) {
+  RobotDescription uploading = robot();
+  uploading.contents = {{4 * 1024 * 1024, std::vector<std::uint8_t>(512 * 1024)}};
+  auto message = encode({}, uploading).value_or_throw();
+  EXPECT_EQ(decode(message.wire)->contents.at(0).zlib.size(), 512U * 1024);
+  message.wire.contents._buffer[0].bytes += 1;
+  EXPECT_EQ(decode(message.wire).error().message, "contents: bytes: 4194305 exceeds 4194304");
+  message.wire.contents._buffer[0].bytes = 8;
+  message.wire.contents._buffer[0].zlib._length += 1;  // refused before a byte is read
+  EXPECT_EQ(decode(message.wire).error().message, "contents: zlib: 524289 exceeds 524288");
+  uploading.contents.assign(65, {8, {1}});
+  EXPECT_EQ(complaint(uploading), "contents: 65 exceeds 64");
+}
+
 TEST(RegisterCodec, SameArmsAreLimited) {
   RegisterReply reply;
   reply.same_arms.assign(1025, "ur10e");

@@ -115,6 +115,38 @@ TEST(FittedLinks, WhatTouchesAMeshTouchesOneOfItsSolids) {
   EXPECT_GT(approximate, 0);
 }
 
+TEST(FittedLinks, TrianglesThatTravelledFindEverySelfCollision) {
+  const kinematics::Chain chain = toy_chain(5);
+  const geometry::RobotShapes meshes = bent_arm(5);
+  geometry::RobotShapes travelled = meshes;
+  for (geometry::LinkShape& shape : travelled.shapes) {
+    const MeshContent content =
+        TriangleMesh::from_corners(*shape.triangles).value_or_throw().content();
+    const geometry::FittedMesh fitted =
+        geometry::fit_mesh(TriangleMesh::read(content)->corners()).value_or_throw();
+    shape.shape = fitted.fitted.shape;
+    shape.T_link_shape = shape.T_link_shape * fitted.fitted.T_points_shape;
+    shape.triangles = fitted.triangles;
+  }
+  const FittedRobot fitted = fit_robot(chain, meshes).value_or_throw();
+  CollisionWorld exact(chain, meshes, {}), of_travelled(chain, travelled, {}),
+      of_solids(chain, as_known(chain, meshes, fitted), {});
+  std::mt19937_64 generator(kSeed);
+  int colliding = 0, found = 0, found_by_solids = 0, lost = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::VectorXd q = test::random_configuration(chain, generator);
+    const bool collides = exact.collides(q), seen = of_travelled.collides(q);
+    colliding += collides ? 1 : 0;
+    found += collides && seen ? 1 : 0;
+    lost += !collides && seen ? 1 : 0;
+    found_by_solids += collides && of_solids.collides(q) ? 1 : 0;
+  }
+  EXPECT_GT(colliding, 100);
+  EXPECT_EQ(found, colliding);
+  EXPECT_EQ(lost, 0);
+  EXPECT_LE(found_by_solids, colliding);
+}
+
 TEST(FittedLinks, TheFilterLosesFewFreeConfigurationsAndFindsCollisions) {
   const kinematics::Chain chain = toy_chain(5);
   const geometry::RobotShapes meshes = bent_arm(5);

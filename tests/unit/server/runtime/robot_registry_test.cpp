@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/urdf_parses.hpp"
 #include "tests/unit/server/fleet.hpp"
@@ -309,6 +311,86 @@ TEST_F(Registry, SolidsThatMakeNoSenseAreNoGeometryAndAreToldOf) {
   EXPECT_EQ(reply.geometry_grade, GeometryGrade::None);
   EXPECT_EQ(reply.geometry, "cannot be read: mesh_solids: no link named 'nose'");
   EXPECT_TRUE(registry_.register_robot(with_mesh_solids(0.1), 2).took_geometry);
+}
+
+TriangleMesh bar() {
+  return TriangleMesh::from_corners(test::BoxMesh({0.1, 0.1, 0.3}).triangles()).value_or_throw();
+}
+
+/// With solids, and the names of the mesh's content for collision and of another one to look at.
+RobotDescription with_named_meshes() {
+  RobotDescription robot = with_mesh_solids(0.1);
+  robot.meshes = {
+      {"link1", MeshRole::Collision, Eigen::Isometry3d::Identity(), {}, 0, bar().digest()},
+      {"link1",
+       MeshRole::Visual,
+       Eigen::Isometry3d::Identity(),
+       {},
+       0.001,
+       test::id_from<Digest>(7)}};
+  return robot;
+}
+
+TEST_F(Registry, MeshesOfAKnownRobotAreTakenOverAndFilterOnceTheyAreAllHere) {
+  const Digest robot = registry_.register_robot(with_mesh_solids(0.1), 1).robot;
+  const RegisterReply named = registry_.register_robot(with_named_meshes(), 2);
+  EXPECT_EQ(named.status, RegisterStatus::Known);
+  EXPECT_TRUE(named.took_geometry);
+  EXPECT_EQ(named.geometry_grade, GeometryGrade::Approximate);
+  EXPECT_EQ(named.meshes,
+            "2 meshes, 1 of them for collision; 0 of 2 contents are here, 0 bytes "
+            "compressed");
+  EXPECT_EQ(named.wanted.size(), 2U);
+  EXPECT_FALSE(registry_.register_robot(with_named_meshes(), 3).took_geometry);
+
+  RobotDescription uploading = with_named_meshes();
+  uploading.contents = {bar().content()};
+  const RegisterReply complete = registry_.register_robot(uploading, 4);
+  EXPECT_TRUE(complete.took_geometry);
+  EXPECT_EQ(complete.geometry_grade, GeometryGrade::Exact);
+  EXPECT_EQ(complete.geometry, "1 link by the triangles of their meshes");
+  EXPECT_EQ(complete.wanted, std::vector<MeshDigest>{{test::id_from<Digest>(7)}});
+  EXPECT_EQ(registry_.geometry_revision(robot), 2U);
+  EXPECT_EQ(store_->find_robot(robot)->geometry_ms, 4);
+  EXPECT_NE(registry_.find(robot).value()->shapes.shapes.at(0).triangles, nullptr);
+
+  for (const RobotDescription& worse : {with_mesh_solids(0.1), with_mesh()})
+    EXPECT_FALSE(registry_.register_robot(worse, 5).took_geometry);
+  EXPECT_EQ(RobotRegistry(*store_).find(robot).value()->grade, GeometryGrade::Exact);
+  EXPECT_EQ(registry_.geometry_revision(robot), 2U);
+}
+
+TEST_F(Registry, ContentsThatCannotBeTakenAreToldOfAndTheRobotIsRegistered) {
+  RobotDescription uploading = with_named_meshes();
+  uploading.contents = {bar().content(), MeshContent{44, {1, 2, 3}}};
+  RobotRegistry full(*store_, {.max_mesh_bytes = 1});
+  const RegisterReply reply = full.register_robot(uploading, 1);
+  EXPECT_EQ(reply.status, RegisterStatus::Registered);
+  EXPECT_TRUE(reply.wanted.empty()) << "it would be refused again";
+  EXPECT_TRUE(
+      reply.meshes.starts_with("1 contents are beyond the 0 MB of all robots; 1 contents "
+                               "were not taken: mesh: is not a zlib stream of 44 bytes; "))
+      << reply.meshes;
+  RobotRegistry none(*store_, {.max_mesh_bytes = 0});
+  EXPECT_EQ(none.register_robot(uploading, 2).meshes, "");
+  EXPECT_TRUE(none.register_robot(uploading, 2).wanted.empty());
+  EXPECT_EQ(store_->mesh_use().count, 0U);
+}
+
+TEST_F(Registry, MeshesAreKnownFromMemoryWhileASharedStoreCannotBeReached) {
+  store::TroubledStore shared(*store_);
+  shared.has_others = true;
+  RobotRegistry registry(shared);
+  registry.register_robot(with_named_meshes(), 1);
+  shared.on_register = shared.on_robot_read = [] {
+    throw Failure(ErrorCode::Storage, "the database does not answer");
+  };
+  const auto known = registry.register_known(with_named_meshes());
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->wanted.size(), 2U);
+  RobotDescription uploading = with_named_meshes();
+  uploading.contents = {bar().content()};
+  EXPECT_FALSE(registry.register_known(uploading)) << "that is to be written";
 }
 
 TEST_F(Registry, UnknownRobotsAreNotFound) {

@@ -2,6 +2,7 @@
 
 #include "server/runtime/robot_registry.hpp"
 #include "server/sites/exchange.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/unit/server/fleet.hpp"
 #include "tests/unit/server/sites/site_and_memory.hpp"
 
@@ -95,6 +96,29 @@ TEST_F(Geometry, ThatComesLaterSpreadsWithoutAnotherReport) {
   talk_all();
   for (const Place* const place : {&memory_, &ulm_, &bern_})
     EXPECT_EQ(place->grade(), GeometryGrade::Exact);
+}
+
+TEST_F(Geometry, OfMeshesSpreadsWithTheirContents) {
+  const TriangleMesh mesh =
+      TriangleMesh::from_corners(test::BoxMesh({0.1, 0.1, 0.3}).triangles()).value_or_throw();
+  ulm_.registers(fitted());
+  bern_.registers(fitted());
+  report(ulm_, 1);
+  report(bern_, 2);
+  talk_all();
+  RobotDescription meshed = fitted();
+  meshed.meshes = {{"link1", MeshRole::Both, Eigen::Isometry3d::Identity(), {}, 0, mesh.digest()}};
+  ulm_.registers(meshed);
+  talk_all();
+  for (const Place* const place : {&memory_, &ulm_, &bern_})
+    EXPECT_EQ(place->grade(), GeometryGrade::Approximate) << "the content is nowhere yet";
+  meshed.contents = {mesh.content()};
+  ulm_.registers(meshed);
+  talk_all();
+  for (const Place* const place : {&memory_, &ulm_, &bern_}) {
+    EXPECT_EQ(place->grade(), GeometryGrade::Exact);
+    EXPECT_TRUE(place->store->find_mesh(mesh.digest()));
+  }
 }
 
 TEST_F(Geometry, OfOneGradeStaysWhereItIsAndGoesNotToAndFro) {
