@@ -116,7 +116,7 @@ kinshipFigures.distribution = (element, data, {href = () => null} = {}) => {
   function lostLayers() {
     const layer = (name, text, hue) => ({
       name, text: numberLost(name) ? `${text} (${count(numberLost(name))})` : "", color: hue,
-      points: [{positions: metres(lost.places.filter((places, why) => losses[why][1] === name).flat()), size: 0.036, opacity: 0.95}]});
+      points: [{positions: metres(lost.places.filter((places, why) => losses[why][1] === name).flat()), size: 0.055, opacity: 0.95}]});
     return [layer("unreached", "poses not reached", "blocking"), layer("colliding", "poses reached in collision only", "path")];
   }
 
