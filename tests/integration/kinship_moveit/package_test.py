@@ -1,6 +1,7 @@
 """client/ros2/kinship_moveit as colcon builds it: with Debian's ament_cmake, against an installed libkinship and the stubs."""
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -58,10 +59,7 @@ class Package(unittest.TestCase):
 
     def test_every_parameter_is_in_the_yaml(self):
         """A parameter that nobody can find is none, and a line that nothing reads misleads."""
-        read = set()
-        for line in (PACKAGE / "src/settings.cpp").read_text().split('"'):
-            if line.startswith("kinship."):
-                read.add(line.removeprefix("kinship."))
+        read = set(re.findall(r'"kinship\.(\w+)"', (PACKAGE / "src/settings.cpp").read_text()))
         documented = set()
         for line in (PACKAGE / "config/panda_kinship.yaml").read_text().splitlines():
             text = line.strip().removeprefix("# ")
