@@ -162,6 +162,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
         {}}},
       // A project of its own: what is installed, and files beside its own, which have no folder.
       {"client/examples", {{""}, {"OMPL"}}},
+      // A package of ROS: the installed libkinship, its own files, and MoveIt.
+      {"client/ros2/kinship_moveit", {{""}, {"Eigen", "OctoMap"}}},
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/python",
        {{guided, link, files, recall, planning, inverse, collision, geometry, kinematics, models,

@@ -96,7 +96,8 @@ class OwnSearch {
     const std::string algorithm = algorithm_of(request);
     asked.algorithm = algorithm.empty() ? nullptr : algorithm.c_str();
     asked.distribution = query.guidance.distribution.get();
-    asked.recall = session_.settings().offers_recall ? query.guidance.recall.get() : nullptr;
+    if (session_.settings().offers_recall && !std::exchange(query.was_recalled, true))
+      asked.recall = query.guidance.recall.get();
     asked.share = session_.settings().share > 0 ? session_.settings().share : 0;
     asked.sampling = query.sampling;
     asked.stop = [](void* user) {

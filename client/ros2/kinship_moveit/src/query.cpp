@@ -197,7 +197,8 @@ bool offer_recalled(Session& session, const Query& query,
                     const planning_scene::PlanningSceneConstPtr& scene,
                     const MotionPlanRequest& request, MotionPlanResponse& response) {
   if (!session.settings().offers_recall || query.sampling != KINSHIP_GUIDED ||
-      query.guidance.recall == nullptr || !query.goals.has_any())
+      query.guidance.recall == nullptr || !query.goals.has_any() ||
+      std::exchange(query.was_recalled, true))
     return false;
   const double begin_s = thread_time_s();
   const auto& joints = *scene->getRobotModel()->getJointModelGroup(request.group_name);

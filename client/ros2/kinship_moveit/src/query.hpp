@@ -27,7 +27,9 @@ struct Query {
   std::shared_ptr<const SceneObjects> objects;
   Goals goals;
   double time_limit_s = 0;
-  mutable bool is_reported = false;  ///< by the thread that plans
+  // By the thread that plans:
+  mutable bool is_reported = false;
+  mutable bool was_recalled = false;  ///< stored paths were tried
 };
 
 /// Begins the query of this thread: finds its task, takes "@TASK" from the request's planner_id,
