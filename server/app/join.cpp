@@ -1,5 +1,7 @@
 #include "server/app/join.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -121,6 +123,9 @@ std::uint32_t choose_place(const ServerOptions& options, const std::string& addr
   if (!place || server || taken->holder.program == kProgram)
     throw Failure(ErrorCode::Unavailable,
                   explain(options, *taken, server));
+  spdlog::info("domain {}: {} has UDP port {}; takes place {}, port {}", options.domain,
+               describe(taken->holder), taken->port, *place,
+               dds::discovery_port(options.domain, *place));
   return *place;
 }
 

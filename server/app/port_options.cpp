@@ -42,15 +42,19 @@ void add_port_options(CLI::App& app, ServerOptions& options) {
                "--security, whose certificates they do not have");
   app.add_option("--ros2-domain", options.ros2_domain, "Of --ros2: their domain")
       ->envname("ROS_DOMAIN_ID")
-      ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))
       ->capture_default_str();
 }
 
 std::string ros2_fault(const ServerOptions& options) {
-  return options.ros2 && !options.security.empty()
-             ? "--ros2 is not for a server with --security: ROS 2 nodes have no certificate of it, "
-               "and would be let in without"
-             : "";
+  if (!options.ros2)
+    return {};  // whatever ROS_DOMAIN_ID is
+  if (options.ros2_domain > dds::kMaxDomain)
+    return "--ros2-domain " + std::to_string(options.ros2_domain) + " (or ROS_DOMAIN_ID) exceeds " +
+           std::to_string(dds::kMaxDomain);
+  return options.security.empty()
+             ? ""
+             : "--ros2 is not for a server with --security: ROS 2 nodes have no certificate of it, "
+               "and would be let in without";
 }
 
 std::string console_fault(const ServerOptions& options) {

@@ -10,7 +10,9 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
@@ -109,12 +111,46 @@ TEST_F(KinshipdProcess, OneThatDoesNotAnswerIsStillAKinshipd) {
   EXPECT_NE(error_.find("does not answer"), std::string::npos) << error_;
 }
 
-TEST_F(KinshipdProcess, WhoHasAPortOfTheDomainAndIsNoKinshipdIsNamed) {
-  for (const int port : {discovery_port(domain_.number()), discovery_port(domain_.number()) + 1}) {
-    const PortTaker other(port);
+/// Other software at all places that a server may have in a domain, at their first or second port.
+class PlaceTaker {
+ public:
+  PlaceTaker(std::uint32_t domain, int offset) {
+    for (int place = 0; place < 8; ++place)
+      takers_.push_back(std::make_unique<PortTaker>(discovery_port(domain) + 2 * place + offset));
+  }
+
+ private:
+  std::vector<std::unique_ptr<PortTaker>> takers_;
+};
+
+TEST_F(KinshipdProcess, WhereOtherSoftwareHasTheFirstPlaceItTakesTheNextAndIsFound) {
+  for (const int offset : {0, 1}) {
+    const PortTaker other(discovery_port(domain_.number()) + offset);
+    test::ServerProcess server(options());
+    const test::Answer status =
+        test::run_to_end("kinship", {"status", "--domain", std::to_string(domain_.number())});
+    EXPECT_EQ(status.code, 0) << status.err;
+    EXPECT_EQ(run_on(domain_.number(), "other.db"), 1) << "a domain has one server";
+    EXPECT_NE(error_.find("another kinshipd has it"), std::string::npos) << error_;
+    EXPECT_EQ(server.terminate(), 0);
+  }
+}
+
+TEST_F(KinshipdProcess, AServerThatCameFirstIsSeenWhereItsFirstPlaceIsFreeAgain) {
+  auto other = std::make_unique<PortTaker>(discovery_port(domain_.number()));
+  const test::ServerProcess server(options());
+  other.reset();
+  EXPECT_EQ(run_on(domain_.number(), "other.db"), 1);
+  EXPECT_NE(error_.find("another kinshipd has it"), std::string::npos) << error_;
+}
+
+TEST_F(KinshipdProcess, WhoHasAllPlacesOfTheDomainAndIsNoKinshipdIsNamed) {
+  for (const int offset : {0, 1}) {
+    const PlaceTaker others(domain_.number(), offset);
     EXPECT_EQ(run_on(domain_.number()), 1);
     const std::string taken = "domain " + std::to_string(domain_.number()) + ": UDP port " +
-                              std::to_string(port) + " is taken by 'integration_kin' (process " +
+                              std::to_string(discovery_port(domain_.number()) + offset) +
+                              " is taken by 'integration_kin' (process " +
                               std::to_string(getpid()) + ")";
     EXPECT_NE(error_.find(taken), std::string::npos) << error_;
     EXPECT_NE(error_.find("; take another domain (--domain N)"), std::string::npos) << error_;
@@ -123,13 +159,13 @@ TEST_F(KinshipdProcess, WhoHasAPortOfTheDomainAndIsNoKinshipdIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(directory_ / "fleet.db"));
 }
 
-TEST_F(KinshipdProcess, ADomainInTheRangeOfEphemeralPortsIsAdvisedAgainstWhenItsPortIsTaken) {
+TEST_F(KinshipdProcess, ADomainInTheRangeOfEphemeralPortsIsAdvisedAgainstWhenItsPortsAreTaken) {
   constexpr std::uint32_t kDomain = 119;
   std::uint32_t first = 0, last = 0;
   std::ifstream("/proc/sys/net/ipv4/ip_local_port_range") >> first >> last;
   if (first != 32768 || last < 60999)
     GTEST_SKIP() << "ephemeral ports from " << first << " to " << last;
-  const PortTaker other(discovery_port(kDomain));  // or somebody else has it already
+  const PlaceTaker others(kDomain, 0);  // or somebody else has them already
   EXPECT_EQ(run_on(kDomain), 1);
   EXPECT_NE(error_.find("domain 119: UDP port 37160 is taken by "), std::string::npos) << error_;
   EXPECT_NE(error_.find("take a domain from 0 to 101"), std::string::npos) << error_;

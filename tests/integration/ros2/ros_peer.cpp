@@ -6,6 +6,7 @@
 #include <rosidl_runtime_c/primitives_sequence_functions.h>
 #include <rosidl_runtime_c/string_functions.h>
 #include <trajectory_msgs/msg/detail/joint_trajectory_point__functions.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 using Words = std::vector<std::string>;
 
-constexpr std::chrono::seconds kPatience{30};
+std::chrono::seconds patience{30};  // option of each verb
 constexpr std::chrono::seconds kResend{1};
 
 /// A type's names in C, of rosidl and of idlc.
@@ -66,7 +67,7 @@ KINSHIP_TYPE(srv, Fetch_Response)
 
 template <typename Type>
 typename Type::Ros made() {
-  typename Type::Ros message;
+  typename Type::Ros message{};  // what has no default is not initialised by the next line
   Type::init(message);
   return message;
 }
@@ -122,7 +123,7 @@ std::optional<typename Answer::Ros> ask(Transport& node, const std::string& ques
                                         const typename Question::Ros& question) {
   const int writer = node.open_writer("rt/kinship/" + question_topic, Question::type());
   const int reader = node.open_reader("rt/kinship/" + answer_topic, Answer::type(), false);
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + patience;
   if (!node.wait_for_writer_match(writer, deadline) ||
       !node.wait_for_reader_match(reader, deadline))
     return std::nullopt;
@@ -148,7 +149,7 @@ std::optional<typename Response::Ros> call(Transport& node, const std::string& s
                                            const typename Request::Ros& request) {
   const int writer = node.open_writer("rq/kinship/" + service + "Request", Request::type());
   const int reader = node.open_reader("rr/kinship/" + service + "Reply", Response::type(), false);
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + patience;
   if (!node.wait_for_writer_match(writer, deadline) ||
       !node.wait_for_reader_match(reader, deadline))
     return std::nullopt;
@@ -283,7 +284,7 @@ void print(const kinship_msgs__msg__DistributionAnswer& answer) {
 
 /// The next distribution of this revision or a later one.
 bool print_distribution(Transport& node, int reader, std::uint64_t revision) {
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + patience;
   while (const auto bytes = node.take(reader, deadline)) {
     auto distribution = made<Distribution>();
     from_cdr(Distribution::support(), *bytes, &distribution);
@@ -343,16 +344,16 @@ int status(Transport& node, const Options& /*options*/) {
   return 0;
 }
 
-/// A node that is there and does nothing, until its input ends: it holds a place of the domain.
+/// A node that is there and does nothing, until it is killed: it holds a place of the domain.
 int stay(Transport& /*node*/, const Options& /*options*/) {
   std::cout << "here" << std::endl;
-  std::cin.get();
-  return 0;
+  return pause();
 }
 
 int run(std::uint32_t domain, const std::string& verb, const Words& words) {
   const std::unique_ptr<Transport> node = join(domain);
   const Options options(words);
+  patience = std::chrono::seconds(options.number("patience", patience.count()));
   if (verb == "register")
     return register_robot(*node, options);
   if (verb == "report")

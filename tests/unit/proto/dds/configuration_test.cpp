@@ -23,13 +23,18 @@ TEST(Configuration, PortFollowsTheDomain) {
   EXPECT_EQ(discovery_port(0), 7410);
   EXPECT_EQ(discovery_port(3), 8160);
   EXPECT_EQ(discovery_port(kMaxDomain), 64910);
+  EXPECT_EQ(discovery_port(3, 2), 8164);
+  EXPECT_LE(server_ports(kMaxDomain, kServerPlaces - 1)[1], 65535);
   EXPECT_THROW(discovery_port(kMaxDomain + 1), Failure);
 }
 
-TEST(Configuration, ClientKnowsOnlyTheServer) {
+TEST(Configuration, ClientKnowsOnlyThePlacesOfTheServer) {
   const std::string xml = cyclone_configuration({.domain = 3, .server = "10.0.0.7"});
   EXPECT_TRUE(contains(xml, "<ParticipantIndex>none</ParticipantIndex>"));
-  EXPECT_TRUE(contains(xml, "<Peers><Peer address=\"10.0.0.7:8160\"/></Peers>"));
+  std::string peers;
+  for (const char* const port : {"8160", "8162", "8164", "8166", "8168", "8170", "8172", "8174"})
+    peers += std::string("<Peer address=\"10.0.0.7:") + port + "\"/>";
+  EXPECT_TRUE(contains(xml, "<Peers>" + peers + "</Peers>")) << xml;
   EXPECT_FALSE(contains(xml, "NetworkInterface"));
 }
 
@@ -38,6 +43,19 @@ TEST(Configuration, LoopbackIsUsedForServersAndForLocalClients) {
   EXPECT_TRUE(contains(cyclone_configuration({.server = "localhost"}), "name=\"lo\""));
   EXPECT_TRUE(contains(cyclone_configuration({.role = Role::Server, .network_interface = "eth0"}),
                        "name=\"eth0\""));
+}
+
+TEST(Configuration, ANodeIsFoundAsRosNodesAre) {
+  const std::string local = cyclone_configuration({.domain = 7, .role = Role::RosNode});
+  EXPECT_TRUE(contains(local, "<ExternalDomainId>7</ExternalDomainId>"));
+  EXPECT_TRUE(contains(local, "<ParticipantIndex>auto</ParticipantIndex>"));
+  EXPECT_TRUE(contains(local, "name=\"lo\" multicast=\"false\"")) << local;
+  EXPECT_TRUE(contains(local, "<Peers><Peer address=\"127.0.0.1\"/></Peers>"));
+  const std::string wide =
+      cyclone_configuration({.role = Role::RosNode, .network_interface = "eth0"});
+  EXPECT_TRUE(contains(wide, "name=\"eth0\"/>")) << wide;
+  EXPECT_TRUE(contains(wide, "<AllowMulticast>default</AllowMulticast>"));
+  EXPECT_FALSE(contains(wide, "<Peer "));
 }
 
 // A first request or reply that is lost is there before the client sends it again after 100 ms.

@@ -76,6 +76,9 @@ TEST(MessageGuard, KnowsShortRequestsThatAreLong) {
   EXPECT_TRUE(is_too_long(kMaxShortRequestBytes + 1, "kinship::wire::FetchRequest"));
   EXPECT_TRUE(is_too_long(kMaxShortRequestBytes + 1, "kinship::wire::AdminRequest"));
   EXPECT_FALSE(is_too_long(1'200'000, "kinship::wire::ReportRequest"));
+  EXPECT_TRUE(is_too_long(kMaxShortRequestBytes + 1, "kinship_msgs::srv::dds_::Fetch_Request_"));
+  EXPECT_FALSE(is_too_long(kMaxShortPathBytes, "kinship_msgs::msg::dds_::PlannedPath_"));
+  EXPECT_TRUE(is_too_long(kMaxShortPathBytes + 1, "kinship_msgs::srv::dds_::Report_Request_"));
 }
 
 TEST(MessageGuard, LetsSomeLongRequestsInASecond) {

@@ -18,6 +18,7 @@ class Options : public testing::Test {
  protected:
   Options() {
     unsetenv("KINSHIP_DOMAIN");
+    unsetenv("ROS_DOMAIN_ID");
     setenv("XDG_STATE_HOME", "/state", 1);
   }
 
@@ -158,6 +159,21 @@ TEST_F(Options, OtherHostsAreServedWithSecurityOrIfInsecureIsSpeltOut) {
   EXPECT_NE(out_.str().find("[default]\ninsecure = false\n"), std::string::npos) << out_.str();
   EXPECT_EQ(code({"--insecure", "--print-config"}), kDone);
   EXPECT_NE(out_.str().find("[command line]\ninsecure = true\n"), std::string::npos);
+}
+
+TEST_F(Options, RosNodesAreServedOnTheirDomainAndNeverBesideCertificates) {
+  EXPECT_FALSE(good({}).ros2);
+  EXPECT_TRUE(good({"--ros2"}).ros2);
+  EXPECT_EQ(good({"--ros2", "--ros2-domain", "7"}).ros2_domain, 7U);
+  ASSERT_EQ(setenv("ROS_DOMAIN_ID", "232", 1), 0);
+  EXPECT_FALSE(good({}).ros2) << "a domain that only ROS may have is nothing to a server without";
+  EXPECT_EQ(code({"--ros2"}), kWrongUsage);
+  EXPECT_NE(err_.str().find("ROS_DOMAIN_ID"), std::string::npos) << err_.str();
+  const test::TemporaryDirectory directory;
+  const std::string folder = directory.path().string();
+  EXPECT_EQ(code({"--ros2", "--ros2-domain", "0", "--security", folder.c_str()}), kWrongUsage);
+  EXPECT_NE(err_.str().find("no certificate"), std::string::npos) << err_.str();
+  unsetenv("ROS_DOMAIN_ID");
 }
 
 TEST_F(Options, WhatCycloneDdsIsToldToOpenHasToBeSpeltOutToo) {
