@@ -107,6 +107,16 @@ bool add_meshes(const kinematics::RobotModel& robot, const FindMesh& find, Known
   return true;
 }
 
+/// \param shapes  without what the solids stand for.
+std::shared_ptr<const RobotShapes> covers_of(const kinematics::RobotModel& robot,
+                                             RobotShapes shapes) {
+  std::set<int> covered;
+  if (add_solids(robot.description.mesh_solids, robot.chain, shapes, covered) ||
+      !std::ranges::all_of(shapes.left_out, [&](int link) { return covered.contains(link); }))
+    return nullptr;
+  return std::make_shared<const RobotShapes>(std::move(shapes));
+}
+
 GeometryGrade grade_of(const KnownShapes& known) {
   if (known.shapes.shapes.empty())
     return GeometryGrade::None;
@@ -132,7 +142,9 @@ Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot, const
     return shapes.error();
   KnownShapes known;
   known.shapes = *std::move(shapes);
+  const RobotShapes without_meshes = known.shapes;
   if (add_meshes(robot, find, known)) {
+    known.covers = covers_of(robot, without_meshes);
     std::set<int> links;
     for (const LinkShape& shape : known.shapes.shapes)
       links.insert(shape.link);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -17,7 +18,10 @@ using FindMesh = std::function<std::optional<MeshContent>(const Digest& content)
 
 /// The shapes of a robot known from its description and the contents of its meshes.
 struct KnownShapes {
-  RobotShapes shapes;         ///< never_colliding includes the pairs that the mesh solids exclude
+  RobotShapes shapes;  ///< never_colliding includes the pairs that the mesh solids exclude
+  /// With the mesh solids in place of the meshes, which they hold; null without `mesh_links`, and
+  /// if a mesh has none. Shared by copies; immutable.
+  std::shared_ptr<const RobotShapes> covers = nullptr;
   int exact_links = 0;        ///< made of primitives only
   int mesh_links = 0;         ///< with the triangles of all their meshes
   int approximate_links = 0;  ///< with a mesh known as solids around it

@@ -190,12 +190,26 @@ SimplifiedMesh simplify(const Eigen::Matrix3Xd& corners, std::size_t most) {
     return {corners, 0};
   const Eigen::Vector3d extent = corners.rowwise().maxCoeff() - corners.rowwise().minCoeff();
   const double longest_m = extent.maxCoeff();
-  for (double edge_m = longest_m / kFinestCells; edge_m < longest_m; edge_m *= kCoarser) {
-    SimplifiedMesh merged = merge_cells(corners, edge_m);
-    const auto left = static_cast<std::size_t>(merged.corners.cols() / 3);
-    if (left <= most && left > 0)
-      return merged;
+  const auto merge = [&](int step) {
+    return merge_cells(corners, longest_m / kFinestCells * std::pow(kCoarser, step));
+  };
+  const auto holds = [&](const SimplifiedMesh& merged) {
+    return static_cast<std::size_t>(merged.corners.cols() / 3) <= most;
+  };
+  // Coarser cells leave fewer triangles, nearly always: where they do not, it is not the finest.
+  int fine = -1, coarse = static_cast<int>(std::log(kFinestCells) / std::log(kCoarser)) - 2;
+  SimplifiedMesh best = merge(coarse);
+  while (coarse - fine > 1) {
+    const int middle = (fine + coarse) / 2;
+    if (SimplifiedMesh merged = merge(middle); holds(merged)) {
+      best = std::move(merged);
+      coarse = middle;
+    } else {
+      fine = middle;
+    }
   }
+  if (holds(best) && best.corners.cols() > 0)
+    return best;
   return {corners.leftCols(static_cast<Eigen::Index>(3 * most)), longest_m};
 }
 

@@ -158,10 +158,9 @@ PathTransfer::PathTransfer(const store::ExperienceStore& store, const Distributi
 PathTransfer::Lane& PathTransfer::lane(std::size_t index) {
   std::unique_ptr<Lane>& lane = lanes_[index];
   if (!lane) {
-    lane = std::make_unique<Lane>(
-        Lane{{}, SceneFilters(store_, key_, target_, prepared_target_.solids)});
+    lane = std::make_unique<Lane>(Lane{{}, SceneFilters(store_, key_, target_, prepared_target_)});
     if (key_.profile.transfer.avoid_self_collision)
-      lane->self = transfer::collision_filter(prepared_target_.solids);
+      lane->self = transfer::self_filter(prepared_target_);
   }
   return *lane;
 }

@@ -26,7 +26,8 @@ PathScene SceneFilters::read(std::int64_t scene_id) const {
   if (!scene)
     return result;
   transfer::SceneFilter filter = transfer::scene_filter(
-      solids_, *scene, key_.T_task_base.value_or(Eigen::Isometry3d::Identity()));
+      prepared_.solids, *scene, key_.T_task_base.value_or(Eigen::Isometry3d::Identity()),
+      prepared_.covers ? &prepared_.covers->solids : nullptr);
   result.is_approximate = std::ranges::any_of(scene->objects, &SceneObject::approximate) ||
                           std::ranges::any_of(scene->held, &HeldObject::approximate);
   result.ignored = ignored_of(filter);

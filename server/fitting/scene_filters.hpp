@@ -10,6 +10,7 @@
 #include "server/runtime/robot_registry.hpp"
 #include "server/store/experience_store.hpp"
 #include "server/transfer/scene_filter.hpp"
+#include "server/transfer/target_robot.hpp"
 
 namespace kinship::fitting {
 
@@ -29,10 +30,10 @@ struct PathScene {
 class SceneFilters {
  public:
   /// \param store, key, target  outlive it.
-  /// \param solids  of the target.
+  /// \param prepared  the target.
   SceneFilters(const store::ExperienceStore& store, const DistributionKey& key,
-               const runtime::Robot& target, collision::RobotSolids solids)
-      : store_(store), key_(key), target_(target), solids_(std::move(solids)) {}
+               const runtime::Robot& target, const transfer::TargetRobot& prepared)
+      : store_(store), key_(key), target_(target), prepared_(prepared) {}
 
   /// The scene of a path; without a filter if the profile has none, the path has no scene or a
   /// damaged one, or the target has no shapes. Valid until the next call.
@@ -49,7 +50,7 @@ class SceneFilters {
   const store::ExperienceStore& store_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
-  const collision::RobotSolids solids_;
+  const transfer::TargetRobot prepared_;
   std::map<std::int64_t, PathScene> scenes_;  // by scene id
 };
 

@@ -9,7 +9,8 @@ TargetMemory::Target TargetMemory::find(const runtime::Robot& robot) {
     if (known != nullptr && known->geometry_revision == robot.geometry_revision)
       return known->target;
   }
-  const auto target = std::make_shared<const transfer::TargetRobot>(robot.chain, robot.shapes);
+  const auto target =
+      std::make_shared<const transfer::TargetRobot>(robot.chain, robot.shapes, robot.covers.get());
   const std::lock_guard lock(mutex_);
   known_.put(robot.digest, {robot.geometry_revision, target}, 1);
   while (known_.size() > max_robots_)

@@ -95,6 +95,7 @@ Robot RobotRegistry::robot_of(const kinematics::RobotModel& model, bool from_mem
   if (Result<geometry::KnownShapes> known = geometry::read_known_shapes(model, find)) {
     robot.geometry = geometry::describe(*known);
     robot.grade = known->grade;
+    robot.covers = known->covers;
     robot.shapes = std::move(known).value().shapes;
   } else {
     robot.geometry = cut_text("cannot be read: " + known.error().message, kMaxGeometryBytes);

@@ -32,6 +32,8 @@ struct Robot {
   /// For the URDF's meshes, the solids that a client fitted around them, if any; empty if the
   /// geometry cannot be read.
   geometry::RobotShapes shapes = {};
+  /// Around the meshes of `shapes`: geometry::KnownShapes::covers.
+  std::shared_ptr<const geometry::RobotShapes> covers = nullptr;
   GeometryGrade grade = GeometryGrade::None;
   std::string geometry = {};             ///< description of the shapes
   std::uint64_t geometry_revision = 0;   ///< number of times better geometry was taken over

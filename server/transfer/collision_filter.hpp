@@ -15,4 +15,11 @@ namespace kinship::transfer {
 ConfigurationFilter collision_filter(const collision::RobotSolids& robot,
                                      const collision::Surroundings& surroundings = {});
 
+/// The same answers as `exact`, sooner: it is asked where `covers` rejects a configuration alone.
+/// \param covers     rejects all that touch as they do for `exact`, but for pairs of `uncovered`.
+/// \param uncovered  rejects what touches of the pairs that `covers` does not compare; may be
+/// empty.
+ConfigurationFilter covered_filter(ConfigurationFilter exact, ConfigurationFilter covers,
+                                   ConfigurationFilter uncovered);
+
 }  // namespace kinship::transfer

@@ -28,7 +28,9 @@ struct SceneFilter {
 /// Not shared between threads.
 /// \param scene        keeps the rules of check_scene().
 /// \param T_task_base  placement of the robot; identity if it is missing.
+/// \param covers       null, or the robot with solids around its meshes, which are asked first.
 SceneFilter scene_filter(const collision::RobotSolids& robot, const RecordedScene& scene,
-                         const Eigen::Isometry3d& T_task_base);
+                         const Eigen::Isometry3d& T_task_base,
+                         const collision::RobotSolids* covers = nullptr);
 
 }  // namespace kinship::transfer

@@ -7,6 +7,7 @@
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "server/transfer/filters.hpp"
 
 namespace kinship::transfer {
 
@@ -29,14 +30,27 @@ class TargetArm {
   std::optional<inverse::LaneMarks> marks_;
 };
 
+/// Solids around a robot's meshes, asked before the meshes: what is apart for them is apart.
+struct MeshCovers {
+  collision::RobotSolids solids;
+  /// Links that are compared by their meshes and not by these solids; nothing: there are none.
+  std::optional<collision::RobotSolids> uncovered;
+};
+
 /// Preparation common to all transfers to one robot, from any source and at any placement.
 /// Immutable, may be shared between threads.
 struct TargetRobot {
   /// \throws Failure(InvalidInput), see RobotSolids.
-  TargetRobot(const kinematics::Chain& chain, const geometry::RobotShapes& shapes);
+  /// \param covers  null, or the shapes with solids around their meshes.
+  TargetRobot(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
+              const geometry::RobotShapes* covers = nullptr);
 
   std::shared_ptr<const TargetArm> arm;  ///< pairs of arms share it
   collision::RobotSolids solids;         ///< for its filters
+  std::optional<MeshCovers> covers;      ///< asked first
 };
+
+/// Keeps the configurations in which the robot does not touch itself, as collision_filter().
+ConfigurationFilter self_filter(const TargetRobot& robot);
 
 }  // namespace kinship::transfer

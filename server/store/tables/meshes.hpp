@@ -8,8 +8,8 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/link_mesh.hpp"
-#include "server/store/robot_store.hpp"
 #include "server/store/session.hpp"
+#include "server/store/store.hpp"
 
 /// The contents of robots' meshes, by digest.
 namespace kinship::store {

@@ -67,7 +67,8 @@ TEST(VerbRules, ARoleMayWhatItIsForAndWhatTheOneBeforeItMay) {
                                         "cancel_job",
                                         "job_rows",
                                         "list_attempts",
-                                        "find_attempts"};
+                                        "find_attempts",
+                                        "list_meshes"};
   EXPECT_EQ(allowed(named("r", AccessRole::Reader)), reader);
   std::set<std::string> more = reader;
   for (const char* const name :
