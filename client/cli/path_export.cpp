@@ -219,9 +219,8 @@ class TrajectoryFiles {
   }
 
   static constexpr const char* kTimes =
-      "Times: every segment takes what its slowest joint needs at the velocity limit of the URDF "
-      "(1 rad/s or 0.25 m/s where there is none); a URDF has no limits of acceleration, so a "
-      "controller that needs them parameterises the path anew.";
+      "Times: the shortest under the velocity limits of the URDF (1 rad/s or 0.25 m/s where there "
+      "is none); a URDF has no limits of acceleration.";
 
  private:
   void write(const std::filesystem::path& file, const std::string& text) const {
