@@ -55,7 +55,7 @@ using Directory = std::function<Result<Caller>(const std::string& name)>;
 struct ParticipantOptions {
   std::uint32_t domain = 0;  ///< 0 to kMaxDomain
   Role role = Role::Client;
-  std::uint32_t place = 0;  ///< of a server, below kServerPlaces
+  std::uint32_t place = 0;           ///< of a server, below kServerPlaces
   std::string server = "127.0.0.1";  ///< client: host of kinshipd
   /// E.g. "eth0". Empty: at a server, or for a server on a loopback address, "lo"; otherwise
   /// Cyclone DDS chooses.
@@ -80,9 +80,8 @@ std::array<std::uint16_t, 2> server_ports(std::uint32_t domain, std::uint32_t pl
 /// \throws Failure(InvalidInput) for an invalid name.
 std::string chosen_interface(const ParticipantOptions& options);
 
-/// The configuration of Cyclone DDS for a participant, as XML: a star over unicast; of a RosNode, what
-/// ROS 2 nodes have.
-/// \throws Failure(InvalidInput) for an invalid domain or host.
+/// The configuration of Cyclone DDS for a participant, as XML: a star over unicast; of a RosNode,
+/// what ROS 2 nodes have. \throws Failure(InvalidInput) for an invalid domain or host.
 std::string cyclone_configuration(const ParticipantOptions& options);
 
 /// A note that CYCLONEDDS_URI is set, with its value and consequence, to append to a message about

@@ -47,7 +47,9 @@ class AnswerLine {
                                      "writer " + topics.answer)) {}
 
   const dds::MatchedReaders& readers() const noexcept { return readers_; }
-  bool reaches(const dds::Sender& sender) const { return readers_.has(writer_, sender.participant); }
+  bool reaches(const dds::Sender& sender) const {
+    return readers_.has(writer_, sender.participant);
+  }
   void write(const void* sample) const noexcept { dds_write(writer_.get(), sample); }
 
   bool begin(const Place& place) {
@@ -139,8 +141,7 @@ class Channel::Implementation {
       });
     for (int served = 0; served < kInTurn; ++served) {
       take_questions();
-      auto next =
-          waiting_.pop(waiting_.holds_some() ? dds::WaitLoop::Clock::now() : Queue::kNever);
+      auto next = waiting_.pop(waiting_.holds_some() ? dds::WaitLoop::Clock::now() : Queue::kNever);
       if (!next)
         break;
       serve(next->second.answering);
@@ -176,12 +177,11 @@ class Channel::Implementation {
     const Place place{known->client, head};
     if (!line_->begin(place))
       return;
-    const Question question(std::make_shared<Question::State>(
-        line_, place,
-        Caller{.client = known->client,
-               .role = AccessRole::Admin,
-               .is_local = known->is_local,
-               .address = known->address}));
+    const Question question(std::make_shared<Question::State>(line_, place,
+                                                              Caller{.client = known->client,
+                                                                     .role = AccessRole::Admin,
+                                                                     .is_local = known->is_local,
+                                                                     .address = known->address}));
     Answering answering = read(sample, question);
     if (!answering)
       return;

@@ -50,8 +50,8 @@ void write_placement(const Poses& from, Arena& arena, Numbers& to) {
 
 /// Whole milliseconds; what no message of Kinship can say is said as the most that it can.
 std::uint32_t milliseconds(std::string_view what, const wire::Duration& duration, Rules& rules) {
-  rules.that(duration.sec >= 0, std::string(what) + ": " + std::to_string(duration.sec) +
-                                    " s, must not be negative");
+  rules.that(duration.sec >= 0,
+             std::string(what) + ": " + std::to_string(duration.sec) + " s, must not be negative");
   const std::int64_t ms = std::int64_t{1000} * duration.sec + duration.nanosec / 1'000'000;
   return static_cast<std::uint32_t>(
       std::clamp<std::int64_t>(ms, 0, std::numeric_limits<std::uint32_t>::max()));

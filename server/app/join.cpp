@@ -121,8 +121,7 @@ std::uint32_t choose_place(const ServerOptions& options, const std::string& addr
     return 0;
   const auto server = ask_server(options, address);
   if (!place || server || taken->holder.program == kProgram)
-    throw Failure(ErrorCode::Unavailable,
-                  explain(options, *taken, server));
+    throw Failure(ErrorCode::Unavailable, explain(options, *taken, server));
   spdlog::info("domain {}: {} has UDP port {}; takes place {}, port {}", options.domain,
                describe(taken->holder), taken->port, *place,
                dds::discovery_port(options.domain, *place));

@@ -31,8 +31,8 @@ class Node {
   /// it serves.
   void announce(const Announcement& announcement);
 
-  /// Serves a service for as long as it lives. Its end takes no more questions, and returns when the
-  /// one that is being read has been read; answers of the service still leave.
+  /// Serves a service for as long as it lives. Its end takes no more questions, and returns when
+  /// the one that is being read has been read; answers of the service still leave.
   class Serving {
    public:
     /// One for each node. \param node, service  outlive the object.

@@ -73,8 +73,7 @@ class QuestionsServed::Implementation {
             participant, kinship_msgs_msg_dds__Distribution__desc, "rt/kinship/distribution",
             node_qos(Durability::TransientLocal, kKeptDistributions))) {
     const auto open = [&](const ChannelTopics& topics, Channel::Reading reading) {
-      channels_.push_back(
-          std::make_unique<Channel>(participant, loop, topics, std::move(reading)));
+      channels_.push_back(std::make_unique<Channel>(participant, loop, topics, std::move(reading)));
     };
     open_topics(open);
     open_services(open);
@@ -85,11 +84,11 @@ class QuestionsServed::Implementation {
       service_.fetches().fetch(
           each.query, each.client + " follow " + announcement.distribution_id.hex(),
           [this, client = each.client](const FetchReply& reply) {
-            with_distribution(reply, client, [outlet = distributions_](
-                                                 const Message<wire::Distribution>* newer) {
-              if (newer)
-                outlet->write(&newer->wire);
-            });
+            with_distribution(reply, client,
+                              [outlet = distributions_](const Message<wire::Distribution>* newer) {
+                                if (newer)
+                                  outlet->write(&newer->wire);
+                              });
           });
   }
 
@@ -305,8 +304,7 @@ class QuestionsServed::Implementation {
     const auto answer = [question, send, uuid](const Result<ServerStatus>& status) {
       send(question, to_status(status, uuid).wire);
     };
-    if (const auto refusal =
-            service_.admit(question.caller().client, size_of(message).bytes)) {
+    if (const auto refusal = service_.admit(question.caller().client, size_of(message).bytes)) {
       answer(Error{ErrorCode::Unavailable, refusal->message});
       return {};
     }

@@ -30,8 +30,8 @@ class RegistrationService {
               const std::function<void(const RegisterReply&)>& done);
 
   /// Robots, from memory where possible; those that are not registered are missing. An error says
-  /// why one cannot be read now: the store's error, or Unavailable if too many tasks wait. `done` is
-  /// called at most once; not if the server is stopping.
+  /// why one cannot be read now: the store's error, or Unavailable if too many tasks wait. `done`
+  /// is called at most once; not if the server is stopping.
   using Robots = std::map<Digest, Result<runtime::RobotRegistry::RobotPointer>>;
   void find_robots(const std::set<Digest>& robots, std::function<void(const Robots&)> done,
                    const std::string& client);

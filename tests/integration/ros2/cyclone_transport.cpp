@@ -16,7 +16,8 @@ dds_entity_t checked(dds_entity_t handle) {
   return handle;
 }
 
-/// As rmw_cyclonedds has it with ROS_LOCALHOST_ONLY: the loopback interface, other nodes by unicast.
+/// As rmw_cyclonedds has it with ROS_LOCALHOST_ONLY: the loopback interface, other nodes by
+/// unicast.
 class CycloneTransport final : public Transport {
  public:
   explicit CycloneTransport(std::uint32_t domain) {

@@ -1,3 +1,4 @@
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -7,7 +8,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 #include <cstring>
 #include <functional>
@@ -19,8 +19,8 @@
 namespace kinship::test {
 namespace {
 
-using namespace eprosima::fastdds;         // NOLINT: what the whole file is about
-using namespace eprosima::fastdds::dds;    // NOLINT
+using namespace eprosima::fastdds;       // NOLINT: what the whole file is about
+using namespace eprosima::fastdds::dds;  // NOLINT
 namespace rtps = eprosima::fastrtps::rtps;
 
 using Bytes = std::vector<std::uint8_t>;
@@ -93,7 +93,8 @@ class FastTransport final : public Transport {
     qos.history().depth = 10;
     qos.durability().kind = VOLATILE_DURABILITY_QOS;
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-    writers_.push_back(checked(publisher_->create_datawriter(make_topic(topic, type), qos), "writer"));
+    writers_.push_back(
+        checked(publisher_->create_datawriter(make_topic(topic, type), qos), "writer"));
     return static_cast<int>(writers_.size()) - 1;
   }
 
@@ -165,8 +166,8 @@ class FastTransport final : public Transport {
     while (!does_hold && std::chrono::steady_clock::now() < deadline) {
       const std::chrono::nanoseconds left = deadline - std::chrono::steady_clock::now();
       ConditionSeq active;
-      waitset.wait(active, eprosima::fastrtps::Duration_t(
-                               static_cast<long double>(left.count()) / 1e9L));
+      waitset.wait(active,
+                   eprosima::fastrtps::Duration_t(static_cast<long double>(left.count()) / 1e9L));
       does_hold = holds();
     }
     waitset.detach_condition(condition);

@@ -1,5 +1,5 @@
-// A ROS 2 node as far as kinshipd sees it: rosidl's messages over a middleware of ROS. Each verb prints what is answered, one
-// line each, and ends with 0; with 1 if nothing is answered.
+// A ROS 2 node as far as kinshipd sees it: rosidl's messages over a middleware of ROS. Each verb
+// prints what is answered, one line each, and ends with 0; with 1 if nothing is answered.
 
 #include <messages.h>
 #include <ros_messages.h>
@@ -41,8 +41,8 @@ constexpr std::chrono::seconds kResend{1};
     using Ros = kinship_msgs__##KIND##__##NAME;                                                    \
     using Wire = kinship_msgs_##KIND##_dds__##NAME##_;                                             \
     static const rosidl_message_type_support_t* support() {                                        \
-      return ROSIDL_TYPESUPPORT_INTERFACE__MESSAGE_SYMBOL_NAME(                                    \
-          rosidl_typesupport_introspection_c, kinship_msgs, KIND, NAME)();                         \
+      return ROSIDL_TYPESUPPORT_INTERFACE__MESSAGE_SYMBOL_NAME(rosidl_typesupport_introspection_c, \
+                                                               kinship_msgs, KIND, NAME)();        \
     }                                                                                              \
     static TopicType type() {                                                                      \
       return {"kinship_msgs::" #KIND "::dds_::" #NAME "_",                                         \
@@ -298,10 +298,9 @@ bool print_distribution(Transport& node, int reader, std::uint64_t revision) {
 
 /// With `more=N` also N later revisions.
 int fetch(Transport& node, const Options& options) {
-  const int reader =
-      node.open_reader("rt/kinship/distribution", Distribution::type(), true);
-  const auto answer = ask<DistributionQuery, DistributionAnswer>(node, "fetch", "fetched",
-                                                                 query_of(options));
+  const int reader = node.open_reader("rt/kinship/distribution", Distribution::type(), true);
+  const auto answer =
+      ask<DistributionQuery, DistributionAnswer>(node, "fetch", "fetched", query_of(options));
   if (!answer)
     return none();
   print(*answer);
@@ -328,8 +327,7 @@ int call_fetch(Transport& node, const Options& options) {
 
 /// What was published before it came.
 int listen(Transport& node, const Options& /*options*/) {
-  const int reader =
-      node.open_reader("rt/kinship/distribution", Distribution::type(), true);
+  const int reader = node.open_reader("rt/kinship/distribution", Distribution::type(), true);
   return print_distribution(node, reader, 0) ? 0 : none();
 }
 

@@ -14,14 +14,14 @@ namespace kinship::test {
 
 /// A message to be written, in both forms: the one that the middleware takes is used.
 struct Outgoing {
-  const void* sample = nullptr;          ///< idlc's structure
-  std::vector<std::uint8_t> cdr;         ///< with its encapsulation
+  const void* sample = nullptr;   ///< idlc's structure
+  std::vector<std::uint8_t> cdr;  ///< with its encapsulation
 };
 
 /// A topic by the names that ROS gives it.
 struct TopicType {
-  std::string name;                       ///< kinship_msgs::msg::dds_::Receipt_
-  const dds_topic_descriptor* descriptor; ///< idlc's
+  std::string name;                        ///< kinship_msgs::msg::dds_::Receipt_
+  const dds_topic_descriptor* descriptor;  ///< idlc's
 };
 
 class Transport {

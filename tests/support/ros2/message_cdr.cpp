@@ -103,8 +103,7 @@ class Parser {
   explicit Parser(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
   void number(void* place, std::size_t size, const Member& /*member*/) {
-    position_ =
-        (position_ - kEncapsulationBytes + size - 1) / size * size + kEncapsulationBytes;
+    position_ = (position_ - kEncapsulationBytes + size - 1) / size * size + kEncapsulationBytes;
     std::memcpy(place, take(size), size);
   }
   void text(String& text) {

@@ -89,8 +89,7 @@ TEST(RosQuestions, ASolidHasTheDimensionsOfItsKind) {
   sent.add_object(3, {0.5, 0.1});  // CYLINDER: height, radius
   const PathReport report = read(sent.path).value();
   ASSERT_EQ(report.request.attempts.size(), 1U) << refusal_of(sent.path);
-  const ShapeNumbers shape =
-      to_numbers(report.request.attempts[0].scene->objects.at(0).shape);
+  const ShapeNumbers shape = to_numbers(report.request.attempts[0].scene->objects.at(0).shape);
   EXPECT_EQ(shape.kind, 1U);
   EXPECT_EQ(shape.sizes[0], 0.1);
   EXPECT_EQ(shape.sizes[1], 0.5);

@@ -30,8 +30,7 @@ class RosWire : public testing::Test {
 
   /// With the four bytes of the encapsulation, without padding at the end.
   std::vector<std::uint8_t> sent(const dds_topic_descriptor_t& type, const void* sample) const {
-    const dds_entity_t topic =
-        dds_create_topic(participant_, &type, "a_topic", nullptr, nullptr);
+    const dds_entity_t topic = dds_create_topic(participant_, &type, "a_topic", nullptr, nullptr);
     const dds_entity_t reader = dds_create_reader(participant_, topic, nullptr, nullptr);
     const dds_entity_t writer = dds_create_writer(participant_, topic, nullptr, nullptr);
     EXPECT_EQ(dds_write(writer, sample), DDS_RETCODE_OK);
