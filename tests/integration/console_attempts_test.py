@@ -6,44 +6,17 @@ import re
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "docs" / "drawings"))
 import console as drawings  # noqa: E402
 from browser import Browser  # noqa: E402
+from served_console import Reports  # noqa: E402
 
 TASK = drawings.TASK
 _3D = ("three", "OrbitControls")  # the library of 3D, which has no bar
 _MOST_BYTES, _MOST_PAINT_MS = 300_000, 500
-
-
-class Load:
-    """A robot that reports, ten attempts a second or so, while its `with` lasts."""
-
-    def __init__(self, console: drawings.FilledConsole):
-        self._console, self._end = console, threading.Event()
-        self._file = console.server.folder / "load.jsonl"
-        self._lines = [json.loads(line) for line in console.run("kinship", "paths", "export", "--task", TASK, "--robot", "ur10e").splitlines()]
-        self._lines = [line for line in self._lines if "report_uuid" in line]
-        self._thread = threading.Thread(target=self._run)
-
-    def _run(self) -> None:
-        number = 0
-        while not self._end.wait(1):
-            attempts = [dict(line, task="load", report_uuid=f"00000000-0000-4000-8000-{number + i:012d}") for i, line in enumerate(self._lines[:10])]
-            number += len(attempts)
-            self._file.write_text("".join(json.dumps(each) + "\n" for each in attempts))
-            self._console.run("kinship", "paths", "import", str(self._file))
-
-    def __enter__(self) -> "Load":
-        self._thread.start()
-        return self
-
-    def __exit__(self, *exception) -> None:
-        self._end.set()
-        self._thread.join()
 
 
 class Attempts(unittest.TestCase):
@@ -91,7 +64,7 @@ class Attempts(unittest.TestCase):
         raise AssertionError(f"no failed attempt with trees: {needs_trees}")
 
     def test_a_row_says_why(self):
-        self.open("/slow")
+        self.open(f"/slow?task={TASK}")
         rows = {row["attempt"]: row for row in self.table("Unsolved")}
         self.assertEqual(set(rows), {row["report_uuid"][:8] for row in self.failed})
         self.assertGreater(len(rows), 3)
@@ -210,7 +183,7 @@ class Attempts(unittest.TestCase):
         solved = next(row["report_uuid"] for row in self.rows if row["record"]["outcome"] == "solved")
         paths = ["/", "/robots", "/tasks", "/distributions", "/slow", "/jobs", "/audit", "/clients", "/robots/ur10e", f"/tasks/{TASK}",
                  f"/distributions/{distribution}", f"/paths/{solved}", f"/attempts/{self.failed[0]['report_uuid']}"]
-        with Load(self.console):
+        with Reports(self.give, 10, "ur10e"):
             plain = min(self.paint("/assets/console.css") for _ in range(3))  # the browser's own share, on a machine that other tests use too
             for path in paths:
                 with self.subTest(path=path):
@@ -229,6 +202,11 @@ class Attempts(unittest.TestCase):
                     self.assertLess(size, _MOST_BYTES)
                     self.assertLess(paint - plain, _MOST_PAINT_MS)
                     self.browser.check_console(self)
+
+    def give(self, attempts: "list[dict]") -> None:
+        file = self.console.server.folder / "load.jsonl"
+        file.write_text("".join(json.dumps(each) + "\n" for each in attempts))
+        self.console.run("kinship", "paths", "import", str(file))
 
     def paint(self, path: str) -> float:
         self.browser.driver.get(f"http://{self.console.host}{path}")

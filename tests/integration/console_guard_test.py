@@ -20,7 +20,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 from browser import Browser
 from kinshipd_process import Kinshipd
-from served_console import MODELS, ServedConsole, attempt
+from served_console import MODELS, Reports, ServedConsole, attempt
 
 
 def processor_time_s(pid: int) -> float:
@@ -90,14 +90,6 @@ class Guard(unittest.TestCase):
     def test_ten_open_pages_cost_little_while_robots_report(self):
         """Two hundred reports a second, with and without ten pages that listen, by turns, as what else runs makes both dearer."""
         self.console.kinship("robots", "register", str(MODELS / "panda"))
-        end = threading.Event()
-
-        def report() -> None:
-            first = 0
-            while not end.wait(max(0, 1 - time.monotonic() % 1)):
-                self.console.give([attempt("panda", first + i, task="load") for i in range(200)])
-                first += 200
-
         def share_of_a_core() -> float:
             begin, time_s = time.monotonic(), processor_time_s(self.console.server.pid)
             time.sleep(4)
@@ -123,14 +115,9 @@ class Guard(unittest.TestCase):
                     listener.close()
                 self.assertGreaterEqual(min(read), 3)
 
-        reports = threading.Thread(target=report)
-        reports.start()
-        try:
+        with Reports(self.console.give, 200):
             time.sleep(2)  # until they come evenly
             shares = [(with_pages(), share_of_a_core()) for _ in range(4)]
-        finally:
-            end.set()
-            reports.join()
         paged, bare = (statistics.median(each) for each in zip(*shares))
         print(f"200 reports a second: {100 * paged:.2f} % of a core with ten open pages, {100 * bare:.2f} % without")
         self.assertGreater(int(json.loads(self.console.kinship("status", "--json"))["attempts"]), 4000)

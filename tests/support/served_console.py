@@ -6,6 +6,8 @@ import pathlib
 import re
 import socket
 import subprocess
+import threading
+import time
 import uuid
 
 import numpy as np
@@ -28,6 +30,28 @@ def attempt(robot: str, seed: int, task: str = TASK, **record) -> dict:
     return {"report_uuid": str(uuid.UUID(int=seed + 1000 * sum((robot + task).encode()))), "task": task, "robot": robot, "machine": MACHINE,
             "T_task_base": [0, 0, 0, 0, 0, 0, 1], "waypoints": waypoints.tolist() if known["outcome"] == "solved" else None,
             "record": known, "scene": None}
+
+
+class Reports:
+    """A robot that reports so many attempts a second, while its `with` lasts."""
+
+    def __init__(self, give, a_second: int, robot: str = "panda"):
+        self._give, self._a_second, self._robot = give, a_second, robot
+        self._end, self._thread = threading.Event(), threading.Thread(target=self._run)
+
+    def _run(self) -> None:
+        first = 0
+        while not self._end.wait(1 - time.monotonic() % 1):
+            self._give([attempt(self._robot, first + i, task="load") for i in range(self._a_second)])
+            first += self._a_second
+
+    def __enter__(self) -> "Reports":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *exception) -> None:
+        self._end.set()
+        self._thread.join()
 
 
 class ServedConsole:

@@ -15,12 +15,20 @@
     return loaded;
   }
 
-  /// Once what is there is painted, so that nobody waits for a figure's programs before he sees a page; in a window that is not
-  /// seen, soon.
-  const painted = () => new Promise((done) => {
-    requestAnimationFrame(() => setTimeout(done));
-    setTimeout(done, 200);
-  });
+  /// Once the page has painted something, so that nobody waits for a figure's programs before he sees a page; at once in a window
+  /// that is not seen.
+  function painted() {
+    const isKnown = (PerformanceObserver.supportedEntryTypes || []).includes("paint");
+    if (!isKnown || document.hidden || performance.getEntriesByName("first-contentful-paint").length) return Promise.resolve();
+    return new Promise((done) => {
+      new PerformanceObserver((list, observer) => {
+        if (list.getEntriesByName("first-contentful-paint").length === 0) return;
+        observer.disconnect();
+        done();
+      }).observe({type: "paint", buffered: true});
+      document.addEventListener("visibilitychange", done, {once: true});
+    });
+  }
 
   /// \param change  what an administrator may do: [text, verb]
   function figurePage(kind, folder, change) {
