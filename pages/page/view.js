@@ -246,13 +246,14 @@ const kinshipView = (() => {
       drawing.draw();
       return layers[index].shown;
     };
+    const picks = view.onPick ? " Click a line to pick it." : "";
     const hint = isTurnable
       ? make("div", {class: "hint"},
-             make("span", {}, matchMedia("(pointer: coarse)").matches
+             make("span", {}, (matchMedia("(pointer: coarse)").matches
                ? "Tap it, then drag to turn and pinch to zoom."
-               : "Drag to turn. Click it, then scroll to zoom; or use the arrow keys, + and \u2212." + (view.onPick ? " Click a line to pick it." : "")),
+               : "Drag to turn. Click it, then scroll to zoom; or use the arrow keys, + and \u2212.") + picks),
              make("button", {type: "button", onclick: again}, "Reset view"))
-      : make("div", {class: "hint"}, "A still projection: this browser has no WebGL.");
+      : make("div", {class: "hint"}, "A still projection: this browser has no WebGL." + picks);
     figure.classList.add("view");
     figure.append(legendOf(layers, toggle), stage, hint);
     const drawing = (isTurnable ? turnable : still)(stage, canvas, view.from);

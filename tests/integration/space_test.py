@@ -193,6 +193,18 @@ class Space(unittest.TestCase):
         self.browser.click("[data-robot=panda]")
         self.assertEqual((self.picked(), self.count("picked")["ways"]), ([], 0), "what is brushed away is not picked")
 
+    # Pixels between a place and a line in the picture.
+    FROM_LINE = """const {width, height} = document.querySelector('#space canvas').getBoundingClientRect(), [place, line] = arguments;
+      const at = (p) => { const v = new THREE.Vector3(...p).project(shown.drawing.camera); return [v.x * width / 2, v.y * height / 2]; };
+      const here = at(place);
+      let least = Infinity;
+      for (let k = 3; k < line.length; k += 3)
+        for (let part = 0; part <= 1; part += 0.01) {
+          const there = at([0, 1, 2].map((i) => line[k - 3 + i] + part * (line[k + i] - line[k - 3 + i])));
+          least = Math.min(least, Math.hypot(there[0] - here[0], there[1] - here[1]));
+        }
+      return least;"""
+
     def click_in_picture(self, place: str, *arguments) -> None:
         """\\param place  JavaScript, which gives a place in the picture, its sides being -1 and 1."""
         self.browser.run("document.querySelector('#space canvas').scrollIntoView({block: 'center', behavior: 'instant'})")
@@ -211,6 +223,12 @@ class Space(unittest.TestCase):
         row = self.browser.run("const row = document.querySelector('[aria-current=true]'), list = row.closest('.list').getBoundingClientRect(),"
                                "here = row.getBoundingClientRect(); return here.top >= list.top && here.bottom <= list.bottom")
         self.assertTrue(row, "it is seen")
+        paths = {path["uuid"]: path["hand"] for path in data["paths"]}
+        for given in self.given[:5]:  # in the crowd: the nearest one, which another may be
+            place = [n / 1000 for n in paths[given["report_uuid"]][3:6]]
+            self.click_in_picture("new THREE.Vector3(...arguments[0]).project(shown.drawing.camera)", place)
+            [picked] = self.picked()
+            self.assertLess(self.browser.run(self.FROM_LINE, place, [n / 1000 for n in paths[picked]]), 1.5, "pixels from the click")
         self.click_in_picture("{x: -0.95, y: -0.95}")
         self.assertEqual(self.picked(), [], "beside all of them")
 
