@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class Offline : public testing::Test {
  protected:
-  Offline() { fs::copy_file(test::source_dir() + "/tests/golden/store-3.db", store_); }
+  Offline() { fs::copy_file(test::source_dir() + "/tests/golden/store-4.db", store_); }
 
   int run(OfflineVerb verb, const fs::path& store, const fs::path& file = {}, bool json = false) {
     out_.str("");
@@ -33,7 +33,7 @@ class Offline : public testing::Test {
 
 TEST_F(Offline, TheVerbsDoWhatTheySay) {
   EXPECT_EQ(run(OfflineVerb::Migrate, store_), kDone) << err_.str();
-  EXPECT_EQ(out_.str(), "store '" + store_.string() + "': schema 3 already\n");
+  EXPECT_EQ(out_.str(), "store '" + store_.string() + "': schema 4 already\n");
   EXPECT_EQ(run(OfflineVerb::Backup, store_, copy_), kDone) << err_.str();
   EXPECT_EQ(run(OfflineVerb::Restore, store_, copy_), kDone) << err_.str();
   EXPECT_NE(out_.str().find(store_.string() + ".replaced-"), std::string::npos) << out_.str();

@@ -8,7 +8,7 @@
 #include "server/transfer/scene_filter.hpp"
 #include "server/transfer/target_robot.hpp"
 #include "tests/support/box_mesh.hpp"
-#include "tests/support/random_chain.hpp"
+#include "tests/support/robots.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::transfer::covered_filter_test {
