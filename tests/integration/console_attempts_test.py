@@ -11,40 +11,21 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "docs" / "drawings"))
 import console as drawings  # noqa: E402
-from browser import Browser  # noqa: E402
-from served_console import Reports  # noqa: E402
+from served_console import ConsoleTest, Reports  # noqa: E402
 
 TASK = drawings.TASK
 _3D = ("three", "OrbitControls")  # the library of 3D, which has no bar
 _MOST_BYTES, _MOST_PAINT_MS = 300_000, 500
 
 
-class Attempts(unittest.TestCase):
+class Attempts(ConsoleTest):
     @classmethod
     def setUpClass(cls):
         cls.console = drawings.FilledConsole()
         cls.addClassCleanup(cls.console.close)
         cls.rows = cls.console.attempts()
         cls.failed = [row for row in cls.rows if row["record"]["outcome"] != "solved"]
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-        cls.browser.driver.get(cls.console.link)
-        cls.browser.wait("document.querySelector('main[data-ready]')")
-
-    def setUp(self):
-        self.browser.prefer("light")
-        self.browser.resize(1280, 900)
-
-    def tearDown(self):
-        self.browser.check_console(self)
-
-    def open(self, path: str) -> None:
-        self.browser.driver.get(f"http://{self.console.host}{path}")
-        self.ready()
-
-    def ready(self) -> None:
-        self.browser.wait("document.querySelector('main').dataset.ready === location.pathname")
-        self.assertEqual(self.browser.elements("main > .page > [role=alert]"), [], self.browser.text("main"))
+        super().setUpClass()
 
     def table(self, label: str) -> "list[dict]":
         """Rows by their heads."""

@@ -6,11 +6,10 @@ import urllib.parse
 
 from selenium.webdriver.common.keys import Keys
 
-from browser import Browser
-from served_console import MACHINE, MODELS, READY, TASK, Reports, ServedConsole, attempt
+from served_console import MACHINE, MODELS, READY, TASK, ConsoleTest, Reports, ServedConsole, attempt
 
 
-class Pages(unittest.TestCase):
+class Pages(ConsoleTest):
     @classmethod
     def setUpClass(cls):
         cls.console = ServedConsole()
@@ -30,25 +29,7 @@ class Pages(unittest.TestCase):
         own.append(attempt("panda", 51, task="other", planning_time_s=7.5))
         cls.console.give(own)
         cls.console.kinship("backup", "monday.db")
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-        cls.browser.driver.get(cls.console.link)
-        cls.browser.wait("document.querySelector('main[data-ready]')")
-
-    def setUp(self):
-        self.browser.prefer("light")
-        self.browser.resize(1280, 900)
-
-    def tearDown(self):
-        self.browser.check_console(self)
-
-    def open(self, path: str) -> None:
-        self.browser.driver.get(f"http://{self.console.host}{path}")
-        self.ready()
-
-    def ready(self) -> None:
-        self.browser.wait("document.querySelector('main').dataset.ready === location.pathname")
-        self.assertEqual(self.browser.elements("main > .page > [role=alert]"), [], self.browser.text("main"))
+        super().setUpClass()
 
     def table(self, label: str) -> "list[list[str]]":
         return self.browser.run("return [...document.querySelector(`table[aria-label=\"${arguments[0]}\"]`).tBodies[0].rows]"

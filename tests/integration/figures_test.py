@@ -7,7 +7,7 @@ import uuid
 
 import numpy as np
 
-from browser import Browser, share_drawn, touches_border
+from browser import BrowserTest, share_drawn, touches_border
 from kinshipd_process import MODELS, Kinshipd
 from strict_server import StrictServer, taken_apart
 
@@ -59,7 +59,7 @@ def meshed_urdf() -> str:
             f"<joint name='j2' type='revolute'><parent link='one'/><child link='two'/><origin xyz='0.5 0 0'/>{joint}</robot>")
 
 
-class Figures(unittest.TestCase):
+class Figures(BrowserTest):
     @classmethod
     def setUpClass(cls):
         cls.server = cls.enterClassContext(Kinshipd())
@@ -76,21 +76,7 @@ class Figures(unittest.TestCase):
         for robot in ("panda", "panda_lift"):
             cls.kinship("robots", "plot", robot, "--output", str(cls.folder / f"{robot}.html"))
         cls.kinship("paths", "plot", SOLVED, "--output", str(cls.folder / "path.html"))
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-
-    def setUp(self):
-        self.browser.resize(1280, 900)
-        self.browser.prefer("light")
-
-    def tearDown(self):
-        self.browser.check_console(self)
-
-    def load(self, page: str) -> dict:
-        """\\return  the data that the page carries."""
-        self.browser.load(self.folder / page)
-        self.browser.settle()
-        return self.browser.run("return kinshipPage.data")
+        super().setUpClass()
 
     def count(self, layer: str) -> dict:
         return self.browser.run("return shown.count(arguments[0])", layer)

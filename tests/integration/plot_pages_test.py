@@ -8,7 +8,7 @@ import uuid
 
 import numpy as np
 
-from browser import Browser, pixels_of, share_drawn
+from browser import BrowserTest, pixels_of, share_drawn
 from kinshipd_process import Kinshipd
 from strict_server import StrictServer, taken_apart
 
@@ -37,7 +37,7 @@ def digits(text: str) -> str:
     return text.replace("\u202f", "")
 
 
-class PlotPages(unittest.TestCase):
+class PlotPages(BrowserTest):
     @classmethod
     def setUpClass(cls):
         cls.server = cls.enterClassContext(Kinshipd())
@@ -62,21 +62,7 @@ class PlotPages(unittest.TestCase):
         cls.kinship("distributions", "plot", cls.first["id"], "--output", str(cls.folder / "distribution.html"))
         cls.kinship("tasks", "plot", TASK, "--output", str(cls.folder / "task.html"))
         cls.compared = json.loads(cls.kinship("robots", "compare", "--task", TASK, "--json", "--output", str(cls.folder / "worths.html")))
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-
-    def setUp(self):
-        self.browser.resize(1280, 900)
-        self.browser.prefer("light")
-
-    def tearDown(self):
-        self.browser.check_console(self)
-
-    def load(self, page: str) -> dict:
-        """\\return  the data that the page carries."""
-        self.browser.load(self.folder / page)
-        self.browser.settle()
-        return self.browser.run("return kinshipPage.data")
+        super().setUpClass()
 
     def table(self, selector: str) -> "list[list[str]]":
         return self.browser.run("return [...document.querySelector(arguments[0]).rows].map(row => [...row.cells].map(cell => cell.textContent))",

@@ -7,9 +7,9 @@ import uuid
 import numpy as np
 from selenium.webdriver.common.keys import Keys
 
-from browser import Browser, pixels_of, share_drawn
-from console_test import ServedConsole
+from browser import pixels_of, share_drawn
 from kinshipd_process import MODELS
+from served_console import ConsoleTest, ServedConsole
 
 TASK = "load:store"
 READY = {"panda": np.array([0, -0.785, 0, -2.356, 0, 1.571, 0.785]), "ur10e": np.array([0, -1.2, 1.8, -2.2, -1.57, 0])}
@@ -42,7 +42,7 @@ def raised() -> dict:
     return attempt("panda", COUNTS["panda"] - 1, waypoints=waypoints, scene=scene(0.9))
 
 
-class Space(unittest.TestCase):
+class Space(ConsoleTest):
     @classmethod
     def setUpClass(cls):
         cls.console = ServedConsole()
@@ -61,28 +61,7 @@ class Space(unittest.TestCase):
                     for profile in ("default", "default,components=3")]
         cls.server.kinship("tasks", "plot", TASK, "--output", str(cls.folder / "task.html"))
         cls.server.kinship("distributions", "plot", cls.kept[1]["id"], "--output", str(cls.folder / "distribution.html"))
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
-        cls.browser.driver.get(cls.console.link)
-        cls.browser.wait("document.querySelector('main[data-ready]')")
-
-    def setUp(self):
-        self.browser.resize(1280, 900)
-        self.browser.prefer("light")
-
-    def tearDown(self):
-        self.browser.check_console(self)
-
-    def load(self, page: str) -> dict:
-        """\\return  the data that the page carries."""
-        self.browser.load(self.folder / page)
-        self.browser.settle()
-        return self.browser.run("return kinshipPage.data")
-
-    def open(self, path: str) -> None:
-        self.browser.driver.get(f"http://{self.console.host}{path}")
-        self.browser.wait("document.querySelector('main').dataset.ready === location.pathname")
-        self.assertEqual(self.browser.elements("main > .page > [role=alert]"), [], self.browser.text("main"))
+        super().setUpClass()
 
     def count(self, layer: str) -> dict:
         return self.browser.run("return shown.count(arguments[0])", layer)

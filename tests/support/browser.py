@@ -6,6 +6,7 @@ import base64
 import io
 import pathlib
 import tempfile
+import unittest
 
 import numpy as np
 from PIL import Image
@@ -132,6 +133,30 @@ class Browser:
     def check_console(self, test) -> None:
         """For a unittest's tearDown: fails the test if the console holds errors."""
         test.assertEqual(self.console_errors(), [], "errors in the browser's console")
+
+
+class BrowserTest(unittest.TestCase):
+    """Tests of pages by one browser for all of a class; each begins in the same window, and fails by errors in the console.
+    Files are pages of `folder`, which a class sets."""
+
+    folder = pathlib.Path()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = cls.enterClassContext(Browser())
+
+    def setUp(self):
+        self.browser.resize(1280, 900)
+        self.browser.prefer("light")
+
+    def tearDown(self):
+        self.browser.check_console(self)
+
+    def load(self, page: str) -> dict:
+        """\return  the data that the page carries."""
+        self.browser.load(self.folder / page)
+        self.browser.settle()
+        return self.browser.run("return kinshipPage.data")
 
 
 def pixels_of(picture: np.ndarray, color: "tuple[int, int, int]", tolerance: int = 24) -> int:

@@ -12,6 +12,7 @@ import uuid
 
 import numpy as np
 
+from browser import BrowserTest
 from kinshipd_process import Kinshipd
 
 MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
@@ -101,3 +102,21 @@ class ServedConsole:
         listener = socket.create_connection((address, int(port)), timeout=30)
         listener.sendall(f"GET /api/events HTTP/1.1\r\nHost: {self.host}\r\nCookie: {self.cookie}\r\n\r\n".encode())
         return listener
+
+
+class ConsoleTest(BrowserTest):
+    """Tests of pages of a console, which has let the browser in; classes set `console` before their setUpClass() calls this one."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser.driver.get(cls.console.link)
+        cls.browser.wait("document.querySelector('main[data-ready]')")
+
+    def open(self, path: str) -> None:
+        self.browser.driver.get(f"http://{self.console.host}{path}")
+        self.ready()
+
+    def ready(self) -> None:
+        self.browser.wait("document.querySelector('main').dataset.ready === location.pathname")
+        self.assertEqual(self.browser.elements("main > .page > [role=alert]"), [], self.browser.text("main"))
