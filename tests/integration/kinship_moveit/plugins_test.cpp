@@ -39,10 +39,11 @@ class KINSHIP_FIXTURE : public PluginCell {
     }));
     return response;
   }
-  bool is_past_the_post(MotionPlanResponse& response) const {
+  bool is_past_the_post(MotionPlanResponse& response) const { return is_past(response, post()); }
+  bool is_past(MotionPlanResponse& response, const collision::Surroundings& surroundings) const {
     if (trajectory_of(response) == nullptr)
       return false;
-    collision::CollisionWorld world(cell_.solids, post());
+    collision::CollisionWorld world(cell_.solids, surroundings);
     for (std::size_t i = 0; i < trajectory_of(response)->getWayPointCount(); ++i)
       if (world.collides(trajectory_of(response)->getWayPoint(i).q))
         return false;
@@ -94,6 +95,20 @@ TEST_F(KINSHIP_FIXTURE, PlanAroundBoxesMeshesAndOctomaps) {
   tree->prune();  // leaves of 5 cm
   answer = plan_past(*planner, std::make_shared<shapes::OcTree>(tree), T, {});
   EXPECT_TRUE(is_past_the_post(answer));
+
+  // A block that is one leaf: whoever took its middle for all of it would touch the rest.
+  tree = std::make_shared<octomap::OcTree>(0.0125);
+  for (int i = 0; i < 16 * 16 * 16; ++i)
+    tree->updateNode(0.00625 + 0.0125 * (i % 16), 0.00625 + 0.0125 * (i / 16 % 16),
+                     0.00625 + 0.0125 * (i / 256), true);
+  tree->prune();
+  ASSERT_EQ(tree->getNumLeafNodes(), 1U);
+  collision::Surroundings block;
+  block.scene.objects.push_back(
+      {"block", BoxShape{{0.2, 0.2, 0.2}}, Eigen::Isometry3d(Eigen::Translation3d(0.6, 0, 0.4))});
+  answer = plan_past(*planner, std::make_shared<shapes::OcTree>(tree),
+                     Eigen::Isometry3d(Eigen::Translation3d(0.5, -0.1, 0.3)), {});
+  EXPECT_TRUE(is_past(answer, block));
 }
 
 TEST_F(KINSHIP_FIXTURE, MatrixAndAttachedBodiesCount) {
