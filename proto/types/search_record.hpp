@@ -77,8 +77,8 @@ std::size_t search_bytes(const SearchRecord& search);
 /// begins with "search".
 std::optional<Error> check_search(const SearchRecord& search);
 
-/// Why a query was not solved, in words of at most kMaxWhyBytes: the reason and the bodies that
-/// were in the way most often; empty if the record says neither.
+/// Why a query was not solved, in words of at most kMaxWhyBytes: the reason; of a search that was
+/// begun the bodies in the way, and how near to a goal it came. Empty if the record says nothing.
 std::string why_text(const SearchRecord& search);
 
 }  // namespace kinship
