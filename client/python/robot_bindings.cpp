@@ -127,8 +127,7 @@ Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
       py::arg("held") = std::map<std::string, double>(), py::arg("srdf") = py::none(),
       py::arg("packages") = std::map<std::string, std::string>(),
       py::arg("collision_from_visual") = false,
-      py::arg("without_collision") = std::vector<std::string>(),
-      py::arg("without_meshes") = false);
+      py::arg("without_collision") = std::vector<std::string>(), py::arg("without_meshes") = false);
 }
 
 void bind_properties(RobotClass& robot) {
