@@ -88,7 +88,9 @@ void add_distribution_plot(CLI::App& group, Session& session) {
   const auto query = std::make_shared<DistributionQuery>();
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command = add_command(
-      group, "plot", "A page that shows a distribution over its robot, the poses that were lost, its joints and its "
+      group, "plot",
+      "A page that shows a distribution over its robot, the poses that were lost, its joints and "
+      "its "
       "sources",
       "kinship distributions plot --task box_to_shelf --robot ur10e --output ur10e.html\n"
       "  kinship distributions plot 3f9a0c --output - > ur10e.html");

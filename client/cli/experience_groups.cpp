@@ -154,12 +154,13 @@ void add_tasks(CLI::App& app, Session& session) {
           {"show", "task", "Its name", "A task by name", "kinship tasks show box_to_shelf"},
           show_task);
   add_experience(*tasks, session);
-  add_plot(*tasks, session,
-           {"plot", "task", "Its name",
-            "A page that shows a task's paths in space, and its experience and the benefit of guidance "
-            "over time",
-            "kinship tasks plot box_to_shelf --output box_to_shelf.html"},
-           plot_task);
+  add_plot(
+      *tasks, session,
+      {"plot", "task", "Its name",
+       "A page that shows a task's paths in space, and its experience and the benefit of guidance "
+       "over time",
+       "kinship tasks plot box_to_shelf --output box_to_shelf.html"},
+      plot_task);
 
   struct Options {
     std::string task;

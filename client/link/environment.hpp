@@ -11,8 +11,8 @@ std::filesystem::path security_from_environment();
 std::filesystem::path token_from_environment();
 
 /// Options from the environment: KINSHIP_DOMAIN, 0 to 230, KINSHIP_SERVER, the server's host,
-/// KINSHIP_TIMEOUT, 0.01 to 86 400 s, and KINSHIP_SECURITY. A missing variable leaves the default of
-/// ClientOptions. \throws Failure(InvalidInput) for an invalid domain or timeout.
+/// KINSHIP_TIMEOUT, 0.01 to 86 400 s, and KINSHIP_SECURITY. A missing variable leaves the default
+/// of ClientOptions. \throws Failure(InvalidInput) for an invalid domain or timeout.
 ClientOptions options_from_environment();
 
 }  // namespace kinship::link

@@ -35,7 +35,7 @@ struct RobotArguments {
   std::filesystem::path srdf = {};         ///< its disabled pairs are added to the folder's
   std::vector<std::string> packages = {};  ///< "NAME=DIR" each, for meshes named package://NAME/...
   bool collision_from_visual = false;      ///< links without collision elements get their visuals
-  bool without_meshes = false;  ///< no server is sent the meshes
+  bool without_meshes = false;             ///< no server is sent the meshes
   std::vector<std::string> without_collision = {};  ///< links that may have visuals and no solid
   std::vector<std::string> xacro = {};  ///< "NAME:=VALUE" each, for a URDF or SRDF that is xacro
 };

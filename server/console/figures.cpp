@@ -14,7 +14,7 @@
 namespace kinship::console {
 namespace {
 
-constexpr std::size_t kMaxCompared = 100;      // attempts that may have had the same query
+constexpr std::size_t kMaxCompared = 100;  // attempts that may have had the same query
 constexpr std::size_t kMaxKept = 16;
 constexpr int kKeptPerTime = 100;
 constexpr std::size_t kMaxListed = 200'000;  // rows of a task's history

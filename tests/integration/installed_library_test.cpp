@@ -201,9 +201,8 @@ TEST_F(InstalledLibrary, ExamplesAreBuiltAgainstItAndRunBesideAServer) {
 }
 
 TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
-  const std::string header =
-      test::read_text(test::source_dir() + "/client/c/kinship.h") +
-      test::read_text(test::source_dir() + "/client/c/kinship_planning.h");
+  const std::string header = test::read_text(test::source_dir() + "/client/c/kinship.h") +
+                             test::read_text(test::source_dir() + "/client/c/kinship_planning.h");
   static const std::regex kDeclared(R"(KINSHIP_API [^;(]*?(kinship_\w+)\()");
   std::vector<std::string> declared = {"dds_security_timed_dispatcher_add", "dds_time",
                                        "ddsi_new_proxy_reader", "ddsi_new_proxy_writer",

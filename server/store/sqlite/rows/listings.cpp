@@ -161,8 +161,7 @@ void count_rows(Database& database, StoreStatus& status) {
         "SELECT coalesce(sum(bytes), 0) FROM distribution_use "
         "INDEXED BY distribution_use_by_time");
   count(status.meshes, "meshes", "SELECT count(*) FROM mesh");
-  count(status.mesh_bytes, "sizes of meshes",
-        "SELECT coalesce(sum(length(payload)), 0) FROM mesh");
+  count(status.mesh_bytes, "sizes of meshes", "SELECT coalesce(sum(length(payload)), 0) FROM mesh");
   count(schema, "schema", "SELECT user_version FROM pragma_user_version");
   count(status.bytes, "pages",
         "SELECT (SELECT page_count FROM pragma_page_count) *"
