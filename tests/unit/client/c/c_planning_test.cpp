@@ -190,6 +190,11 @@ TEST_F(CPlanning, WhatIsHeldHangsOnTheHandAlsoAsAMesh) {
   surroundings_.allowed_collision_pairs = 0;
   ASSERT_NO_FATAL_FAILURE(plan());
   EXPECT_EQ(info_.is_solved, 1) << info_.reason;
+  corners[0] = corners[1] = -3;  // as wide as the room: it touches at the start
+  corners[3] = corners[7] = 3;
+  ASSERT_NO_FATAL_FAILURE(plan());
+  EXPECT_EQ(info_.is_solved, 0);
+  EXPECT_NE(std::string(info_.reason).find("sheet"), std::string::npos) << info_.reason;
   both[1].shape = KINSHIP_VOXELS;
   kinship_plan_free(plan_);
   plan_ = nullptr;
