@@ -187,9 +187,11 @@ TEST_P(Ros2ByCyclone, ServicesAnswerInTheFormOfItsMiddleware) {
 TEST_P(Ros2ByCyclone, AServerBesideRosNodesTakesTheNextPlaceAndIsFound) {
   test::Program node(program(GetParam()), node_arguments("stay", {}));
   ASSERT_EQ(node.read_line(), "here");
-  // The node and the server's own have two places of the ROS domain: a server of Kinship on that
-  // domain takes the third.
   server_->terminate();
+  // Two nodes have two places of the ROS domain: a server of Kinship on that domain takes the
+  // third.
+  test::Program other(program(GetParam()), node_arguments("stay", {}));
+  ASSERT_EQ(other.read_line(), "here");
   server_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
       .store = directory_ / "fleet.db",
       .domain = ros_domain_.number(),
