@@ -43,7 +43,7 @@ TEST(MeshFiles, NamesUriAndOptionOfWhatItCannotFind) {
 
 /// Packages as ROS has them: installed, in a source tree, and around a URDF.
 class RosPackages : public testing::Test {
- protected:
+ public:
   RosPackages() {
     add("installed/share/arm_description", "arm_description");
     add("src/group/arm_source", "arm_description");  // another folder name than the package's
@@ -59,6 +59,7 @@ class RosPackages : public testing::Test {
     unsetenv("ROS_PACKAGE_PATH");   // NOLINT(concurrency-mt-unsafe)
   }
 
+ protected:
   void add(const std::string& folder, const std::string& name) {
     std::filesystem::create_directories(folder_.path() / folder);
     std::ofstream(folder_.path() / folder / "package.xml")

@@ -18,12 +18,13 @@ constexpr const char* kXacro = "<robot name='r'><link name='${prefix}a'/></robot
 /// A program of the name `xacro` in PATH. Debian has no package of ROS's: this one does what is
 /// said here.
 class XacroProgram : public testing::Test {
- protected:
+ public:
   XacroProgram() : path_(std::getenv("PATH")) {  // NOLINT(concurrency-mt-unsafe)
     setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1);  // NOLINT
   }
   ~XacroProgram() override { setenv("PATH", path_.c_str(), 1); }  // NOLINT(concurrency-mt-unsafe)
 
+ protected:
   /// \param script  in sh.
   void does(const std::string& script) const {
     const auto file = folder_ / "xacro";
