@@ -100,7 +100,7 @@ TEST(ReadCdr, OtherEncodingsAreRefused) {
   std::string bytes = joint_state().bytes();
   bytes[1] = 7;  // of XCDR2
   EXPECT_EQ(complaint(bytes), "is no plain CDR");
-  EXPECT_EQ(complaint("\0\1"), "is no plain CDR");
+  EXPECT_EQ(complaint(std::string(2, '\1')), "is no plain CDR");
 }
 
 TEST(ReadCdr, HostileBytesAreReadOrRefused) {
