@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "handles.hpp"
 #include "settings.hpp"
@@ -25,8 +24,6 @@ class RobotFiles {
  private:
   std::filesystem::path folder_;  // empty: none was made
   std::string source_, srdf_, axes_;
-  std::vector<std::string> packages_;  // NAME=FOLDER
-  std::vector<const char*> package_texts_;
 };
 
 }  // namespace kinship_moveit
