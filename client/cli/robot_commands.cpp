@@ -49,10 +49,11 @@ void add_meshes(const char* command, const models::RobotArguments& arguments,
     err << command << ": no meshes: " << meshes.error().message << '\n';
     return;
   }
-  for (const std::string& note : meshes->notes)
+  auto [named, contents, notes] = std::move(meshes).value();
+  for (const std::string& note : notes)
     err << command << ": " << note << '\n';
-  description.meshes = std::move(meshes->meshes);
-  description.contents = std::move(meshes->contents);
+  description.meshes = std::move(named);
+  description.contents = std::move(contents);
 }
 
 /// Tells the server of the meshes that are here, or `err` why not.

@@ -96,10 +96,11 @@ bool ServerLine::add_meshes() {
               << '\n';
     return false;
   }
-  for (const std::string& note : meshes->notes)
+  auto [named, contents, notes] = std::move(meshes).value();
+  for (const std::string& note : notes)
     messages_ << "robot '" << robot_.description.label << "': " << note << '\n';
-  robot_.description.meshes = std::move(meshes->meshes);
-  robot_.description.contents = std::move(meshes->contents);
+  robot_.description.meshes = std::move(named);
+  robot_.description.contents = std::move(contents);
   return !robot_.description.meshes.empty();
 }
 

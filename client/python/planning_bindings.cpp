@@ -232,6 +232,35 @@ Raises InvalidInput if the problem does not fit the robot, begins at a pose, or 
 recalled paths would not keep.)");
 }
 
+void bind_ways(GuidanceClass& guidance) {
+  guidance
+      .def_property_readonly(
+          "ways",
+          [](const GuidanceHandle& self) {
+            const py::object stack = py::module_::import("numpy").attr("stack");
+            py::list ways;
+            if (self.guidance().experience)
+              for (const PosePath& path : self.guidance().experience->experience().paths) {
+                py::list poses;
+                for (const Eigen::Isometry3d& T_task_transfer : path.poses)
+                  poses.append(to_matrix(T_task_transfer));
+                ways.append(stack(poses));
+              }
+            return ways;
+          },
+          "Stored ways of the transfer frame in the task's frame: (n, 4, 4) each, start first.")
+      .def_property_readonly(
+          "way_sources",
+          [](const GuidanceHandle& self) {
+            std::vector<std::string> sources;
+            if (self.guidance().experience)
+              for (const PosePath& path : self.guidance().experience->experience().paths)
+                sources.push_back(path.source.hex());
+            return sources;
+          },
+          "Digests of the robots that took them, way by way.");
+}
+
 GuidanceClass bind_guidance(py::module_& module) {
   return GuidanceClass(module, "Guidance",
                        "What guides a robot's queries of a task from one placement: a "
@@ -269,32 +298,7 @@ GuidanceClass bind_guidance(py::module_& module) {
           "Of its distribution; None: it has none.")
       .def_property_readonly(
           "revision", [](const GuidanceHandle& self) { return self.guidance().revision; },
-          "Of its distribution.")
-      .def_property_readonly(
-          "ways",
-          [](const GuidanceHandle& self) {
-            const py::object stack = py::module_::import("numpy").attr("stack");
-            py::list ways;
-            if (self.guidance().experience)
-              for (const PosePath& path : self.guidance().experience->experience().paths) {
-                py::list poses;
-                for (const Eigen::Isometry3d& T_task_transfer : path.poses)
-                  poses.append(to_matrix(T_task_transfer));
-                ways.append(stack(poses));
-              }
-            return ways;
-          },
-          "Stored ways of the transfer frame in the task's frame: (n, 4, 4) each, start first.")
-      .def_property_readonly(
-          "way_sources",
-          [](const GuidanceHandle& self) {
-            std::vector<std::string> sources;
-            if (self.guidance().experience)
-              for (const PosePath& path : self.guidance().experience->experience().paths)
-                sources.push_back(path.source.hex());
-            return sources;
-          },
-          "Digests of the robots that took them, way by way.");
+          "Of its distribution.");
 }
 
 void bind_outcome(py::class_<Plan>& plan) {
@@ -367,6 +371,7 @@ void bind_guided(py::class_<Plan>& plan) {
 
 void bind_planning(py::module_& module) {
   GuidanceClass guidance = bind_guidance(module);
+  bind_ways(guidance);
   bind_recall(guidance);
   py::class_<Plan> outcome(module, "Plan", "What came of planning a problem.");
   bind_outcome(outcome);

@@ -95,8 +95,9 @@ kinematics::RobotModel Robot::model_for_server() const {
   if (!files_)
     return model;
   if (auto meshes = models::load_meshes(*files_, model)) {
-    model.description.meshes = std::move(meshes->meshes);
-    model.description.contents = std::move(meshes->contents);
+    auto [named, contents, notes] = std::move(meshes).value();
+    model.description.meshes = std::move(named);
+    model.description.contents = std::move(contents);
   }
   return model;
 }

@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -105,8 +106,7 @@ void bind_loading(RobotClass& robot) {
           const py::gil_scoped_release unlocked;
           read = Robot::load(arguments, warnings);
         }
-        for (const std::string& warning : warnings)
-          warn("InputChanged", warning);
+        std::ranges::for_each(warnings, [](const auto& each) { warn("InputChanged", each); });
         return read;
       }),
       R"(Reads a robot.

@@ -52,7 +52,7 @@ std::optional<Error> check_link_mesh(const LinkMesh& mesh) {
 
 /// The smallest index first; the order of the corners around the triangle stays.
 Triangle turned(Triangle triangle) {
-  std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+  std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
   return triangle;
 }
 

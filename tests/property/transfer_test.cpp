@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/resample.hpp"
 #include "robots/kinematics/urdf.hpp"
-#include "server/transfer/resample.hpp"
 #include "server/transfer/take_over.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/transfer_path.hpp"
@@ -19,6 +19,7 @@
 namespace kinship::transfer::transfer_test {
 namespace {
 
+using kinematics::resample;
 constexpr std::uint64_t kSeed = 17;
 constexpr int kPaths = 10;
 

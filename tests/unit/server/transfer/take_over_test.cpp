@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "server/transfer/resample.hpp"
+#include "robots/kinematics/resample.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/transfer_path.hpp"
 
@@ -13,6 +13,7 @@ namespace {
 
 using kinematics::ArmLikeness;
 using kinematics::JointType;
+using kinematics::resample;
 using test::planar_pose;
 using test::PlanarArm;
 using test::transfer_path;

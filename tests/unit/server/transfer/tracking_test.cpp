@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/resample.hpp"
 #include "server/transfer/extension_pool.hpp"
-#include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/transfer.hpp"
 #include "tests/support/joint_distance.hpp"
@@ -19,6 +19,7 @@ namespace kinship::transfer::tracking_test {
 namespace {
 
 using kinematics::JointType;
+using kinematics::resample;
 using test::planar_pose;
 using test::PlanarArm;
 using test::transfer_path;

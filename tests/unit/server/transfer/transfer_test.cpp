@@ -7,13 +7,14 @@
 
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "server/transfer/resample.hpp"
+#include "robots/kinematics/resample.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/transfer_path.hpp"
 
 namespace kinship::transfer::transfer_test {
 namespace {
 
+using kinematics::resample;
 using test::planar_pose;
 using test::PlanarArm;
 using test::transfer_path;
