@@ -43,7 +43,7 @@ TEST(Retention, NoReceiptIsLostAndEveryCountSaysWhatIsKept) {
   EXPECT_TRUE(cell.kinship("tasks list").says("6 of 30"));
   EXPECT_TRUE(cell.kinship("tasks show sweep").says("6 of 30 paths, 30 attempts"));
   EXPECT_TRUE(cell.kinship("paths list").says("dropped"));
-  const test::Answer status = cell.kinship("status");
+  const test::Answer status = cell.kinship("status -o wide");
   for (const char* const part :
        {"6 paths (24 more were beyond the cap), 30 attempts",
         "6 of 6 paths, of the robot and task with most",

@@ -115,6 +115,12 @@ TEST(CodecRoundTrip, RobotDescriptionComesBack) {
     auto read = decode(encode(kHead, written).value_or_throw().wire).value_or_throw();
     EXPECT_TRUE(read.T_tip_transfer.isApprox(written.T_tip_transfer, kPoseTolerance));
     read.T_tip_transfer = written.T_tip_transfer;
+    ASSERT_EQ(read.meshes.size(), written.meshes.size());
+    for (std::size_t mesh = 0; mesh < read.meshes.size(); ++mesh) {
+      Eigen::Isometry3d& T_link_mesh = read.meshes[mesh].T_link_mesh;
+      EXPECT_TRUE(T_link_mesh.isApprox(written.meshes[mesh].T_link_mesh, kPoseTolerance));
+      T_link_mesh = written.meshes[mesh].T_link_mesh;
+    }
     EXPECT_EQ(json::to_json(read), json::to_json(written));
   }
 }
