@@ -165,7 +165,7 @@ void print_replica(const ReplicaUse& replica, std::ostream& out) {
 
 void print_wrong(const ServerStatus& status, std::ostream& out) {
   if (!status.writable)
-    out << "not writable   " << status.storage_message << '\n';
+    out << "wrong          " << status.storage_message << '\n';
   for (const TroubleCount& trouble : status.troubles)
     out << "trouble        " << trouble.count << " x " << trouble.what << ", last at "
         << time_text(trouble.last_ms) << ": " << trouble.last << '\n';

@@ -25,8 +25,11 @@ static int is_line_free(void* user, const double* from, const double* to, size_t
 int main(int count, char** words) {
   static const double start[6] = {-0.9, -1.4, 1.9, -2.07, -1.57, 0};
   static const double goal[6] = {0.8, -1.3, 1.8, -2.07, -1.57, 0};
-  static const kinship_object post = {sizeof post, "post",         KINSHIP_CYLINDER,
-                                      0,           {0.05, 1.0, 0}, {0.75, 0, 0.5, 0, 0, 0, 1}};
+  static const kinship_object post = {.size = sizeof post,
+                                      .name = "post",
+                                      .shape = KINSHIP_CYLINDER,
+                                      .sizes = {0.05, 1.0, 0},
+                                      .pose = {0.75, 0, 0.5, 0, 0, 0, 1}};
   static double path[KINSHIP_RECALL_WAYPOINTS][6];
   kinship_client* client = NULL;
   kinship_recall* recall = NULL;

@@ -244,7 +244,8 @@ const kinshipTaskSpace = (() => {
       for (const [end, text] of [["from", "Arrived from"], ["to", "until"]]) {
         const tell = () => `${whenText(paths[brush[end]].received_ms)}, path ${count(brush[end] + 1)} of ${count(paths.length)}`;
         const output = make("output", {}, tell());
-        const input = make("input", {type: "range", min: "0", max: String(last), value: String(brush[end]), "data-end": end, oninput: () => {
+        const input = make("input", {type: "range", min: "0", max: String(last), value: String(brush[end]), "data-end": end,
+          "aria-label": end === "from" ? "Reported from" : "Reported until", oninput: () => {
           const other = byId("space-time").querySelector(`[data-end=${end === "from" ? "to" : "from"}]`);
           brush[end] = Number(input.value);
           if (brush.from > brush.to) { // the other end gives way
