@@ -245,7 +245,7 @@ const kinshipTaskSpace = (() => {
         const tell = () => `${whenText(paths[brush[end]].received_ms)}, path ${count(brush[end] + 1)} of ${count(paths.length)}`;
         const output = make("output", {}, tell());
         const input = make("input", {type: "range", min: "0", max: String(last), value: String(brush[end]), "data-end": end,
-          "aria-label": end === "from" ? "Reported from" : "Reported until", oninput: () => {
+          "aria-label": end === "from" ? "Arrived from" : "Arrived until", oninput: () => {
           const other = byId("space-time").querySelector(`[data-end=${end === "from" ? "to" : "from"}]`);
           brush[end] = Number(input.value);
           if (brush.from > brush.to) { // the other end gives way
