@@ -68,8 +68,8 @@ class InstalledPlugins {
          {index / "packages", index / "moveit_core__pluginlib__plugin", prefix / "lib",
           prefix / "share" / package, prefix / "share/moveit_core"})
       fs::create_directories(folder);
-    std::ofstream(index / "packages" / package);
-    std::ofstream(index / "packages/moveit_core");
+    std::ofstream(index / "packages" / package) << std::flush;
+    std::ofstream(index / "packages/moveit_core") << std::flush;
     for (const std::string& name : {package, std::string("moveit_core")})
       std::ofstream(prefix / "share" / name / "package.xml")
           << "<package format=\"3\"><name>" << name << "</name></package>";

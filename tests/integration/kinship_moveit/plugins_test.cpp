@@ -98,9 +98,10 @@ TEST_F(KINSHIP_FIXTURE, PlanAroundBoxesMeshesAndOctomaps) {
 
   // A block that is one leaf: whoever took its middle for all of it would touch the rest.
   tree = std::make_shared<octomap::OcTree>(0.0125);
-  for (int i = 0; i < 16 * 16 * 16; ++i)
-    tree->updateNode(0.00625 + 0.0125 * (i % 16), 0.00625 + 0.0125 * (i / 16 % 16),
-                     0.00625 + 0.0125 * (i / 256), true);
+  for (int x = 0; x < 16; ++x)
+    for (int y = 0; y < 16; ++y)
+      for (int z = 0; z < 16; ++z)
+        tree->updateNode(0.00625 + 0.0125 * x, 0.00625 + 0.0125 * y, 0.00625 + 0.0125 * z, true);
   tree->prune();
   ASSERT_EQ(tree->getNumLeafNodes(), 1U);
   collision::Surroundings block;

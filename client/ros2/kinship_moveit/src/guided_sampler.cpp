@@ -73,7 +73,7 @@ class GuidedSampler : public samplers::ConstraintSampler {
   }
 
   /// Of Humble's interface alone.
-  virtual bool project(moveit::core::RobotState& state, unsigned int attempts) {
+  bool project(moveit::core::RobotState& state, unsigned int attempts) KINSHIP_HUMBLE_OVERRIDE {
     if (inner_ != nullptr) {
       inner_->setGroupStateValidityCallback(group_state_validity_callback_);
       const moveit::core::RobotState reference = state;

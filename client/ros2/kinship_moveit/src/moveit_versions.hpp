@@ -4,6 +4,7 @@
 /// (2.14) and Rolling on the other. No other file asks for the release.
 #if __has_include(<moveit/planning_interface/planning_response_adapter.hpp>)
 #define KINSHIP_MOVEIT_CHAINS_ADAPTERS 1  // request and response adapters are classes of their own
+#define KINSHIP_HUMBLE_OVERRIDE           // a function that only Humble's base class has
 #include <moveit/constraint_samplers/constraint_sampler_allocator.hpp>
 #include <moveit/constraint_samplers/constraint_sampler_manager.hpp>
 #include <moveit/planning_interface/planning_interface.hpp>
@@ -13,6 +14,7 @@
 #include <moveit/robot_trajectory/robot_trajectory.hpp>
 #else
 #define KINSHIP_MOVEIT_CHAINS_ADAPTERS 0
+#define KINSHIP_HUMBLE_OVERRIDE override
 #include <moveit/constraint_samplers/constraint_sampler_allocator.h>
 #include <moveit/constraint_samplers/constraint_sampler_manager.h>
 #include <moveit/planning_interface/planning_interface.h>

@@ -29,13 +29,14 @@ std::vector<double> cells_of(const octomap::OcTree& tree) {
   for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
     if (!tree.isNodeOccupied(*leaf))
       continue;
-    const auto cells = static_cast<std::int64_t>(leaf.getSize() / edge_m + 0.5);
-    const double first_m = 0.5 * edge_m * static_cast<double>(1 - cells);
-    for (std::int64_t i = 0; i < cells * cells * cells; ++i)
-      points.insert(points.end(),
-                    {leaf.getX() + first_m + edge_m * static_cast<double>(i % cells),
-                     leaf.getY() + first_m + edge_m * static_cast<double>(i / cells % cells),
-                     leaf.getZ() + first_m + edge_m * static_cast<double>(i / (cells * cells))});
+    const int cells = static_cast<int>(leaf.getSize() / edge_m + 0.5);
+    const double first_m = 0.5 * edge_m * (1 - cells);
+    for (int x = 0; x < cells; ++x)
+      for (int y = 0; y < cells; ++y)
+        for (int z = 0; z < cells; ++z)
+          points.insert(points.end(),
+                        {leaf.getX() + first_m + edge_m * x, leaf.getY() + first_m + edge_m * y,
+                         leaf.getZ() + first_m + edge_m * z});
   }
   return points;
 }

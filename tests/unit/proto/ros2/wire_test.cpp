@@ -4,6 +4,7 @@
 #include <messages.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "proto/ros2/wire.hpp"
@@ -50,10 +51,11 @@ class RosWire : public testing::Test {
 
   template <typename Ros, typename Wire>
   void expect_alike(const rosidl_message_type_support_t* type, bool (*init)(Ros*),
-                    const dds_topic_descriptor_t& descriptor, Wire wire) const {
+                    void (*fini)(Ros*), const dds_topic_descriptor_t& descriptor, Wire wire) const {
     SCOPED_TRACE(descriptor.m_typename);
     Ros message;
     ASSERT_TRUE(init(&message));
+    const std::unique_ptr<Ros, void (*)(Ros*)> content(&message, fini);
     test::fill(type, &message);
     copy(message, wire);
     std::vector<std::uint8_t> expected = test::to_cdr(type, &message);
@@ -72,11 +74,11 @@ class RosWire : public testing::Test {
 };
 
 /// rosidl's structure of a type, and proto/ros2's.
-#define EXPECT_ALIKE(KIND, NAME)                                                                   \
-  expect_alike(ROSIDL_TYPESUPPORT_INTERFACE__MESSAGE_SYMBOL_NAME(                                  \
-                   rosidl_typesupport_introspection_c, kinship_msgs, KIND, NAME)(),                \
-               &kinship_msgs__##KIND##__##NAME##__init, kinship_msgs_##KIND##_dds__##NAME##__desc, \
-               kinship_msgs_##KIND##_dds__##NAME##_{})
+#define EXPECT_ALIKE(KIND, NAME)                                                                 \
+  expect_alike(ROSIDL_TYPESUPPORT_INTERFACE__MESSAGE_SYMBOL_NAME(                                \
+                   rosidl_typesupport_introspection_c, kinship_msgs, KIND, NAME)(),              \
+               &kinship_msgs__##KIND##__##NAME##__init, &kinship_msgs__##KIND##__##NAME##__fini, \
+               kinship_msgs_##KIND##_dds__##NAME##__desc, kinship_msgs_##KIND##_dds__##NAME##_{})
 
 TEST_F(RosWire, MessagesAreWhatRosidlMakesOfThem) {
   EXPECT_ALIKE(msg, Registration);
