@@ -263,7 +263,6 @@ int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
   runtime::keep_memory_reserve();
   std::signal(SIGPIPE, SIG_IGN);  // the output may have no reader
-
   tell_insecurity(options);
   hold_termination_signals();
 
@@ -312,7 +311,6 @@ int serve(const ServerOptions& options, std::ostream& out) {
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
   run(loop, service, expiry);
-
   notify_service_manager("STOPPING=1");
   metrics.reset();
   console.reset();

@@ -4,7 +4,6 @@
 #include <octomap/octomap.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <set>
 
 namespace kinship_moveit {
