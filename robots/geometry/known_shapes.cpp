@@ -82,19 +82,28 @@ std::optional<LinkShape> read_shape(const LinkMesh& mesh, int link, const FindMe
                    true, fitted->triangles};
 }
 
+/// Of all meshes of a robot, each as often as it is named: what a client names little of could
+/// else take gigabytes here.
+constexpr std::size_t kMaxRobotTriangles = 1'000'000;
+
 /// Adds the meshes of all links in place of their solids.
-/// \return false, and nothing changes, if one is not here.
+/// \return false, and nothing changes, if one is not here, or they have more than
+///         kMaxRobotTriangles.
 bool add_meshes(const kinematics::RobotModel& robot, const FindMesh& find, KnownShapes& known) {
   if (!find || !names_all_meshes(robot))
     return false;
   std::vector<LinkShape> read;
   std::set<int> links;
+  std::size_t triangles = 0;
   for (const LinkMesh& mesh : robot.description.meshes) {
     if (!is_collision(mesh))
       continue;
     const int link = robot.chain.find_link(mesh.link);
     std::optional<LinkShape> shape = read_shape(mesh, link, find);
     if (!shape)
+      return false;
+    triangles += static_cast<std::size_t>(shape->triangles->cols()) / 3;
+    if (triangles > kMaxRobotTriangles)
       return false;
     read.push_back(*std::move(shape));
     links.insert(link);

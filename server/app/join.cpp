@@ -122,6 +122,12 @@ std::uint32_t choose_place(const ServerOptions& options, const std::string& addr
   const auto server = ask_server(options, address);
   if (!place || server || taken->holder.program == kProgram)
     throw Failure(ErrorCode::Unavailable, explain(options, *taken, server));
+  if (!options.security.empty() && taken->holder.process == 0)  // it would not have answered
+    throw Failure(ErrorCode::Unavailable,
+                  "domain " + std::to_string(options.domain) + ": UDP port " +
+                      std::to_string(taken->port) +
+                      " is taken by another user's process, which may be a secured kinshipd; end "
+                      "that one, or take another domain (--domain N)");
   spdlog::info("domain {}: {} has UDP port {}; takes place {}, port {}", options.domain,
                describe(taken->holder), taken->port, *place,
                dds::discovery_port(options.domain, *place));

@@ -101,14 +101,14 @@ class MeshRobots : public testing::Test {
   }
 
   /// The pupil as a client describes it, with the contents of its meshes.
-  kinematics::RobotModel described_pupil() const {
+  models::LoadedRobot described_pupil() const {
     models::RobotArguments arguments;
     arguments.source = directory_ / "pupil.urdf";
     arguments.base_link = "base";
     arguments.tip_link = "tip";
     arguments.axes = "x,y,yaw";
     arguments.label = "pupil";
-    kinematics::RobotModel robot = models::load_robot(arguments).value_or_throw();
+    models::LoadedRobot robot = models::load_robot(arguments).value_or_throw();
     auto meshes = models::load_meshes(arguments, robot).value_or_throw();
     robot.description.meshes = std::move(meshes.meshes);
     robot.description.contents = std::move(meshes.contents);
@@ -198,7 +198,7 @@ TEST_F(MeshRobots, AreFilteredByTheTrianglesOfTheirMeshesWhichTravelOnce) {
 }
 
 TEST_F(MeshRobots, WhatAClientThatDiedDidNotSendComesWhenAServerIsThere) {
-  const kinematics::RobotModel robot = described_pupil();
+  const models::LoadedRobot robot = described_pupil();
   {  // a client that dies after its first message, and a server that dies with it
     link::Outbox outbox(directory_ / "dead_client");
     outbox.keep_robot(robot.chain.digest(), robot.description);

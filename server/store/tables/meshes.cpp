@@ -75,6 +75,7 @@ MeshesPut insert_meshes(Session& session, const Digest& robot,
   static_cast<void>(lock_robot(session, robot));
   const std::optional<RobotRecord> record = select_robot(session, robot);
   const std::set<Digest> named = record ? contents_of(record->description) : std::set<Digest>();
+  bool has_new_collision = false;
   std::uint64_t used = count_meshes(session).bytes;
   MeshesPut put;
   for (const MeshContent& content : contents) {
@@ -98,8 +99,12 @@ MeshesPut insert_meshes(Session& session, const Digest& robot,
                   digest, content.bytes, crc32c(content.zlib), content.zlib);
     used += content.zlib.size();
     ++put.stored;
+    has_new_collision = has_new_collision ||
+                        std::ranges::any_of(record->description.meshes, [&](const LinkMesh& each) {
+                          return each.content == digest && is_collision(each);
+                        });
   }
-  if (put.stored > 0 && is_complete(session, record->description)) {
+  if (has_new_collision && is_complete(session, record->description)) {
     RobotRecord complete = *record;
     ++complete.geometry_revision;
     complete.geometry_ms = limits.now_ms;

@@ -58,8 +58,10 @@ class RequestAdapter : public planning_request_adapter::PlanningRequestAdapter {
       return planner(scene, request, response);
     MotionPlanRequest plain = request;
     const auto query = begin_query(*session_, scene, plain);
-    if (query != nullptr && offer_recalled(*session_, *query, scene, plain, response))
+    if (query != nullptr && offer_recalled(*session_, *query, scene, plain, response)) {
+      end_query();
       return true;
+    }
     const bool is_solved = planner(scene, plain, response);
     if (query != nullptr)
       report(*session_, *query, plain, response);

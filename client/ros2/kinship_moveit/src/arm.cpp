@@ -1,5 +1,6 @@
 #include "arm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -66,8 +67,16 @@ Arm::Followed* Arm::find(kinship_client& client, const Settings& settings, const
   Key key{task, {}};
   for (std::size_t i = 0; i < pose.size(); ++i)
     key.second[i] = std::lround(pose[i] * 1000);
-  if (const auto known = followed_.find(key); known != followed_.end())
+  ++queries_;
+  if (const auto known = followed_.find(key); known != followed_.end()) {
+    known->second.used = queries_;
     return &known->second;
+  }
+  constexpr std::size_t kMaxFollowed = 16;  // each has a thread, and a lease of the server's
+  if (followed_.size() >= kMaxFollowed)
+    followed_.erase(std::min_element(
+        followed_.begin(), followed_.end(),
+        [](const auto& a, const auto& b) { return a.second.used < b.second.used; }));
   auto request = sized<kinship_request>();
   request.robot = &robot_;
   request.task = task.c_str();
@@ -80,6 +89,7 @@ Arm::Followed* Arm::find(kinship_client& client, const Settings& settings, const
     return nullptr;
   Followed& made = followed_[key];
   made.follower.reset(follower);
+  made.used = queries_;
   return &made;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -42,8 +43,9 @@ class Arm {
   const kinship_robot& robot() const { return robot_; }                        ///< once ready
   std::shared_ptr<const kinship_planner> planner() const { return planner_; }  ///< once ready
 
-  /// The newest; follows from the first call on. Waits once per task and placement, at most
-  /// Settings::first_wait_ms. \param why  out: why there is none; empty otherwise.
+  /// The newest; follows the 16 tasks and placements that were used last, from the first call on.
+  /// Waits once per task and placement, at most Settings::first_wait_ms. \param why  out: why there
+  /// is none; empty otherwise.
   Guidance guidance(kinship_client& client, const Settings& settings, const std::string& task,
                     const Eigen::Isometry3d& T_task_base, std::string& why);
   /// Follows without waiting.
@@ -55,6 +57,7 @@ class Arm {
     Owned<kinship_follower> follower;
     Guidance held;
     bool was_awaited = false;
+    std::uint64_t used = 0;  // number of the query that used it last
   };
   /// To a millimetre and a milliradian, as the server has it.
   using Key = std::pair<std::string, std::array<long, 7>>;
@@ -70,6 +73,7 @@ class Arm {
   std::shared_ptr<const kinship_planner> planner_;
   std::mutex mutex_;  // guards the next
   std::map<Key, Followed> followed_;
+  std::uint64_t queries_ = 0;
 };
 
 }  // namespace kinship_moveit

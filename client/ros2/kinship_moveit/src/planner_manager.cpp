@@ -95,7 +95,8 @@ class OwnSearch {
     asked.seed = ++seed_;
     const std::string algorithm = algorithm_of(request);
     asked.algorithm = algorithm.empty() ? nullptr : algorithm.c_str();
-    asked.distribution = query.guidance.distribution.get();
+    if (session_.settings().share != 0)  // below 0: as recommended
+      asked.distribution = query.guidance.distribution.get();
     if (session_.settings().offers_recall && !std::exchange(query.was_recalled, true))
       asked.recall = query.guidance.recall.get();
     asked.share = session_.settings().share > 0 ? session_.settings().share : 0;

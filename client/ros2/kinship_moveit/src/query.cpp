@@ -247,6 +247,8 @@ void report(Session& session, const Query& query, const MotionPlanRequest& reque
     }
     if (waypoints.size() % query.arm->dof() != 0)
       return;  // of another group
+    if (waypoints.size() < 2 * query.arm->dof())
+      return;  // the start was the goal: neither a path nor a failure
   }
   const double time_s = planning_time_of(response);
   post_report(session, query,

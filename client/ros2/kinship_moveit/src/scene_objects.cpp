@@ -21,7 +21,10 @@ std::vector<double> triangles_of(const shapes::Mesh& mesh) {
   return points;
 }
 
-/// Middles of all occupied cells of the finest resolution: coarser leaves are cut.
+constexpr std::size_t kMaxCells = 500'000;  // as libkinship takes them
+
+/// Middles of all occupied cells of the finest resolution: coarser leaves are cut. More than
+/// kMaxCells if there are so many, then not all.
 std::vector<double> cells_of(const octomap::OcTree& tree) {
   std::vector<double> points;
   const double edge_m = tree.getResolution();
@@ -29,6 +32,9 @@ std::vector<double> cells_of(const octomap::OcTree& tree) {
     if (!tree.isNodeOccupied(*leaf))
       continue;
     const int cells = static_cast<int>(leaf.getSize() / edge_m + 0.5);
+    const std::size_t more = static_cast<std::size_t>(cells) * cells * cells;
+    if (points.size() / 3 + more > kMaxCells)
+      return std::vector<double>(3 * (kMaxCells + 1));
     const double first_m = 0.5 * edge_m * (1 - cells);
     for (int x = 0; x < cells; ++x)
       for (int y = 0; y < cells; ++y)
@@ -128,6 +134,10 @@ void SceneObjects::add(const std::string& name, const shapes::Shape& shape,
       object.shape = KINSHIP_VOXELS;
       object.sizes[0] = tree.getResolution();
       add_points(cells_of(tree), object);
+      if (object.point_count > kMaxCells) {
+        untold_ = "'" + name + "' has more than " + std::to_string(kMaxCells) + " occupied cells";
+        return;
+      }
       break;
     }
     default:

@@ -1,5 +1,6 @@
 #include "session.hpp"
 
+#include <charconv>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -12,13 +13,22 @@ std::weak_ptr<Session>& the_session() {
   return session;
 }
 
+std::uint32_t domain_of(const std::string& text) {
+  std::uint32_t domain = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw std::runtime_error("KINSHIP_DOMAIN '" + text + "' is no domain");
+  return domain;
+}
+
 /// KINSHIP_DOMAIN and KINSHIP_SERVER, where no parameter says otherwise.
 Owned<kinship_client> open_client(const Settings& settings) {
   auto options = sized<kinship_client_options>();
   const char* domain = std::getenv("KINSHIP_DOMAIN");
   const char* server = std::getenv("KINSHIP_SERVER");
-  options.domain = static_cast<std::uint32_t>(
-      settings.domain >= 0 ? settings.domain : (domain != nullptr ? std::atoi(domain) : 0));
+  options.domain = settings.domain >= 0 ? static_cast<std::uint32_t>(settings.domain)
+                   : domain != nullptr  ? domain_of(domain)
+                                        : 0;
   options.server = !settings.server.empty() ? settings.server.c_str() : server;
   options.outbox = settings.outbox.empty() ? nullptr : settings.outbox.c_str();
   options.security = settings.security.empty() ? nullptr : settings.security.c_str();

@@ -19,6 +19,9 @@ namespace {
 
 /// What Cyclone DDS sends of samples of the types in proto/ros2.
 class RosWire : public testing::Test {
+ public:
+  ~RosWire() override { dds_delete(domain_handle_); }
+
  protected:
   RosWire() {
     domain_handle_ = dds_create_domain(
@@ -27,8 +30,6 @@ class RosWire : public testing::Test {
         "<AllowMulticast>false</AllowMulticast></General></Domain>");
     participant_ = dds_create_participant(domain_.number(), nullptr, nullptr);
   }
-  ~RosWire() override { dds_delete(domain_handle_); }
-
   /// With the four bytes of the encapsulation, without padding at the end.
   std::vector<std::uint8_t> sent(const dds_topic_descriptor_t& type, const void* sample) const {
     const dds_entity_t topic = dds_create_topic(participant_, &type, "a_topic", nullptr, nullptr);
