@@ -1,5 +1,6 @@
 #include "server/store/tables/meshes.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "server/store/tables/robots.hpp"
