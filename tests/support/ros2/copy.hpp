@@ -5,10 +5,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <type_traits>
+#include <vector>
 
 /// Parts of copies.hpp, which rosidl's structures and idlc's have of each type. Texts and numbers
 /// of lists are borrowed; memory of lists of structures stays until the process ends.
+
+inline void* zeros_for_good(std::size_t count, std::size_t size) {
+  static std::vector<std::unique_ptr<void, decltype(&std::free)>> kept;
+  return kept.emplace_back(std::calloc(count, size), &std::free).get();
+}
 
 template <typename Number>
 requires std::is_arithmetic_v<Number>
@@ -30,7 +37,7 @@ requires requires(From from, To to) {
 void copy(const From& from, To& to) {
   using Element = std::remove_pointer_t<decltype(to._buffer)>;
   to._length = to._maximum = static_cast<std::uint32_t>(from.size);
-  to._buffer = static_cast<Element*>(std::calloc(from.size, sizeof(Element)));
+  to._buffer = static_cast<Element*>(zeros_for_good(from.size, sizeof(Element)));
   for (std::size_t i = 0; i < from.size; ++i)
     copy(from.data[i], to._buffer[i]);
 }
