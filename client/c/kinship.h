@@ -8,8 +8,7 @@
  * would have made is NULL then.
  * - Handles are made by ..._open, ..._create or a fetch and freed once, by ..._close or ..._free,
  * which take NULL. Text and numbers that are passed in are copied.
- * - Any thread may use any handle, several at once; a handle is closed when nobody uses it any
- * more.
+ * - Any thread may use any handle, several at once; close one when nobody uses it any more.
  * - Structures begin with their size in bytes: `kinship_request request = {.size = sizeof
  * request};`. All else that is 0 is as if it were not said, so what a later version adds at the end
  * does not disturb who was compiled before.
@@ -188,13 +187,12 @@ typedef struct kinship_object {
 typedef struct kinship_attempt {
   size_t size;
   const kinship_robot* robot;
-  const char* task;    /**< name of the task */
-  const char* machine; /**< which of the fleet's; NULL: "" */
-  const double*
-      T_task_base; /**< pose of the base in the task's frame; NULL: not known, used as identity */
-  int solved;      /**< 0: there is no path, and waypoints are not looked at */
-  const double* waypoints; /**< dof numbers each, one waypoint after the other, joint units */
-  size_t waypoint_count;   /**< at least 2 */
+  const char* task;          /**< name of the task */
+  const char* machine;       /**< which of the fleet's; NULL: "" */
+  const double* T_task_base; /**< of the base in the task's frame; NULL: not known, as identity */
+  int solved;                /**< 0: there is no path, and waypoints are not looked at */
+  const double* waypoints;   /**< dof numbers each, one waypoint after the other, joint units */
+  size_t waypoint_count;     /**< at least 2 */
   size_t dof;
   const char* planner; /**< its name; NULL: "" */
   double planning_time_s;
@@ -486,8 +484,7 @@ typedef struct kinship_recalled {
 /** Tries paths on a query, the most promising first, as long as that is cheaper in the mean than a
  * search. A path begins in the start, ends in a goal or at T_task_goal, and is straight between its
  * waypoints; the callbacks said of each of its configurations or lines that they are free. Paths
- * are not projected onto a constraint, though they may come from a query with one: only the
- * callbacks can refuse what leaves the constraint.
+ * are not projected onto a constraint: only the callbacks can refuse what leaves one.
  * \param waypoints  the path, dof numbers each, start first; untouched without one.
  * \param room       configurations that fit there, at least KINSHIP_RECALL_WAYPOINTS.
  * \param recalled   set with KINSHIP_OK, whether there is a path or not. */
