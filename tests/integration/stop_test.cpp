@@ -58,7 +58,8 @@ class Stopping : public testing::Test {
   }
 
   const test::TemporaryDirectory folder_;
-  test::Cell cell_{{.folder = folder_.path()}};
+  /// Rehearsals rest so much that none is over before it is seen.
+  test::Cell cell_{{.folder = folder_.path(), .arguments = {"--rehearsal-cpu", "0.01"}}};
   Digest panda_, ur10e_;
 };
 
@@ -80,7 +81,6 @@ TEST_F(Stopping, DuringARehearsal) {
   FetchRequest rehearsed = request("default");
   rehearsed.experience_bytes = 100'000;
   rehearsed.rehearsed = true;
-  rehearsed.deadline = milliseconds(300);
   static_cast<void>(cell_.client().fetch(rehearsed));
   wait_until([this] { return cell_.status().queued_rehearsals > 0; });
   EXPECT_EQ(cell_.status().rehearsals, 0U) << "it was over";
