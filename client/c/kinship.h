@@ -8,7 +8,7 @@
  * would have made is NULL then.
  * - Handles are made by ..._open, ..._create or a fetch and freed once, by ..._close or ..._free,
  * which take NULL. Text and numbers that are passed in are copied.
- * - Any thread may use any handle, several at once; close one when nobody uses it any more.
+ * - Any thread may use any handle, several at once; a handle is closed after its last use.
  * - Structures begin with their size in bytes: `kinship_request request = {.size = sizeof
  * request};`. All else that is 0 is as if it were not said, so what a later version adds at the end
  * does not disturb who was compiled before.

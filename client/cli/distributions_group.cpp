@@ -90,8 +90,7 @@ void add_distribution_plot(CLI::App& group, Session& session) {
   CLI::App* command = add_command(
       group, "plot",
       "A page that shows a distribution over its robot, the poses that were lost, its joints and "
-      "its "
-      "sources",
+      "its sources",
       "kinship distributions plot --task box_to_shelf --robot ur10e --output ur10e.html\n"
       "  kinship distributions plot 3f9a0c --output - > ur10e.html");
   add_query_or_id(*command, *query, "id");
