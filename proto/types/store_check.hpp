@@ -21,6 +21,7 @@ struct StoreCheck {
   std::string file;
   Uuid epoch;
   std::uint32_t schema_version = 0;
+  std::string release;  ///< version of Kinship that last wrote reports; empty: before 0.2.0
   std::uint64_t bytes = 0;
   std::vector<Table> tables;
   std::uint64_t damaged_paths = 0;  ///< quarantined before
@@ -39,6 +40,7 @@ inline constexpr std::tuple kFieldsOf<StoreCheck>{
     Field{"file", &StoreCheck::file},
     Field{"epoch", &StoreCheck::epoch},
     Field{"schema_version", &StoreCheck::schema_version},
+    Field{"release", &StoreCheck::release},
     Field{"bytes", &StoreCheck::bytes},
     Field{"tables", &StoreCheck::tables},
     Field{"damaged_paths", &StoreCheck::damaged_paths},

@@ -38,7 +38,8 @@ class ProgressLine {
 };
 
 void print(const StoreCheck& check, std::ostream& out) {
-  out << "store '" << check.file << "': schema " << check.schema_version << ", epoch "
+  out << "store '" << check.file << "': schema " << check.schema_version << ", written by "
+      << (check.release.empty() ? "a build before 0.2.0" : check.release) << ", epoch "
       << check.epoch.text() << ", " << check.bytes << " bytes\n";
   for (const StoreCheck::Table& table : check.tables)
     out << "  " << std::left << std::setw(24) << table.name << std::right << std::setw(12)

@@ -14,6 +14,7 @@ constexpr std::string_view kEpoch = "epoch";
 constexpr std::string_view kRuns = "runs";
 constexpr std::string_view kKey = "history_key";
 constexpr std::string_view kIdentity = "file_identity";
+constexpr std::string_view kRelease = "release";
 
 Digest ensure_key(Database& database) {
   if (const std::optional<Digest> key = Digest::from_hex(read_setting(database, kKey)))
@@ -33,13 +34,21 @@ Uuid ensure_epoch(Database& database, const std::filesystem::path& file) {
   return *epoch;
 }
 
+void note_release(Database& database) {
+  if (read_setting(database, kRelease) != KINSHIP_VERSION)
+    write_setting(database, kRelease, KINSHIP_VERSION);
+}
+
 }  // namespace
+
+std::string release_of(Database& database) { return read_setting(database, kRelease); }
 
 Uuid write_new_epoch(Database& database, const std::filesystem::path& file) {
   const Uuid epoch = Uuid::random();
   write_setting(database, kEpoch, epoch.text());
   write_setting(database, kIdentity, identity_of(file));
   write_setting(database, kRuns, TimelineHistory(epoch).text());
+  note_release(database);
   return epoch;
 }
 
@@ -117,6 +126,7 @@ void History::write_run(Database& database) {
     text = state_.log.text();
   }
   write_setting(database, kRuns, text);
+  note_release(database);
 }
 
 void History::committed(std::uint64_t position) {

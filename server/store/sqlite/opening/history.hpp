@@ -20,6 +20,9 @@ namespace kinship::store {
 /// transaction.
 Uuid write_new_epoch(Database& database, const std::filesystem::path& file);
 
+/// The version of Kinship that last began an epoch or wrote a report; empty: none that says so.
+std::string release_of(Database& database);
+
 /// The largest id of an attempt: the position of the state that a connection sees.
 std::uint64_t position_of(Database& database);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/tables/robots.hpp"
@@ -189,7 +190,10 @@ StoreCheck Checker::run(const std::filesystem::path& file) {
   count_tables();
   guarded("", [&] { check_structure(); });
   (*progress_)(kStructureShare);
-  guarded("setting", [&] { check_epoch(); });
+  guarded("setting", [&] {
+    check_epoch();
+    check_.release = release_of(*database_);
+  });
   guarded("robot", [&] { check_robots(); });
   const std::vector<StoreCheck::Table> tables = check_.tables;
   for (std::size_t i = 0; i < tables.size(); ++i) {

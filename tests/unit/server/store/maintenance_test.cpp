@@ -8,6 +8,7 @@
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "server/store/tables/settings.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -78,6 +79,7 @@ TEST_F(Maintenance, ASoundStoreIsCheckedAndLeftAsItIs) {
   EXPECT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
   EXPECT_EQ(last, 1);
   EXPECT_EQ(check.schema_version, embedded_migrations().size());
+  EXPECT_EQ(check.release, KINSHIP_VERSION);
   EXPECT_EQ(check.epoch, open_sqlite_store(file_)->epoch());
   EXPECT_EQ(check.retired_paths, 1U);
   EXPECT_EQ(check.damaged_paths, 0U);
@@ -90,6 +92,18 @@ TEST_F(Maintenance, ASoundStoreIsCheckedAndLeftAsItIs) {
   EXPECT_EQ(rows("distribution"), 1U);
   EXPECT_EQ(names(), before);
   EXPECT_EQ(fs::last_write_time(file_), written);
+}
+
+TEST_F(Maintenance, ACheckNamesTheReleaseThatLastWroteAReport) {
+  {
+    Database database(file_, Access::ReadWrite);
+    database.keep_checksums();
+    write_setting(database, "release", "0.0.1");
+  }
+  static_cast<void>(open_sqlite_store(file_));
+  EXPECT_EQ(check_store(file_, ignore).release, "0.0.1") << "opening it changes nothing";
+  fill(file_, 100);
+  EXPECT_EQ(check_store(file_, ignore).release, KINSHIP_VERSION);
 }
 
 TEST_F(Maintenance, ACheckFindsDamageOfEveryKindAndNamesTheRow) {
