@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/cli/cell_text.hpp"
+#include "proto/json/format.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -61,9 +62,9 @@ int AttemptDelivery::finish(const std::string& what, bool json, std::ostream& ou
   deliver();
   progress_.clear();
   if (json)
-    out << R"({"robots":)" << counts_.robots << R"(,"stored":)" << counts_.stored << R"(,"known":)"
-        << counts_.known << R"(,"recorded":)" << counts_.recorded << R"(,"refused":)"
-        << counts_.refused << "}\n";
+    out << R"({"format":")" << json::to_text(json::kPathImportFormat) << R"(","robots":)"
+        << counts_.robots << R"(,"stored":)" << counts_.stored << R"(,"known":)" << counts_.known
+        << R"(,"recorded":)" << counts_.recorded << R"(,"refused":)" << counts_.refused << "}\n";
   else
     out << count_text(counts_.stored, "path") << " stored, "
         << count_text(counts_.recorded, "unsolved attempt") << " recorded, " << counts_.known

@@ -258,7 +258,7 @@ int explain_distribution(link::Client& server, const DistributionQuery& query, b
   if (!explanation)
     return refuse(kCommand, explanation.error(), err);
   if (json)
-    out << json::to_json(*explanation) << '\n';
+    out << json::to_document(*explanation) << '\n';
   else
     print_explanation(*explanation, out);
   return kDone;

@@ -46,7 +46,7 @@ int code_of(const Job& job, std::string_view command, std::ostream& err) {
 
 void print(const Job& job, bool json, std::ostream& out) {
   if (json)
-    out << json::to_json(job) << '\n';
+    out << json::to_document(job) << '\n';
   else
     out << "job " << job.id << ", " << job.verb << (job.argument.empty() ? "" : " ") << job.argument
         << ": " << to_text(job.state) << said(job) << '\n';

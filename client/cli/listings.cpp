@@ -331,7 +331,7 @@ int list_rows(link::Client& server, const Query& query, const RowColumns<Row>& c
   if (error)
     return refuse(query.command, *error, err);
   if (query.json)
-    out << document << "\n]}\n";
+    out << json::in_format(json::kListFormatOf<Row>, document + "\n]}") << '\n';
   else
     table.print(out);
   return kDone;

@@ -30,7 +30,8 @@ using tables::Table;
 struct Question {
   std::string command;  ///< named in messages
   AdminRequest request;
-  bool json = false;  ///< the answer's document as it came
+  bool json = false;    ///< the answer's document as it came
+  json::Format format;  ///< of that
 };
 
 /// Asks for one thing and prints it: its document as it came, or through `print`.
@@ -43,7 +44,7 @@ int show(link::Client& server, const Question& question, std::ostream& out, std:
   if (!row)
     return refuse(question.command, row.error(), err);
   if (question.json) {
-    out << *row << '\n';
+    out << json::in_format(question.format, *row) << '\n';
     return kDone;
   }
   const auto value = parse(*row);
@@ -237,8 +238,8 @@ std::map<Digest, std::string> labels_of(link::Client& server, const TaskExperien
 }  // namespace
 
 int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err) {
-  return show(server, {"status", {.verb = AdminVerb::Status}, json}, out, err,
-              json::row_from_json<ServerStatus>, [&](const ServerStatus& status) {
+  return show(server, {"status", {.verb = AdminVerb::Status}, json, json::kFormatOf<ServerStatus>},
+              out, err, json::row_from_json<ServerStatus>, [&](const ServerStatus& status) {
                 print_status(status, tables::table_layout(out).is_wide, out);
               });
 }
@@ -256,7 +257,9 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
   }
   const std::string &summary = rows->front(), &described = rows->back();
   if (json) {
-    out << "{\"robot\":" << summary << ",\n\"description\":" << described << "}\n";
+    out << json::in_format(json::kRobotDetailsFormat,
+                           "{\"robot\":" + summary + ",\n\"description\":" + described + "}")
+        << '\n';
     return kDone;
   }
   const auto robot = json::row_from_json<RobotSummary>(summary);
@@ -272,27 +275,38 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
 
 int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,
               std::ostream& err) {
-  return show(server, {"tasks show", {.verb = AdminVerb::ShowTask, .argument = task}, json}, out,
-              err, json::row_from_json<TaskSummary>,
+  return show(server,
+              {"tasks show",
+               {.verb = AdminVerb::ShowTask, .argument = task},
+               json,
+               json::kFormatOf<TaskSummary>},
+              out, err, json::row_from_json<TaskSummary>,
               [&](const TaskSummary& summary) { print_task(summary, out); });
 }
 
 int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
               std::ostream& err) {
-  return show_report(server, {"paths show", {.verb = AdminVerb::ShowPath, .argument = id}, json},
-                     out, err);
+  return show_report(
+      server,
+      {"paths show", {.verb = AdminVerb::ShowPath, .argument = id}, json, json::kAttemptFormat},
+      out, err);
 }
 
 int show_attempt(link::Client& server, const std::string& id, bool json, std::ostream& out,
                  std::ostream& err) {
-  return show_report(server, {"attempts show", {.verb = AdminVerb::ShowPath, .argument = id}, json},
-                     out, err);
+  return show_report(
+      server,
+      {"attempts show", {.verb = AdminVerb::ShowPath, .argument = id}, json, json::kAttemptFormat},
+      out, err);
 }
 
 int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
                       std::ostream& err) {
   return show(server,
-              {"distributions show", {.verb = AdminVerb::ShowDistribution, .argument = id}, json},
+              {"distributions show",
+               {.verb = AdminVerb::ShowDistribution, .argument = id},
+               json,
+               json::kDistributionFormat},
               out, err, json::distribution_from_json,
               [&](const Distribution& distribution) { print_distribution(distribution, out); });
 }

@@ -24,7 +24,7 @@ int retire(link::Client& server, AdminVerb verb, const std::string& argument, bo
   if (!retirement)
     return refuse(command, retirement.error(), err);
   if (json)
-    out << json::to_json(*retirement) << '\n';
+    out << json::to_document(*retirement) << '\n';
   else if (retirement->paths == 0)
     out << kNothingToRetire;
   else
@@ -81,7 +81,7 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
   if (!summary)
     return refuse(kResetTask, summary.error(), err);
   if (summary->paths == 0) {
-    out << (json ? json::to_json(Retirement{summary->task, 0, {}}) + "\n" : kNothingToRetire);
+    out << (json ? json::to_document(Retirement{summary->task, 0, {}}) + "\n" : kNothingToRetire);
     return kDone;
   }
   const auto robots = std::ranges::count_if(
@@ -101,7 +101,7 @@ int evict_distribution(link::Client& server, const std::string& id, bool json, s
   if (!evicted)
     return refuse(kCommand, evicted.error(), err);
   if (json)
-    out << json::to_json(*evicted) << '\n';
+    out << json::to_document(*evicted) << '\n';
   else
     out << "distribution " << evicted->id.short_hex()
         << " evicted; the next fetch has it made anew\n";
@@ -116,7 +116,7 @@ int rename_robot(link::Client& server, const std::string& robot, const std::stri
   if (!summary)
     return refuse(kRename, summary.error(), err);
   if (json)
-    out << json::to_json(*summary) << '\n';
+    out << json::to_document(*summary) << '\n';
   else
     out << "robot " << summary->robot.short_hex() << " is called '" << summary->label << "' now\n";
   return kDone;
@@ -134,7 +134,7 @@ int remove_robot(link::Client& server, const std::string& robot, bool confirmed,
   if (!removal)
     return refuse(kRemove, removal.error(), err);
   if (json)
-    out << json::to_json(*removal) << '\n';
+    out << json::to_document(*removal) << '\n';
   else
     print_removal(*removal, out);
   return kDone;

@@ -75,7 +75,7 @@ py::object backup(const ClientHandle& client, const std::string& name, double de
               .value_or_throw();
   }
   require_done(job);
-  return parsed(json::to_json(job));
+  return parsed(json::to_document(job));
 }
 
 /// The next event; StopIteration once the stream is closed.

@@ -43,7 +43,7 @@ py::object covariances_of(const SampledDistribution& self) {
 
 py::dict provenance_of(const SampledDistribution& self) {
   const py::dict document = py::module_::import("json").attr("loads")(json::to_json(*self.value()));
-  for (const char* member : {"weights", "means", "covariances", "limits"})
+  for (const char* member : {"format", "weights", "means", "covariances", "limits"})
     document.attr("pop")(member);
   return document;
 }

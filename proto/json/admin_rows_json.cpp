@@ -38,9 +38,9 @@ Result<AnyRow> read(std::string_view text) {
   constexpr std::string_view kName = std::get<RowName<Row>>(kAdminRows).name;
   Result<Row> row = Error{};
   if constexpr (std::is_same_v<Row, Explanation>)
-    row = read_document(text, kName, read_explanation);
+    row = read_document(text, kName, kFormatOf<Row>, read_explanation);
   else
-    row = read_fields<Row>(text, kName);
+    row = read_fields<Row>(text, kName, kFormatOf<Row>);
   if (!row)
     return row.error();
   return AnyRow(std::move(row).value());
@@ -74,14 +74,14 @@ std::string download_to_json(const std::string& file, std::uint64_t bytes, const
   object["file"] = file;
   object["bytes"] = bytes;
   object["sha256"] = sha256.hex();
-  return write(object);
+  return write(kBackupDownloadFormat, object);
 }
 
 std::string outbox_to_json(const std::vector<OutboxEntry>& entries) {
   OrderedJson rows = OrderedJson::array();
   for (const OutboxEntry& entry : entries)
     rows.push_back({{"file", entry.file}, {"state", entry.state}, {"why", entry.why}});
-  return write({{"rows", std::move(rows)}});
+  return write(kOutboxListFormat, {{"rows", std::move(rows)}});
 }
 
 }  // namespace kinship::json

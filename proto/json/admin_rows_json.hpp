@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "proto/json/format.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/outbox_entry.hpp"
 #include "proto/types/result.hpp"
@@ -36,9 +37,22 @@ std::string write_row(const AnyRowPointer& row);
 /// \param index  of the row in kAdminRows.
 Result<AnyRow> read_row(std::size_t index, std::string_view text);
 
+/// Of the document of a row that stands alone, as of `jobs wait --json`, and of that of a listing,
+/// `{"rows": [...]}`. Over the wire and in a listing a row is a part and names no format.
+template <AdminRow Row>
+inline constexpr Format kFormatOf{std::get<RowName<Row>>(kAdminRows).name};
+template <AdminRow Row>
+inline constexpr Format kListFormatOf{std::get<RowName<Row>>(kAdminRows).name, 1, "-list"};
+
 template <AdminRow Row>
 std::string to_json(const Row& row) {
   return write_row(&row);
+}
+
+/// The document of a row that stands alone.
+template <AdminRow Row>
+std::string to_document(const Row& row) {
+  return in_format(kFormatOf<Row>, to_json(row));
 }
 
 /// The distribution of an Explanation may lack its mixture (weights, means, covariances null).

@@ -81,15 +81,15 @@ std::string to_json(const Attempt& attempt) {
   object["scene"] = attempt.scene ? recorded_scene_object(*attempt.scene) : OrderedJson(nullptr);
   if (attempt.search)
     object["search"] = search_record_object(*attempt.search);
-  return write(object);
+  return write(kAttemptFormat, object);
 }
 
 Result<NamedAttempt> attempt_from_json(std::string_view text) {
-  return read_document(text, "experience", read_attempt);
+  return read_document(text, "experience", kAttemptFormat, read_attempt);
 }
 
 Result<NamedAttempt> stored_attempt_from_json(std::string_view text) {
-  return read_document(text, "experience",
+  return read_document(text, "experience", kAttemptFormat,
                        [](const Reader& reader) { return read(reader, Waypoints::MayBeDropped); });
 }
 

@@ -4,6 +4,8 @@
 
 namespace kinship::json {
 
-std::string to_json(const CredentialList& list) { return write_fields(list); }
+std::string to_json(const CredentialList& list) {
+  return write_fields(list, kCredentialListFormat);
+}
 
 }  // namespace kinship::json

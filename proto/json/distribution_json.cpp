@@ -4,42 +4,13 @@
 #include <functional>
 #include <stdexcept>
 
+#include "proto/json/distribution_fields.hpp"
 #include "proto/json/fields.hpp"
 #include "proto/json/parts.hpp"
 #include "proto/types/names.hpp"
 
 namespace kinship::json {
 namespace {
-
-/// A distribution's identity and origin.
-constexpr std::tuple kProvenance{
-    Field{"id", &Distribution::id},
-    Field{"revision", &Distribution::revision},
-    Field{"store_epoch", &Distribution::store_epoch},
-    Field{"task", &Distribution::task, {.limit = kMaxTaskBytes}},
-    Field{"robot", &Distribution::robot},
-    Field{"T_task_base", &Distribution::T_task_base},
-    Field{"profile", &Distribution::profile, {.limit = kMaxProfileBytes}},
-    Field{"selection", &Distribution::selection},
-    Field{"engines", &Distribution::engines, {.limit = kMaxMessageBytes}},
-    Field{"sources", &Distribution::sources, {.limit = kMaxSources}},
-    Field{"configurations", &Distribution::configurations}};
-
-constexpr std::tuple kAdvice{
-    Field{"recommended_share", &Advice::recommended_share, {.min = 0, .max = 1}},
-    Field{"guided_share", &Advice::guided_share, {.min = 0, .max = 1}},
-    Field{"evidence", &Advice::evidence, {.limit = kMaxMessageBytes}},
-    Field{"guided", &Advice::guided},
-    Field{"control", &Advice::control},
-    Field{"recent", &Advice::recent, {.limit = kMaxJudgedAttempts}}};
-
-/// How its fit went.
-constexpr std::tuple kFit{Field{"state", &Distribution::state},
-                          Field{"reason", &Distribution::reason, {.limit = kMaxMessageBytes}},
-                          Field{"fitted_ms", &Distribution::fitted_ms},
-                          Field{"transfer_time_s", &Distribution::transfer_time_s, {.min = 0}},
-                          Field{"fit_time_s", &Distribution::fit_time_s, {.min = 0}},
-                          Field{"fit", &Distribution::fit}};
 
 /// Refuses a count that exceeds another one.
 void require_at_most(const Reader& object, std::string_view member, std::uint64_t limit) {
@@ -204,11 +175,11 @@ OrderedJson distribution_object(const Distribution& distribution) {
 }
 
 std::string to_json(const Distribution& distribution) {
-  return write(distribution_object(distribution));
+  return write(kDistributionFormat, distribution_object(distribution));
 }
 
 Result<Distribution> distribution_from_json(std::string_view text) {
-  return read_document(text, "distribution", [](const Reader& reader) {
+  return read_document(text, "distribution", kDistributionFormat, [](const Reader& reader) {
     return read_distribution(reader, MixturePart::Required);
   });
 }

@@ -14,7 +14,7 @@ std::string to_json(const Event& event) {
   object["task"] = event.task;
   object["robot"] = event.robot;
   object["text"] = event.text;
-  return write(object);
+  return write(kEventFormat, object);
 }
 
 }  // namespace kinship::json

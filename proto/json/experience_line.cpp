@@ -8,8 +8,11 @@ namespace kinship::json {
 namespace {
 
 ExperienceLine read_line(const Reader& reader) {
-  if (const auto description = reader.find("robot_description"))
+  if (const auto description = reader.find("robot_description")) {
+    check_format(reader, kExperienceRobotFormat);
     return read_robot_description(*description);
+  }
+  check_format(reader, kAttemptFormat);
   if (!reader.find("report_uuid"))
     throw Failure(ErrorCode::InvalidInput,
                   "line of an experience file: needs a member robot_description or report_uuid");
@@ -21,7 +24,7 @@ ExperienceLine read_line(const Reader& reader) {
 std::string to_experience_line(const RobotDescription& description) {
   OrderedJson object;
   object["robot_description"] = robot_description_object(description);
-  return write(object);
+  return write(kExperienceRobotFormat, object);
 }
 
 Result<ExperienceLine> experience_line_from_json(std::string_view text) {

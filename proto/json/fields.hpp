@@ -113,15 +113,20 @@ T read_as(const Reader& reader, const FieldRules& rules) {
   }
 }
 
-/// The document of a value.
+/// A value as a part, or as the document of a format.
 template <Described Value>
 std::string write_fields(const Value& value) {
   return write(json_of(value));
 }
+template <Described Value>
+std::string write_fields(const Value& value, const Format& format) {
+  return write(format, json_of(value));
+}
 
 template <Described Value>
-Result<Value> read_fields(std::string_view text, std::string_view what) {
-  return read_document(text, what, [](const Reader& reader) { return read_as<Value>(reader); });
+Result<Value> read_fields(std::string_view text, std::string_view what, const Format& format) {
+  return read_document(text, what, format,
+                       [](const Reader& reader) { return read_as<Value>(reader); });
 }
 
 }  // namespace kinship::json

@@ -2,6 +2,7 @@
 
 #include "proto/json/fields.hpp"
 #include "proto/json/name_pairs_json.hpp"
+#include "proto/json/result_fields.hpp"
 #include "proto/json/scene_json.hpp"
 #include "proto/json/task_space_region_json.hpp"
 #include "proto/types/limits.hpp"
@@ -42,7 +43,7 @@ void read_goal(const Reader& reader, Problem& problem) {
 }
 
 Problem read_problem(const Reader& reader) {
-  reader.allow_only({"name", "T_task_base", "start", "goal", "scene", "attached",
+  reader.allow_only({"format", "name", "T_task_base", "start", "goal", "scene", "attached",
                      "allowed_collisions", "constraint", "time_limit_s", "seed"});
   Problem problem;
   problem.name = reader.at("name").text(kMaxTaskBytes);
@@ -65,45 +66,6 @@ Problem read_problem(const Reader& reader) {
     problem.seed = seed->count();
   return problem;
 }
-
-constexpr std::tuple kEffort{
-    Field{"name", &ProblemResult::name, {.limit = kMaxTaskBytes}},
-    Field{"solved", &ProblemResult::solved},
-    Field{"collision_checks", &ProblemResult::collision_checks},
-    Field{"goal_checks", &ProblemResult::goal_checks, {.may_be_missing = true}},
-    Field{"shortcut_checks", &ProblemResult::shortcut_checks, {.may_be_missing = true}},
-    Field{"projections", &ProblemResult::projections},
-    Field{"proven", &ProblemResult::proven, {.may_be_missing = true}},
-    Field{"path_length", &ProblemResult::path_length, {.min = 0, .may_be_missing = true}},
-    Field{"hand_length_m", &ProblemResult::hand_length_m, {.min = 0, .may_be_missing = true}},
-    Field{
-        "least_clearance_m", &ProblemResult::least_clearance_m, {.min = 0, .may_be_missing = true}},
-    Field{"refuted_edges", &ProblemResult::refuted_edges, {.may_be_missing = true}},
-    Field{"planning_time_s", &ProblemResult::planning_time_s, {.min = 0}},
-    Field{"processor_time_s", &ProblemResult::processor_time_s, {.min = 0, .may_be_missing = true}},
-    Field{"time_limit_s", &ProblemResult::time_limit_s, {.min = 0}}};
-
-/// If there is a distribution, or the query was guided or control.
-constexpr std::tuple kGuidance{
-    Field{"distribution_id", &ProblemResult::distribution_id, {.may_be_missing = true}},
-    Field{"revision", &ProblemResult::distribution_revision},
-    Field{"share", &ProblemResult::share, {.min = 0, .max = 1}},
-    Field{"sampling_mode", &ProblemResult::sampling_mode},
-    Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}},
-    Field{"track_share", &ProblemResult::track_share, {.min = 0, .max = 1, .may_be_missing = true}},
-    Field{"experience_revision", &ProblemResult::experience_revision, {.may_be_missing = true}},
-    Field{"tracks_followed", &ProblemResult::tracks_followed, {.may_be_missing = true}},
-    Field{"recall_tries", &ProblemResult::recall_tries, {.may_be_missing = true}},
-    Field{"guide", &ProblemResult::guide, {.may_be_missing = true}}};
-
-constexpr std::tuple kReasons{
-    Field{"found_by", &ProblemResult::found_by, {.may_be_missing = true}},
-    Field{"guidance_reason",
-          &ProblemResult::guidance_reason,
-          {.limit = kMaxMessageBytes, .may_be_missing = true}},
-    Field{"planner", &ProblemResult::planner, {.limit = kMaxPlannerBytes, .may_be_missing = true}},
-    Field{"reason", &ProblemResult::reason, {.limit = kMaxMessageBytes, .may_be_missing = true}},
-    Field{"not_planned", &ProblemResult::not_planned, {.may_be_missing = true}}};
 
 ProblemResult read_problem_result(const Reader& reader) {
   ProblemResult result;
@@ -142,11 +104,11 @@ std::string to_json(const Problem& problem) {
       problem.constraint ? region_object(*problem.constraint) : OrderedJson(nullptr);
   object["time_limit_s"] = problem.time_limit_s;
   object["seed"] = problem.seed;
-  return write(object);
+  return write(kProblemFormat, object);
 }
 
 Result<Problem> problem_from_json(std::string_view text) {
-  return read_document(text, "problem", read_problem);
+  return read_document(text, "problem", kProblemFormat, read_problem);
 }
 
 std::string to_json(const ProblemResult& result) {
@@ -159,11 +121,11 @@ std::string to_json(const ProblemResult& result) {
   if (result.distribution_id || result.sampling_mode != SamplingMode::Uniform)
     add_members(result, kGuidance, object["guidance"]);
   add_members(result, kReasons, object);
-  return write(object);
+  return write(kResultFormat, object);
 }
 
 Result<ProblemResult> problem_result_from_json(std::string_view text) {
-  return read_document(text, "problem result", read_problem_result);
+  return read_document(text, "problem result", kResultFormat, read_problem_result);
 }
 
 }  // namespace kinship::json

@@ -87,6 +87,25 @@ Reader Document::root() const {
   return {*json_, ""};
 }
 
+void check_format(const Reader& root, const Format& read) {
+  constexpr std::size_t kMaxFormatBytes = 100;
+  const auto member = root.find("format");
+  if (!member)
+    return;
+  const std::string given = member->text(kMaxFormatBytes), ours = to_text(read);
+  const std::size_t slash = ours.rfind('/') + 1;
+  const std::string_view text(given);
+  std::uint32_t version = 0;
+  const auto [end, error] = std::from_chars(text.data() + std::min(slash, text.size()),
+                                            text.data() + text.size(), version);
+  if (text.substr(0, slash) != std::string_view(ours).substr(0, slash) || error != std::errc() ||
+      end != text.data() + text.size() || version == 0)
+    member->refuse("'" + shown(given) + "' is not '" + ours + "'");
+  if (version > read.version)
+    member->refuse("'" + shown(given) + "' is newer than '" + ours +
+                   "', the newest that this program reads");
+}
+
 Reader Document::any_root() const { return {*json_, what_}; }
 
 void Reader::refuse(const std::string& problem) const {

@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "proto/json/format.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/uuid.hpp"
@@ -87,6 +88,10 @@ class Document {
   std::string what_;
 };
 
+/// Refuses a document whose member `format` names another kind, or a later version, than `read`.
+/// Without the member it is of version 1.
+void check_format(const Reader& root, const Format& read);
+
 /// Parses `text` and applies `read` to its root; a Failure becomes the error.
 template <typename Read>
 Result<std::invoke_result_t<Read, const Reader&>> read_document(std::string_view text,
@@ -97,6 +102,17 @@ Result<std::invoke_result_t<Read, const Reader&>> read_document(std::string_view
   } catch (const Failure& failure) {
     return failure.error();
   }
+}
+
+/// The same for a document of a format, see check_format().
+template <typename Read>
+Result<std::invoke_result_t<Read, const Reader&>> read_document(std::string_view text,
+                                                                std::string_view what,
+                                                                const Format& format, Read read) {
+  return read_document(text, what, [&](const Reader& root) {
+    check_format(root, format);
+    return read(root);
+  });
 }
 
 }  // namespace kinship::json

@@ -42,11 +42,11 @@ std::string to_json(const RecordedSearch& search) {
   object["parents"] = search.parents;
   object["checks"] = search.checks;
   object["path"] = search.path;
-  return write(object);
+  return write(kSearchFormat, object);
 }
 
 Result<RecordedSearch> recorded_search_from_json(std::string_view text) {
-  return read_document(text, "search", read_recorded_search);
+  return read_document(text, "search", kSearchFormat, read_recorded_search);
 }
 
 }  // namespace kinship::json

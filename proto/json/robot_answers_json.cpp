@@ -12,7 +12,7 @@ std::string to_json(const InverseAnswer& answer) {
   document["time_us"] = answer.time_us;
   if (answer.colliding)
     document["colliding"] = *answer.colliding;
-  return write(document);
+  return write(kInverseKinematicsFormat, document);
 }
 
 std::string to_json(const ForwardAnswer& answer) {
@@ -21,7 +21,7 @@ std::string to_json(const ForwardAnswer& answer) {
   document["frame"] = answer.is_in_task ? "task" : "base";
   document["tip"] = pose_list(answer.tip);
   document["transfer"] = pose_list(answer.transfer);
-  return write(document);
+  return write(kForwardKinematicsFormat, document);
 }
 
 std::string to_json(const std::string& task, const std::vector<Transferability>& pairs) {
@@ -45,7 +45,7 @@ std::string to_json(const std::string& task, const std::vector<Transferability>&
   OrderedJson document;
   document["task"] = task;
   document["rows"] = std::move(rows);
-  return write(document);
+  return write(kRobotComparisonFormat, document);
 }
 
 std::string to_json(const RobotCheck& check) {
@@ -62,12 +62,14 @@ std::string to_json(const RobotCheck& check) {
   document["solutions_per_pose"] = check.solutions_per_pose;
   document["time_per_pose_us"] = check.time_per_pose_us;
   document["links"] = json_of(check.links);
-  return write(document);
+  return write(kRobotCheckFormat, document);
 }
 
-std::string to_json(const RobotLinks& links) { return write_fields(links); }
-std::string to_json(const RobotFrames& frames) { return write_fields(frames); }
-std::string to_json(const SrdfSuggestion& suggestion) { return write_fields(suggestion); }
+std::string to_json(const RobotLinks& links) { return write_fields(links, kRobotLinksFormat); }
+std::string to_json(const RobotFrames& frames) { return write_fields(frames, kRobotFramesFormat); }
+std::string to_json(const SrdfSuggestion& suggestion) {
+  return write_fields(suggestion, kSrdfSuggestionFormat);
+}
 
 std::string to_json(const RegisterReply& reply, const std::string& label) {
   OrderedJson document;
@@ -82,7 +84,7 @@ std::string to_json(const RegisterReply& reply, const std::string& label) {
   document["took_geometry"] = reply.took_geometry;
   document["meshes"] = reply.meshes;
   document["meshes_missing"] = reply.wanted.size();
-  return write(document);
+  return write(kRobotRegistrationFormat, document);
 }
 
 Result<Eigen::Isometry3d> pose_from_json(std::string_view text) {

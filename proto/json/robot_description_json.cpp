@@ -146,11 +146,11 @@ OrderedJson robot_description_object(const RobotDescription& description) {
 }
 
 std::string to_json(const RobotDescription& description) {
-  return write(robot_description_object(description));
+  return write(kRobotDescriptionFormat, robot_description_object(description));
 }
 
 Result<RobotDescription> robot_description_from_json(std::string_view text) {
-  return read_document(text, "robot description", read_robot_description);
+  return read_document(text, "robot description", kRobotDescriptionFormat, read_robot_description);
 }
 
 }  // namespace kinship::json

@@ -4,6 +4,6 @@
 
 namespace kinship::json {
 
-std::string to_json(const StoreCheck& check) { return write_fields(check); }
+std::string to_json(const StoreCheck& check) { return write_fields(check, kStoreCheckFormat); }
 
 }  // namespace kinship::json

@@ -21,9 +21,9 @@ std::string to_json(const TaskExperience& experience) {
     paths.push_back(
         {{"path", path.path.text()}, {"source", path.source.hex()}, {"poses", std::move(poses)}});
   }
-  return write({{"revision", revision.data()},
-                {"paths_known", experience.paths_known},
-                {"paths", std::move(paths)}});
+  return write(kTaskExperienceFormat, {{"revision", revision.data()},
+                                       {"paths_known", experience.paths_known},
+                                       {"paths", std::move(paths)}});
 }
 
 }  // namespace kinship::json

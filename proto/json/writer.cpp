@@ -31,4 +31,8 @@ std::string write(const OrderedJson& document) {
   return document.dump(kOneLine, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
+std::string write(const Format& format, const OrderedJson& object) {
+  return in_format(format, write(object));
+}
+
 }  // namespace kinship::json

@@ -8,6 +8,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from formats import checked, in_format
+
 from .wilcoxon import Wilcoxon, wilcoxon
 
 Result = dict[str, Any]  # a line of a result file
@@ -21,7 +23,7 @@ def read_results(file: str) -> list[Result]:
     with open(file, encoding="utf-8") as lines:
         for number, line in enumerate(lines, 1):
             try:
-                result = json.loads(line)
+                result = checked(json.loads(line), "result")
                 for name, kind in _NEEDED.items():
                     if not isinstance(result, dict) or name not in result:
                         raise ValueError(f"{name}: is missing")
@@ -156,7 +158,7 @@ def document(comparison: Comparison, also: Sequence[tuple[str, Comparison]] = ()
     told: dict[str, Any] = _pair(comparison) | {
         "wilcoxon_checks": _test(comparison.checks_test), "wilcoxon_time": _test(comparison.time_test), "unpaired": comparison.unpaired,
         "not_planned": comparison.counts()}
-    return told | ({"also": [{"name": name} | _pair(each) for name, each in also]} if also else {})
+    return in_format("comparison", told) | ({"also": [{"name": name} | _pair(each) for name, each in also]} if also else {})
 
 
 def _finite(values: dict[str, Any]) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 import json
 from collections.abc import Sequence
 
+from formats import checked
+
 from . import markdown, tables
 from .bars import write_bars
 from .clouds import POSTURES, write_clouds
@@ -18,7 +20,7 @@ _TUNING_HEAD = ("robot", "experience", "uniform", "f = 1", "guided", "ratio", "9
 def write_report(study: StudyFolder) -> None:
     """Writes RESULTS.md, checks.svg, time.svg and clouds.png into the folder of the study."""
     cells = study.cells("test.jsonl")
-    distributions = list(study.lines("distributions.jsonl"))
+    distributions = list(study.lines("distributions.jsonl", "distribution"))
     write_bars(study, cells, lambda cell: cell.checks, "collision checks, mean", study.folder / "checks.svg")
     write_bars(study, cells, lambda cell: cell.cpu_s, "planning time, mean, s", study.folder / "time.svg")
     write_clouds(study, distributions, study.folder / "clouds.png")
@@ -28,7 +30,7 @@ def write_report(study: StudyFolder) -> None:
 def results_text(study: StudyFolder) -> str:
     """The whole of RESULTS.md."""
     cells = study.cells("test.jsonl")
-    distributions = list(study.lines("distributions.jsonl"))
+    distributions = list(study.lines("distributions.jsonl", "distribution"))
     pairs = tables.compare_pairs(study, cells)
     text = (f"# Study {study.study['study']}: {study.study['purpose']}\n\n"
             "Made by `client/experiments/analyse.py` from the results in this folder; not to be edited. "
@@ -127,7 +129,7 @@ def _tuning_line(cells: tuple[str, ...]) -> str:
 
 def tuning_text(study: StudyFolder) -> str:
     """A line for each pair of the last tuning run, then the geometric means."""
-    run = json.loads((study.folder / "tuning.json").read_text(encoding="utf-8"))
+    run = checked(json.loads((study.folder / "tuning.json").read_text(encoding="utf-8")), "study-tuning")
     cells = study.cells("tuning.jsonl")
     text = _tuning_line(_TUNING_HEAD)
     groups: dict[str, list[Comparison]] = {"own": [], "transferred": []}

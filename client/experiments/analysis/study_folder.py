@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import zstandard
 
+from formats import checked
+
 
 @dataclasses.dataclass(frozen=True)
 class Cell:
@@ -42,15 +44,15 @@ class StudyFolder:
     def __init__(self, folder: pathlib.Path) -> None:
         self.folder = folder
         # Name, robots, settings and side studies, as the program had them (pipeline/runs.py).
-        self.study: dict[str, Any] = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+        self.study: dict[str, Any] = checked(json.loads((folder / "study.json").read_text(encoding="utf-8")), "study")
         self.robots: list[str] = [robot["label"] for robot in self.study["robots"]]
         self.labels: dict[str, str] = {robot["digest"]: robot["label"] for robot in self.study["robots"]}
 
     def has(self, name: str) -> bool:
         return any((self.folder / file).exists() for file in (name, name + ".zst"))
 
-    def lines(self, name: str) -> Iterator[dict[str, Any]]:
-        """The JSON documents of a file, one a line."""
+    def lines(self, name: str, *formats: str) -> Iterator[dict[str, Any]]:
+        """The JSON documents of a file, one a line, of these formats; of queries if none is named."""
         file = self.folder / name
         if not file.exists() and self.has(name):
             file = self.folder / (name + ".zst")
@@ -60,8 +62,8 @@ class StudyFolder:
             try:
                 with io.TextIOWrapper(raw, encoding="utf-8") as text:
                     for number, line in enumerate(text, 1):
-                        yield json.loads(line)
-            except (json.JSONDecodeError, UnicodeDecodeError) as error:
+                        yield checked(json.loads(line), *(formats or ("study-query",)))
+            except ValueError as error:
                 raise ValueError(f"'{file}' line {number}: {error}") from error
             except zstandard.ZstdError as error:
                 raise ValueError(f"'{file}': {error}") from error

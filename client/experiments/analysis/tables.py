@@ -46,7 +46,7 @@ def compare_pairs(study: StudyFolder, cells: Cells) -> list[Comparison]:
 
 def runs_table(study: StudyFolder) -> str:
     rows = []
-    for run in study.lines("runs.jsonl"):
+    for run in study.lines("runs.jsonl", "study-run"):
         begun = run.get("begun_s")
         time = datetime.datetime.fromtimestamp(begun, datetime.timezone.utc) if begun else None
         rows.append([run.get("side") or "test set", run["commit"], f"{time:%Y-%m-%d %H:%M}" if time else NOTHING,

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from scipy import special, stats
 
+from formats import checked
+
 from . import markdown
 from .study_folder import StudyFolder
 
@@ -68,18 +70,18 @@ def own_configurations(folder: StudyFolder, robot: str, most: int = 2000) -> np.
     name = f"learning/{robot}.jsonl"
     if not folder.has(name):
         return None
-    rows = [row for line in folder.lines(name) for row in (line.get("waypoints") or [])]
+    rows = [row for line in folder.lines(name, "attempt", "experience-robot") for row in (line.get("waypoints") or [])]
     return np.asarray(rows)[::max(1, len(rows) // most)] if rows else None
 
 
 def pairs_of(folder: StudyFolder) -> list[Pair]:
     """Every pair of different robots of a study whose gain was measured and whose worth was predicted."""
-    predictions = json.loads((folder.folder / PREDICTIONS).read_text(encoding="utf-8"))["rows"]
+    predictions = checked(json.loads((folder.folder / PREDICTIONS).read_text(encoding="utf-8")), "robot-comparison")["rows"]
     worths = {(row["target_label"], row["source_label"]): row["worth"] for row in predictions}
     cells = folder.cells("test.jsonl")
     own = {robot: own_configurations(folder, robot) for robot in folder.robots}
     pairs = []
-    for distribution in folder.lines("distributions.jsonl"):
+    for distribution in folder.lines("distributions.jsonl", "distribution"):
         if len(distribution["selection"]["sources"]) != 1:
             continue
         target = folder.labels[distribution["robot"]]

@@ -7,9 +7,12 @@ from typing import Any
 
 import zstandard
 
+from formats import checked, in_format
+
 Key = tuple[str, str, str, int]  # robot, guidance, instance, seed: 0, 1, ... is added to the instance's own
 _LEVEL = 19  # files are written once
 _MAX_BYTES = 1 << 30
+_FORMAT = "study-query"
 _MEMBERS = ("robot", "guidance", "instance", "seed", "distribution", "solved", "checks", "goal_checks", "projections", "cpu_s", "length")
 
 
@@ -72,13 +75,13 @@ class QueryLog:
         self.rows: dict[Key, dict[str, Any]] = {}
         if expand_file(file):
             self._read()
-        self._lines = LineFile(file, (to_line(self.rows[key]) for key in sorted(self.rows)))
+        self._lines = LineFile(file, (_line_of(self.rows[key]) for key in sorted(self.rows)))
 
     def _read(self) -> None:
         lines = self.file.read_text(encoding="utf-8").splitlines()
         for number, line in enumerate(lines, 1):
             try:
-                row = json.loads(line)
+                row = checked(json.loads(line), _FORMAT)
                 if not isinstance(row, dict) or not row.keys() >= set(_MEMBERS):
                     raise ValueError("is no result of a query")
             except ValueError as error:
@@ -100,11 +103,15 @@ class QueryLog:
 
     def add(self, row: dict[str, Any]) -> None:
         with self._lock:
-            self._lines.add(to_line(row))
+            self._lines.add(_line_of(row))
             self.rows[key_of(row)] = row
 
     def close(self) -> None:
         self._lines.close()
+
+
+def _line_of(row: dict[str, Any]) -> str:
+    return to_line(in_format(_FORMAT, row))
 
 
 def key_of(row: dict[str, Any]) -> Key:

@@ -9,6 +9,8 @@ from typing import Any
 
 import kinship
 
+from formats import in_format
+
 from .files import LineFile, to_line
 from .learning import SHORTCUT_CHECKS, running_kinshipd
 from .parallel import Progress
@@ -92,7 +94,7 @@ def run_orders(studies: Sequence[Study], wanted: OrderOptions) -> list[dict[str,
     with contextlib.closing(LineFile(file, [])) as lines:
         for order in orders:
             for row in run_order(order, wanted):
-                lines.add(to_line(row))
+                lines.add(to_line(in_format("order-query", row)))
                 rows.append(row)
                 progress.advance()
     progress.finish()

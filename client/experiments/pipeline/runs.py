@@ -12,9 +12,11 @@ from typing import Any
 
 import kinship
 
+from formats import in_format
+
 from . import peers
 from .cells import Cell, DistributionRequest, QueryPlan, run_queries, uniform_cell, uniform_cells, uniform_name
-from .files import QueryLog, compress_file, write_whole
+from .files import QueryLog, compress_file, to_line, write_whole
 from .learning import LearningSet, Server, renamed, running_kinshipd
 from .parallel import Progress
 from .side_studies import RequestedCell, SideStudy, find_side_study, side_studies
@@ -98,7 +100,7 @@ class StudyRun:
         record = {"begun_s": int(begin), "commit": _commit(), "machine": _machine(), "study": self.study.name} | (
             {"side": side} if side else {}) | {"planned": planned, "duration_s": time.monotonic() - clock}
         with (self.folder / "runs.jsonl").open("a", encoding="utf-8") as runs:
-            runs.write(json.dumps(record, separators=(",", ":")) + "\n")
+            runs.write(json.dumps(in_format("study-run", record), separators=(",", ":")) + "\n")
         compress_file(self.folder / (name + ".jsonl"))
 
     def analyse(self, *words: str) -> None:
@@ -110,7 +112,7 @@ class StudyRun:
             "learning_instances": self.study.learning_instances,
             "side_studies": [{"name": name, "purpose": side.purpose} for name, side in side_studies(self.study).items()],
             "robots": known["robots"]}
-        write_whole(self.folder / "study.json", (json.dumps(told, separators=(",", ":"), ensure_ascii=False) + "\n").encode())
+        write_whole(self.folder / "study.json", (to_line(in_format("study", told)) + "\n").encode())
         analyse(self.options, self.folder, *words)
 
 
@@ -225,7 +227,7 @@ def tune_study(study: Study, tuning: TuningOptions) -> None:
         with contextlib.closing(QueryLog(run.folder / "tuning.jsonl")) as log:
             run.plan("tuning", cells, QueryPlan("tuning", tuning.instances, tuning.seeds, study.options.threads), log)
     told = {"uniform": uniform_name(overshoot), "pairs": pairs}
-    write_whole(run.folder / "tuning.json", (json.dumps(told, indent=1) + "\n").encode())
+    write_whole(run.folder / "tuning.json", (json.dumps(in_format("study-tuning", told), indent=1) + "\n").encode())
     run.analyse("--tuning")
 
 

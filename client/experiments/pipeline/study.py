@@ -8,6 +8,8 @@ from typing import Any
 import kinship
 import numpy as np
 
+from formats import checked
+
 QUICK_LEARNING, QUICK_INSTANCES = 20, 6  # of each robot; a quick run plans test instances once
 
 
@@ -54,7 +56,7 @@ class Study:
     def __init__(self, name: str, options: RunOptions) -> None:
         self.name = name
         self.options = options
-        self.description: dict[str, Any] = json.loads(self._ask("--describe"))
+        self.description: dict[str, Any] = checked(json.loads(self._ask("--describe")), "study-description")
         self.fleet = [Member(robot["label"], kinship.Robot(options.models / robot["label"]), _matrix(robot["T_task_base"]))
                       for robot in self.description["robots"]]
 

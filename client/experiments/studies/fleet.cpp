@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/experiments/studies/instance_draws.hpp"
+#include "proto/json/format.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
@@ -73,7 +74,7 @@ std::string describe_study(const Study& study, const std::vector<StudyMember>& f
   document["max_goals"] = study.settings.max_goals;
   for (const StudyMember& member : fleet)
     document["robots"].push_back(describe_robot(member));
-  return document.dump() + "\n";
+  return json::in_format({"study-description"}, document.dump()) + "\n";
 }
 
 }  // namespace kinship::experiments

@@ -51,16 +51,6 @@ TEST(ExperienceLine, WhatIsNeitherIsRefusedByName) {
   EXPECT_EQ(message_of(R"({"report_uuid":"7"})"), "report_uuid: '7' is not a UUID (8-4-4-4-12)");
 }
 
-TEST(EventJson, IsALine) {
-  const Event event{.kind = EventKind::Fit,
-                    .time_ms = 1000,
-                    .task = "bin_to_shelf",
-                    .robot = "panda",
-                    .text = "revision 3 \"ready\""};
-  EXPECT_EQ(to_json(event), R"({"time_ms":1000,"kind":"fit","task":"bin_to_shelf",)"
-                            R"("robot":"panda","text":"revision 3 \"ready\""})");
-}
-
 RobotDescription planar_arm() {
   RobotDescription description;
   description.label = "planar-3";
@@ -71,6 +61,57 @@ RobotDescription planar_arm() {
   description.held_joints = {{"lift", 0.25}, {"head", -1}};
   description.never_colliding = {{"a", "b"}, {"b", "c"}};
   return description;
+}
+
+TEST(DocumentFormat, IsTheFirstMemberAndNotWrittenTwice) {
+  EXPECT_EQ(in_format({"robot removal", 2, "-list"}, R"({"rows":[]})"),
+            R"({"format":"kinship.robot-removal-list/2","rows":[]})");
+  EXPECT_EQ(in_format(kProblemFormat, "{}"), R"({"format":"kinship.problem/1"})");
+  const std::string written = in_format(kProblemFormat, R"({"name":"a"})");
+  EXPECT_EQ(in_format(kResultFormat, written), written);
+}
+
+/// What a reader of problems says of a document with this format.
+std::string problem_in(const std::string& format) {
+  const auto read = problem_from_json(R"({"name": "a", "format": )" + format +
+                                      R"(, "start": [0], "goal": {"configurations": [[1]]}})");
+  return read ? "accepted" : read.error().message;
+}
+
+TEST(DocumentFormat, AnotherNameAndALaterVersionAreRefusedByBothNames) {
+  EXPECT_EQ(problem_in(R"("kinship.problem/1")"), "accepted");
+  EXPECT_EQ(problem_in("null"), "accepted");
+  EXPECT_EQ(problem_in(R"("kinship.problem/2")"),
+            "format: 'kinship.problem/2' is newer than 'kinship.problem/1', the newest that this "
+            "program reads");
+  for (const char* wrong :
+       {"kinship.result/1", "kinship.problem", "kinship.problem/", "kinship.problem/0",
+        "kinship.problem/1x", "kinship.problem/-1", "kinship.problem/99999999999", "problem/1", ""})
+    EXPECT_EQ(problem_in('"' + std::string(wrong) + '"'),
+              "format: '" + std::string(wrong) + "' is not 'kinship.problem/1'");
+  EXPECT_EQ(problem_in("1"), "format: must be a string, is number");
+}
+
+TEST(DocumentFormat, LinesOfAnExperienceFileAreOfTwo) {
+  const std::string attempt = to_json(test::RandomValues(kSeed).attempt());
+  const auto with = [&](std::string text, const std::string& from, const std::string& format) {
+    return message_of(text.replace(text.find(from), from.size(), format));
+  };
+  EXPECT_EQ(with(attempt, "kinship.attempt/1", "kinship.experience-robot/1"),
+            "format: 'kinship.experience-robot/1' is not 'kinship.attempt/1'");
+  EXPECT_EQ(with(to_experience_line(planar_arm()), "kinship.experience-robot/1", "kinship.event/1"),
+            "format: 'kinship.event/1' is not 'kinship.experience-robot/1'");
+}
+
+TEST(EventJson, IsALine) {
+  const Event event{.kind = EventKind::Fit,
+                    .time_ms = 1000,
+                    .task = "bin_to_shelf",
+                    .robot = "panda",
+                    .text = "revision 3 \"ready\""};
+  EXPECT_EQ(to_json(event),
+            R"({"format":"kinship.event/1","time_ms":1000,"kind":"fit","task":"bin_to_shelf",)"
+            R"("robot":"panda","text":"revision 3 \"ready\""})");
 }
 
 TEST(RobotDescriptionJson, MeshSolidsAreReadBackAndLeftOutWhereThereAreNone) {
@@ -122,13 +163,15 @@ TEST(TaskExperienceJson, HasPathsWithTheirPosesAndARevisionThatNoReaderRounds) {
   path.path = Uuid::parse("00112233-4455-6677-8899-aabbccddeeff").value();
   path.poses = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(1, 2.5, -3))};
   experience.paths = {path};
-  EXPECT_EQ(to_json(experience),
-            R"({"revision":"fedcba9876543210","paths_known":9,"paths":[)"
-            R"({"path":"00112233-4455-6677-8899-aabbccddeeff","source":")" +
-                path.source.hex() +
-                R"(","poses":[[0.0,0.0,0.0,0.0,0.0,0.0,1.0],[1.0,2.5,-3.0,0.0,0.0,0.0,1.0]]}]})");
-  EXPECT_EQ(to_json(TaskExperience{.revision = 1, .paths_known = 0, .paths = {}}),
-            R"({"revision":"0000000000000001","paths_known":0,"paths":[]})");
+  EXPECT_EQ(
+      to_json(experience),
+      R"({"format":"kinship.task-experience/1","revision":"fedcba9876543210","paths_known":9,"paths":[)"
+      R"({"path":"00112233-4455-6677-8899-aabbccddeeff","source":")" +
+          path.source.hex() +
+          R"(","poses":[[0.0,0.0,0.0,0.0,0.0,0.0,1.0],[1.0,2.5,-3.0,0.0,0.0,0.0,1.0]]}]})");
+  EXPECT_EQ(
+      to_json(TaskExperience{.revision = 1, .paths_known = 0, .paths = {}}),
+      R"({"format":"kinship.task-experience/1","revision":"0000000000000001","paths_known":0,"paths":[]})");
 }
 
 }  // namespace

@@ -205,7 +205,7 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
   result.reason = "time limit";
   EXPECT_EQ(
       to_json(result),
-      R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
+      R"({"format":"kinship.result/1","name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
       R"("shortcut_checks":0,"projections":0,"proven":false,"path_length":null,"hand_length_m":null,)"
       R"("least_clearance_m":null,"refuted_edges":0,)"
       R"("planning_time_s":0.0,"processor_time_s":0.0,"time_limit_s":0.0,"start":null,)"

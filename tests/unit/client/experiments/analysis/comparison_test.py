@@ -152,7 +152,7 @@ Lengths and clearance are of the 2 problems that both solved.
         unmeasured = {f"{which}_{what}": None for what in ("length", "hand_m", "clearance_m") for which in ("mean", "median")}
         exact = {"p": 1, "pairs": 1, "dropped": 0, "rank_sum_plus": 1, "rank_sum_minus": 0, "method": "exact"}
         self.assertEqual(document(compared, [("say \"alone\"", compared)]), {
-            "pairs": 1,
+            "format": "kinship.comparison/1", "pairs": 1,
             "uniform": {"solved": 0, "with_guidance": 0, "mean_checks": 60000, "median_checks": None, "mean_time_s": 9,
                         "median_time_s": None} | unmeasured,
             "guided": {"solved": 1, "with_guidance": 1, "mean_checks": 1000, "median_checks": 1000, "mean_time_s": 1, "median_time_s": 1}
