@@ -20,6 +20,7 @@ from terminal import Terminal
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
 WITH_INSTALLED_PROGRAMS = {"fleet.md", "operations.md", "reference.md"}  # which are in the PATH from the start
+WITH_PACKAGES_TOO = {"tutorial.md"}  # which integration_packages_tutorial runs once more
 DOMAINS = 4  # that a document may name as KINSHIP_DOMAIN; most name none, which is 0
 LANGUAGES_WITHOUT_COMMANDS = {"text", "json", "toml", "cpp", "c", "python", "cmake", "xml", "yaml"}
 
@@ -28,7 +29,7 @@ EXIT_CODE = re.compile(r"exit code (\d+)")
 FIRST_LINE = "the first line of: "
 BESIDE = "in a terminal of its own"
 IN_THAT_TERMINAL = "in that terminal"  # the one before: Control-C
-WITH_SOURCES, WITH_PACKAGES = "with the sources", "with the packages"  # one reader or the other
+WITH_SOURCES, WITH_PACKAGES = "with the sources", "with the packages"  # for one reader or the other
 
 
 def memory_root() -> "str | None":
@@ -91,7 +92,7 @@ class DocumentRun:
         """:return: false if a command failed."""
         commands = block.commands()
         exit_code = EXIT_CODE.fullmatch(block.mark)
-        if block.mark == self._skipped:
+        if block.mark == self._skipped and self.document.path.name in WITH_PACKAGES_TOO:
             return True
         if block.mark == IN_THAT_TERMINAL and block.lines == ["^C"]:
             if code := self._terminal.interrupt():
