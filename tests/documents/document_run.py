@@ -20,6 +20,7 @@ from terminal import Terminal
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
 WITH_INSTALLED_PROGRAMS = {"fleet.md", "operations.md", "reference.md"}  # which are in the PATH from the start
+WITH_PACKAGES_TOO = {"tutorial.md"}  # which integration_packages_tutorial runs once more
 DOMAINS = 4  # that a document may name as KINSHIP_DOMAIN; most name none, which is 0
 LANGUAGES_WITHOUT_COMMANDS = {"text", "json", "toml", "cpp", "c", "python", "cmake", "xml", "yaml"}
 
@@ -28,6 +29,7 @@ EXIT_CODE = re.compile(r"exit code (\d+)")
 FIRST_LINE = "the first line of: "
 BESIDE = "in a terminal of its own"
 IN_THAT_TERMINAL = "in that terminal"  # the one before: Control-C
+WITH_SOURCES, WITH_PACKAGES = "with the sources", "with the packages"  # for one reader or the other
 
 
 def memory_root() -> "str | None":
@@ -40,17 +42,22 @@ def memory_root() -> "str | None":
 class DocumentRun:
     """Use as a context: at its end everything that it started ends, and its folder goes."""
 
-    def __init__(self, document: Document, is_written: bool = False):
-        """:param is_written: another output is no failure, but goes into the document with write()."""
+    def __init__(self, document: Document, is_written: bool = False, with_packages: bool = False):
+        """:param is_written: another output is no failure, but goes into the document with write().
+        :param with_packages: as for a reader who has installed the packages: in an empty folder, with the programs of the system.
+        """
         self.document = document
         self.failures = []  # "file:line: what is wrong"
         self._is_written = is_written
+        self._skipped = WITH_SOURCES if with_packages else WITH_PACKAGES
         self._outputs = []  # (command, lines to be written)
         self._domains, self._claims = zip(*(reserve_domain() for _ in range(DOMAINS)))
         self._home = tempfile.TemporaryDirectory(prefix="kinship-documents-", dir=memory_root())
         home = pathlib.Path(self._home.name)
         self._folder = home / "kinship"
-        self._lay_out()
+        self._folder.mkdir()
+        if not with_packages:
+            self._lay_out()
         self._postgres = PostgresHosts(home, self._folder)
         path = "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin"
         if document.path.name in WITH_INSTALLED_PROGRAMS:
@@ -61,7 +68,6 @@ class DocumentRun:
 
     def _lay_out(self) -> None:
         """As a clone after deploy/build, but what the commands write goes here."""
-        self._folder.mkdir()
         for entry in SOURCE.iterdir():
             if not entry.name.startswith((".", "build")):
                 (self._folder / entry.name).symlink_to(entry)
@@ -86,6 +92,8 @@ class DocumentRun:
         """:return: false if a command failed."""
         commands = block.commands()
         exit_code = EXIT_CODE.fullmatch(block.mark)
+        if block.mark == self._skipped and self.document.path.name in WITH_PACKAGES_TOO:
+            return True
         if block.mark == IN_THAT_TERMINAL and block.lines == ["^C"]:
             if code := self._terminal.interrupt():
                 self._fail(block.line, f"exit code {code} of what was interrupted")
@@ -98,7 +106,7 @@ class DocumentRun:
                 self._compare(command, lines)
         elif NOT_RUN.match(block.mark):
             return True
-        elif block.mark and not exit_code:
+        elif block.mark and not exit_code and block.mark not in (WITH_SOURCES, WITH_PACKAGES):
             self._fail(block.line, f"the comment '{block.mark}' is none of those in tests/documents/README.md")
         else:
             for command in commands:

@@ -12,9 +12,9 @@ class Runs(unittest.TestCase):
         folder = self.enterContext(tempfile.TemporaryDirectory())
         self.path = pathlib.Path(folder) / "operations.md"  # the programs are in its PATH
 
-    def failures(self, text, is_written=False):
+    def failures(self, text, is_written=False, with_packages=False):
         self.path.write_text(text, encoding="utf-8")
-        with DocumentRun(Document(self.path), is_written) as run:
+        with DocumentRun(Document(self.path), is_written, with_packages) as run:
             run.run()
         if is_written:
             run.write()
@@ -41,6 +41,14 @@ class Runs(unittest.TestCase):
                      "```console\nkinship status\n```\n", "<!-- not run -->\n```console\n$ kinship status\n```\n",
                      "<!-- not run in the tests: -->\n```console\n$ kinship status\n```\n"):
             self.assertEqual(len(self.failures(text)), 1, text)
+
+    def test_readers_of_sources_and_of_packages_have_blocks_of_their_own(self):
+        text = "<!-- with the sources -->\n```console\n$ ls -d deploy\ndeploy\n```\n\n<!-- with the packages -->\n```console\n$ ls -A\n$ echo no\n```\n"
+        self.assertIn("operations.md:9", self.failures(text)[0])  # nobody runs this document with packages: all of it is run
+        self.path = self.path.with_name("tutorial.md")
+        self.assertEqual(self.failures(text), [])
+        (failure,) = self.failures(text, with_packages=True)  # there is nothing in the folder
+        self.assertIn("tutorial.md:10", failure)
 
     def test_what_stays_runs_beside_and_is_told_as_a_reader_has_it(self):
         beside = "<!-- in a terminal of its own -->\n```console\n$ kinshipd --store a.db\n...\nready domain=0 store=a.db\n```\n"

@@ -3,10 +3,15 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
+import urllib.parse
 
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
+sys.path.append(str(SOURCE / "tests" / "documents"))
+from markdown import Document  # noqa: E402
+
 BUILD = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]).parent
 FILES = {
     "kinship-server": ["usr/bin/kinshipd", "usr/share/man/man8/kinshipd.8.gz", "etc/kinship/kinshipd.toml", "usr/lib/kinship/backup",
@@ -14,6 +19,9 @@ FILES = {
                        "lib/systemd/system/kinship-backup.service", "lib/systemd/system/kinship-backup.timer",
                        "usr/share/doc/kinship-server/kinship.json", "usr/share/doc/kinship-server/kinship.rules.yml"],
     "kinship-client": ["usr/bin/kinship", "usr/share/man/man1/kinship.1.gz", "usr/bin/kinship-plan", "usr/share/kinship/robots/panda/robot.urdf"],
+    "kinship-doc": ["usr/share/doc/kinship/README.md", "usr/share/doc/kinship/docs/tutorial.md", "usr/share/doc/kinship/docs/tutorial/problems.py",
+                    "usr/share/doc/kinship/docs/tutorial/my_arm/robot.urdf", "usr/share/doc/kinship/examples",
+                    "usr/share/doc/kinship/client/examples/01_report_a_path.cpp", "usr/share/doc/kinship/robots/models/ur10e"],
     "libkinship-dev": [r"usr/lib/(\S+/)?cmake/Kinship/KinshipConfig.cmake", r"usr/include/kinship-\S+/kinship/client.hpp",
                        "usr/include/kinship.h", r"usr/lib/(\S+/)?libkinship.so.*", r"usr/lib/(\S+/)?pkgconfig/kinship.pc"],
     "python3-kinship": [r"usr/lib/python3/dist-packages/kinship/\S+\.so", r"usr/lib/python3/dist-packages/kinship/__init__.py"],
@@ -39,13 +47,13 @@ class Packages(unittest.TestCase):
     def field(self, name: str, field: str) -> str:
         return run("dpkg-deb", "--field", self.packages[name], field).strip()
 
-    def test_are_four_of_this_version(self):
+    def test_are_five_of_this_version(self):
         self.assertEqual(set(self.packages), set(FILES))
         version = re.search(r"^project\(kinship VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(), re.M).group(1)
         architecture = run("dpkg", "--print-architecture").strip()
         for name in FILES:
             self.assertEqual(self.field(name, "Version"), version)
-            self.assertEqual(self.field(name, "Architecture"), architecture)
+            self.assertEqual(self.field(name, "Architecture"), "all" if name == "kinship-doc" else architecture)
 
     def test_have_their_files_which_belong_to_root(self):
         for name, wanted in FILES.items():
@@ -65,14 +73,27 @@ class Packages(unittest.TestCase):
             self.assertIn(library, self.field(name, "Depends"), name)
             self.assertIn("libc6", self.field(name, "Depends"), name)
 
+    def test_links_of_the_documents_lead_to_what_is_installed(self):
+        root = self.folder / "installed"
+        for name in ("kinship-doc", "kinship-client"):
+            run("dpkg-deb", "--extract", self.packages[name], root)
+        documents = root / "usr/share/doc/kinship"
+        for_users = [documents / "README.md", *(documents / "docs").glob("*.md"), documents / "client" / "examples" / "README.md"]
+        dead = [f"{path.relative_to(documents)}: {target}" for path in for_users for _, target in Document(path).links()
+                if not urllib.parse.urlsplit(target).scheme and not (path.parent / target.partition("#")[0]).exists()]
+        self.assertEqual(dead, [])
+        self.assertEqual([link for link in documents.rglob("*") if not link.exists()], [])
+        self.assertTrue((documents / "examples" / "CMakeLists.txt").is_file())
+        self.assertTrue((documents / "robots/models/ur10e/robot.urdf").is_file())
+
     def test_keep_what_an_administrator_changes(self):
         root = self.folder / "control"
         run("dpkg-deb", "--control", self.packages["kinship-server"], root)
         self.assertEqual((root / "conffiles").read_text().split(), ["/etc/kinship/kinshipd.toml"])
 
     def test_bring_their_scripts(self):
-        for name, scripts in {"kinship-server": {"postinst", "prerm", "postrm"}, "kinship-client": set(), "libkinship-dev": set(),
-                              "python3-kinship": {"postinst", "prerm"}}.items():
+        for name, scripts in {"kinship-server": {"postinst", "prerm", "postrm"}, "kinship-client": set(), "kinship-doc": set(),
+                              "libkinship-dev": set(), "python3-kinship": {"postinst", "prerm"}}.items():
             root = self.folder / f"scripts-of-{name}"
             run("dpkg-deb", "--control", self.packages[name], root)
             found = [file for file in root.iterdir() if file.name in ("preinst", "postinst", "prerm", "postrm")]

@@ -1,4 +1,3 @@
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -7,13 +6,12 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 
-#include <cstring>
 #include <functional>
 #include <map>
 #include <stdexcept>
 
+#include "tests/integration/ros2/fastdds_bytes_type.hpp"
 #include "tests/integration/ros2/transport.hpp"
 
 namespace kinship::test {
@@ -21,41 +19,7 @@ namespace {
 
 using namespace eprosima::fastdds;       // NOLINT: what the whole file is about
 using namespace eprosima::fastdds::dds;  // NOLINT
-namespace rtps = eprosima::fastrtps::rtps;
-
-using Bytes = std::vector<std::uint8_t>;
-
-/// A type by its name; its samples are bytes with their encapsulation, as rmw_fastrtps writes them.
-class BytesType final : public TopicDataType {
- public:
-  explicit BytesType(const std::string& name) {
-    setName(name.c_str());
-    m_typeSize = 1024;  // at first: a payload grows by getSerializedSizeProvider
-    m_isGetKeyDefined = false;
-    auto_fill_type_object(false);
-    auto_fill_type_information(false);
-  }
-
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const Bytes& bytes = *static_cast<const Bytes*>(data);
-    payload->encapsulation = CDR_LE;
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    std::memcpy(payload->data, bytes.data(), bytes.size());
-    return true;
-  }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    static_cast<Bytes*>(data)->assign(payload->data, payload->data + payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<const Bytes*>(data)->size()); };
-  }
-  void* createData() override { return new Bytes; }
-  void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void* /*data*/, rtps::InstanceHandle_t* /*key*/, bool /*force*/) override {
-    return false;
-  }
-};
+namespace rtps = fast_rtps;
 
 template <typename Pointer>
 Pointer checked(Pointer pointer, const char* what) {
@@ -129,7 +93,7 @@ class FastTransport final : public Transport {
 
   void write(int writer, const Outgoing& message) override {
     Bytes bytes = message.cdr;
-    if (!writers_.at(static_cast<std::size_t>(writer))->write(&bytes))
+    if (!succeeded(writers_.at(static_cast<std::size_t>(writer))->write(&bytes)))
       throw std::runtime_error("write");
   }
 
@@ -139,7 +103,7 @@ class FastTransport final : public Transport {
     wait(entity, StatusMask::data_available(), deadline, [&] {
       Bytes bytes;
       SampleInfo info;
-      while (!taken && entity.take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK)
+      while (!taken && succeeded(entity.take_next_sample(&bytes, &info)))
         if (info.valid_data)
           taken = bytes;
       return taken.has_value();
@@ -148,8 +112,6 @@ class FastTransport final : public Transport {
   }
 
  private:
-  using ReturnCode_t = eprosima::fastrtps::types::ReturnCode_t;
-
   Topic* make_topic(const std::string& topic, const TopicType& type) {
     if (types_.try_emplace(type.name, new BytesType(type.name)).second)
       types_.at(type.name).register_type(participant_);
@@ -166,8 +128,7 @@ class FastTransport final : public Transport {
     while (!does_hold && std::chrono::steady_clock::now() < deadline) {
       const std::chrono::nanoseconds left = deadline - std::chrono::steady_clock::now();
       ConditionSeq active;
-      waitset.wait(active,
-                   eprosima::fastrtps::Duration_t(static_cast<long double>(left.count()) / 1e9L));
+      waitset.wait(active, FastDuration(static_cast<long double>(left.count()) / 1e9L));
       does_hold = holds();
     }
     waitset.detach_condition(condition);
