@@ -17,14 +17,14 @@ namespace {
 
 link::ClientOptions read_options(const kinship_client_options& given) {
   link::ClientOptions options;
-  options.domain = given.domain;
-  if (given.server != nullptr)
-    options.server = given.server;
+  options.domain =
+      given.domain == KINSHIP_ENVIRONMENT ? link::domain_from_environment() : given.domain;
+  options.server = given.server != nullptr ? given.server : link::server_from_environment();
   options.security = text_or_empty(given.security);
   options.outbox = text_or_empty(given.outbox);
   options.has_outbox = given.without_outbox == 0;
-  if (given.timeout_ms != 0)
-    options.timeout = std::chrono::milliseconds(given.timeout_ms);
+  options.timeout = given.timeout_ms != 0 ? std::chrono::milliseconds(given.timeout_ms)
+                                          : link::timeout_from_environment();
   return options;
 }
 

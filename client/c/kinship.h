@@ -67,17 +67,20 @@ typedef struct kinship_robot {
 
 typedef struct kinship_client kinship_client;
 
+/** The domain that KINSHIP_DOMAIN says, or 0. */
+#define KINSHIP_ENVIRONMENT 0xffffffffu
+
 typedef struct kinship_client_options {
   size_t size;
-  uint32_t domain;      /**< DDS domain, 0 to 230 */
-  const char* server;   /**< host of kinshipd; NULL: 127.0.0.1 */
+  uint32_t domain;      /**< DDS domain, 0 to 230, or KINSHIP_ENVIRONMENT */
+  const char* server;   /**< host of kinshipd; NULL: as KINSHIP_SERVER says, or 127.0.0.1 */
   const char* outbox;   /**< folder of reports that wait; NULL: below XDG_STATE_HOME or HOME */
   int without_outbox;   /**< not 0: delivers nothing, kinship_report() is refused */
-  uint32_t timeout_ms;  /**< of kinship_register() and of fetches without deadline; 0: 5000 */
+  uint32_t timeout_ms;  /**< to register, or fetch without deadline; 0: KINSHIP_TIMEOUT, or 5000 */
   const char* security; /**< folder of credentials; NULL: as KINSHIP_SECURITY says, or none */
 } kinship_client_options;
 
-/** Needs no server. \param options NULL: as KINSHIP_DOMAIN, KINSHIP_SERVER, KINSHIP_SECURITY say */
+/** Needs no server. \param options  NULL: all as the environment says. */
 KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* options,
                                              kinship_client** client);
 /** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */
@@ -98,17 +101,14 @@ typedef struct kinship_held_joint {
 /** A robot by the text of its URDF; kinship_register_file() reads files, meshes too. */
 typedef struct kinship_robot_description {
   size_t size;
-  const char* label;     /**< for people; unique at a server */
-  const char* urdf;      /**< text of the URDF */
-  const char* base_link; /**< where the chain begins */
-  const char* tip_link;  /**< where it ends */
-  const double*
-      T_tip_transfer; /**< pose of the frame that robots of a task place alike; NULL: the tip's */
+  const char* label;            /**< for people; unique at a server */
+  const char* urdf;             /**< text of the URDF */
+  const char* base_link;        /**< where the chain begins */
+  const char* tip_link;         /**< where it ends */
+  const double* T_tip_transfer; /**< frame that robots of a task place alike; NULL: the tip's */
   const char* const* never_colliding; /**< 2 n names of links, pair by pair; NULL: none */
   size_t never_colliding_pairs;       /**< n */
-  const char*
-      axes; /**< of the transfer frame that the task prescribes, e.g. "x,y,yaw"; NULL: all six
-             */
+  const char* axes; /**< of it that the task prescribes, e.g. "x,y,yaw"; NULL: all six */
   const kinship_held_joint* held_joints; /**< NULL: none */
   size_t held_joint_count;
 } kinship_robot_description;

@@ -34,7 +34,7 @@ typedef struct kinship_query {
   const double* T_task_goal; /**< of the transfer frame, in the task's frame; else not looked at */
   double time_limit_s;       /**< 0: 10 */
   uint64_t seed;             /**< equal queries with equal seeds have equal paths */
-  /** "birrt", "roadmap", "rrtconnect", or "ompl:NAME"; NULL: birrt. */
+  /** "birrt", "roadmap" or "rrtconnect"; NULL: birrt. */
   const char* algorithm;
   /** What guides it, of the robot at this placement; NULL: not guided by that. They are used during
    * the call only. */

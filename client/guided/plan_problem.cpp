@@ -13,7 +13,6 @@
 #include "client/guided/problem_mismatch.hpp"
 #include "client/guided/query_outcome.hpp"
 #include "client/guided/search_notes.hpp"
-#include "client/ompl/ompl_planner.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/unreached.hpp"
 #include "robots/planning/birrt.hpp"
@@ -196,17 +195,12 @@ class Planning {
                                           generator_)
                  : planning::plan_roadmap(start, goals, is_free_, sampler, roadmap, generator_);
     }
-    if (planner.kind == PlannerKind::Ompl) {
-      const ompl_planners::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
-      return constraint_
-                 ? ompl_planners::plan_with_ompl(start, goals, {is_free_, *constraint_}, sampler,
-                                                 ompl, generator_)
-                 : ompl_planners::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
-    }
     if (planner.kind == PlannerKind::RrtConnect)
       return planning::plan_rrt_connect(start, goals, is_free_, sampler, options, generator_);
-    return planning::plan_trees(start, goals, {is_free_, constraint_or_null()}, sampler, options,
-                                generator_);
+    const planning::Freedom freedom{is_free_, constraint_or_null()};
+    if (planner.kind == PlannerKind::Other)
+      return planner.other(start, goals, freedom, sampler, options, generator_);
+    return planning::plan_trees(start, goals, freedom, sampler, options, generator_);
   }
 
   planning::RegionConstraint* constraint_or_null() { return constraint_ ? &*constraint_ : nullptr; }

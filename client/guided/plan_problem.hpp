@@ -55,7 +55,7 @@ struct PlannedProblem {
 /// \param query  one that is not guided is planned exactly as if there were no guidance. The result
 ///               of a guided one names the source of its samples (make_query_sampler).
 /// \param stop   called before every check; true ends planning.
-/// \param recorder  records how the trees grow, except those of OMPL's planners; null: no
+/// \param recorder  records how the trees grow, except those of other libraries; null: no
 ///                  recording.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const QueryGuidance& query, const PlanSettings& settings,

@@ -1,23 +1,6 @@
 #include "client/guided/planner_choice.hpp"
 
-#include <algorithm>
-#include <vector>
-
-#include "client/ompl/ompl_planner.hpp"
-
 namespace kinship::guided {
-namespace {
-
-constexpr std::string_view kOmpl = "ompl:";
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-}  // namespace
 
 Result<PlannerChoice> parse_planner(std::string_view text) {
   if (text == "birrt")
@@ -28,21 +11,13 @@ Result<PlannerChoice> parse_planner(std::string_view text) {
     return PlannerChoice{PlannerKind::Roadmap};
   if (text == "rrtconnect")
     return PlannerChoice{PlannerKind::RrtConnect};
-  if (!text.starts_with(kOmpl))
-    return Error{ErrorCode::InvalidInput,
-                 "'" + std::string(text) +
-                     "' is no planner: give birrt, cbirrt2, roadmap, rrtconnect or ompl:NAME"};
-  const std::string name(text.substr(kOmpl.size()));
-  const std::vector<std::string> names = ompl_planners::ompl_planner_names();
-  if (std::ranges::find(names, name) == names.end())
-    return Error{
-        ErrorCode::InvalidInput,
-        "'" + name + "' is no planner of OMPL that can be guided: give one of " + joined(names)};
-  return PlannerChoice{PlannerKind::Ompl, name};
+  return Error{
+      ErrorCode::InvalidInput,
+      "'" + std::string(text) + "' is no planner here: give birrt, cbirrt2, roadmap or rrtconnect"};
 }
 
 Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained) {
-  if (wanted.kind == PlannerKind::Ompl || wanted.kind == PlannerKind::Roadmap)
+  if (wanted.kind == PlannerKind::Other || wanted.kind == PlannerKind::Roadmap)
     return wanted;
   if (!is_constrained)
     return PlannerChoice{wanted.kind == PlannerKind::RrtConnect ? wanted.kind : PlannerKind::Birrt};
@@ -50,8 +25,7 @@ Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrain
     return Error{ErrorCode::InvalidInput,
                  std::string("--planner ") +
                      (wanted.kind == PlannerKind::Birrt ? "birrt" : "rrtconnect") +
-                     " does not keep to a constraint: use --planner cbirrt2 or "
-                     "ompl:RRTConnect"};
+                     " does not keep to a constraint: use --planner cbirrt2 or roadmap"};
   return PlannerChoice{PlannerKind::Cbirrt2};
 }
 
@@ -65,8 +39,8 @@ std::string name_of(const PlannerChoice& planner) {
       return "Repetition Roadmap";
     case PlannerKind::RrtConnect:
       return "RRT-Connect";
-    case PlannerKind::Ompl:
-      return "OMPL " + planner.ompl_planner;
+    case PlannerKind::Other:
+      return planner.other_name;
     case PlannerKind::ByProblem:
       break;
   }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
+#include <random>
 #include <string>
 #include <string_view>
 
 #include "proto/types/result.hpp"
+#include "robots/planning/birrt.hpp"
 
 namespace kinship::guided {
 
@@ -13,16 +17,23 @@ enum class PlannerKind {
   Cbirrt2,
   Roadmap,
   RrtConnect,  ///< whole lines at once; not under a constraint
-  Ompl
+  Other        ///< of another library
 };
+
+/// A planner of another library; it promises what planning::plan_trees does.
+using OtherPlanner = std::function<planning::PlanSummary(
+    const Eigen::VectorXd& start, const Eigen::MatrixXd& goals, const planning::Freedom& freedom,
+    const planning::ConfigurationSampler& sampler, const planning::BirrtOptions& options,
+    std::mt19937_64& generator)>;
 
 /// The planner of a run's problems.
 struct PlannerChoice {
   PlannerKind kind = PlannerKind::ByProblem;
-  std::string ompl_planner = {};  ///< of ompl_planners::ompl_planner_names(); with Ompl only
+  std::string other_name = {};  ///< as name_of says it; with Other only
+  OtherPlanner other = {};      ///< never empty with Other
 };
 
-/// "birrt", "cbirrt2", "roadmap", "rrtconnect" or "ompl:NAME".
+/// "birrt", "cbirrt2", "roadmap" or "rrtconnect"; ompl_planners::parse_planner also knows OMPL's.
 /// \return InvalidInput that shows the text and the valid names.
 Result<PlannerChoice> parse_planner(std::string_view text);
 

@@ -37,26 +37,40 @@ std::filesystem::path security_from_environment() { return text_of("KINSHIP_SECU
 
 std::filesystem::path token_from_environment() { return text_of("KINSHIP_TOKEN"); }
 
+std::uint32_t domain_from_environment() {
+  const std::string_view text = text_of("KINSHIP_DOMAIN");
+  if (text.empty())
+    return ClientOptions().domain;
+  const auto domain = number_in<std::uint32_t>(text, 0, kMaxDomain);
+  if (!domain)
+    throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(text) +
+                                               "' is not a domain from 0 to " +
+                                               std::to_string(kMaxDomain));
+  return *domain;
+}
+
+std::string server_from_environment() {
+  const std::string_view host = text_of("KINSHIP_SERVER");
+  return host.empty() ? ClientOptions().server : std::string(host);
+}
+
+std::chrono::milliseconds timeout_from_environment() {
+  const std::string_view text = text_of("KINSHIP_TIMEOUT");
+  if (text.empty())
+    return ClientOptions().timeout;
+  const auto seconds = number_in(text, kMinTimeout_s, kMaxTimeout_s);
+  if (!seconds)
+    throw Failure(ErrorCode::InvalidInput,
+                  "KINSHIP_TIMEOUT '" + std::string(text) + "' is no time from 0.01 to 86400 s");
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::duration<double>(*seconds));
+}
+
 ClientOptions options_from_environment() {
   ClientOptions options;
-  if (const std::string_view text = text_of("KINSHIP_DOMAIN"); !text.empty()) {
-    const auto domain = number_in<std::uint32_t>(text, 0, kMaxDomain);
-    if (!domain)
-      throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(text) +
-                                                 "' is not a domain from 0 to " +
-                                                 std::to_string(kMaxDomain));
-    options.domain = *domain;
-  }
-  if (const std::string_view host = text_of("KINSHIP_SERVER"); !host.empty())
-    options.server = host;
-  if (const std::string_view text = text_of("KINSHIP_TIMEOUT"); !text.empty()) {
-    const auto seconds = number_in(text, kMinTimeout_s, kMaxTimeout_s);
-    if (!seconds)
-      throw Failure(ErrorCode::InvalidInput,
-                    "KINSHIP_TIMEOUT '" + std::string(text) + "' is no time from 0.01 to 86400 s");
-    options.timeout = std::chrono::duration_cast<std::chrono::milliseconds>(
-        std::chrono::duration<double>(*seconds));
-  }
+  options.domain = domain_from_environment();
+  options.server = server_from_environment();
+  options.timeout = timeout_from_environment();
   options.security = security_from_environment();
   return options;
 }

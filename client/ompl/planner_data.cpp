@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/archive/archive_exception.hpp>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "proto/types/failure.hpp"
+#include "proto/types/turn.hpp"
 
 namespace kinship::ompl_planners {
 namespace {
@@ -24,7 +26,7 @@ constexpr std::uint_fast32_t kMarker = 0x5044414D;  // "PDAM", OMPL's
 class Roadmap : private ompl::base::PlannerDataStorage {
  public:
   /// \throws Failure(InvalidInput) or an exception of Boost.
-  Roadmap(std::istream& stream, Eigen::Index dof) : dof_(dof) {
+  Roadmap(std::istream& stream, const kinematics::Chain& chain) : chain_(chain), dof_(chain.dof()) {
     boost::archive::binary_iarchive archive(stream);
     Header header;
     archive >> header;
@@ -129,7 +131,9 @@ class Roadmap : private ompl::base::PlannerDataStorage {
       if (-negative > distance[vertex])
         continue;
       for (const std::size_t next : neighbours_[vertex]) {
-        const double length = distance[vertex] + (vertices_[next] - vertices_[vertex]).norm();
+        const double length =
+            distance[vertex] +
+            (end_of_edge(vertices_[vertex], vertices_[next]) - vertices_[vertex]).norm();
         if (length >= distance[next])
           continue;
         distance[next] = length;
@@ -140,14 +144,31 @@ class Roadmap : private ompl::base::PlannerDataStorage {
     return before;
   }
 
+  /// The end of an edge as its motion gets there. MoveIt keeps continuous joints within a turn, and
+  /// they go the shorter way; those of a space of real numbers go where the numbers do.
+  Eigen::VectorXd end_of_edge(const Eigen::VectorXd& from, Eigen::VectorXd to) const {
+    if (is_of_moveit())
+      for (Eigen::Index i = 0; i < dof_; ++i)
+        if (chain_.joints()[static_cast<std::size_t>(i)].type == kinematics::JointType::Continuous)
+          to[i] -= kTurn * std::round((to[i] - from[i]) / kTurn);
+    return to;
+  }
+
   /// \param way  from the goal back.
   Path path_of(const std::vector<std::size_t>& way) const {
     Eigen::MatrixXd waypoints(dof_, static_cast<Eigen::Index>(way.size()));
-    for (std::size_t i = 0; i < way.size(); ++i)
-      waypoints.col(waypoints.cols() - 1 - static_cast<Eigen::Index>(i)) = vertices_[way[i]];
+    waypoints.col(0) = vertices_[way.back()];
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      waypoints.col(column) =
+          end_of_edge(waypoints.col(column - 1), vertices_[way[way.size() - 1 - i]]);
+    }
     return Path(std::move(waypoints));
   }
 
+  bool is_of_moveit() const noexcept { return skipped_ > 0; }
+
+  const kinematics::Chain& chain_;
   Eigen::Index dof_;
   std::size_t skipped_ = 0;  // bytes of a state before its numbers
   std::vector<Eigen::VectorXd> vertices_;
@@ -165,7 +186,7 @@ RoadmapPaths read_planner_data(const std::filesystem::path& file, const kinemati
     throw Failure(code, "'" + file.string() + "': " + why);
   };
   try {
-    return Roadmap(stream, chain.dof()).paths();
+    return Roadmap(stream, chain).paths();
   } catch (const Failure& failure) {
     refuse(failure.code(), failure.what());
   } catch (const std::exception& error) {  // of Boost, or for want of memory

@@ -22,8 +22,9 @@ struct RoadmapPaths {
 /// some that collide.
 ///
 /// The states are those of a RealVectorStateSpace of the chain's joints, or of MoveIt's group of
-/// these. The format is Boost's, which believes what it reads: only for files that one trusts.
-/// \throws Failure(NotFound, InvalidInput) that names the file; Failure(TooLarge) above
+/// these: there edges of continuous joints go the shorter way, so a path may leave the turn that
+/// MoveIt wraps them into. The format is Boost's, which believes what it reads: only for files that
+/// one trusts. \throws Failure(NotFound, InvalidInput) that names the file; Failure(TooLarge) above
 ///         kMaxRoadmapPaths paths.
 RoadmapPaths read_planner_data(const std::filesystem::path& file, const kinematics::Chain& chain);
 

@@ -8,6 +8,7 @@
 
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
+#include "client/ompl/planner_choice.hpp"
 #include "proto/manual/manual.hpp"
 #include "proto/manual/suggestion.hpp"
 #include "proto/types/enum_text.hpp"
@@ -88,7 +89,7 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
          "and without a constraint), or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
          "LazyPRM ...; default: birrt, and cbirrt2 for problems with a constraint)")
       ->check([](const std::string& text) {
-        const Result<guided::PlannerChoice> planner = guided::parse_planner(text);
+        const Result<guided::PlannerChoice> planner = ompl_planners::parse_planner(text);
         return planner ? std::string() : planner.error().message;
       });
   CLI::Option* const clearance =
@@ -273,7 +274,7 @@ void note_unused(const CLI::App& app, const PlanOptions& options, std::ostream& 
     note_unused(app, {"--control-share"}, "with --share 0", notes);
   if (!options.report)
     note_unused(app, kOfReports, "without --report yes", notes);
-  if (options.settings.planner.kind == guided::PlannerKind::Ompl)
+  if (options.settings.planner.kind == guided::PlannerKind::Other)
     note_unused(app, {"--overshoot"}, "on planners of OMPL", notes);
   if (!options.needs_experience() && !options.report) {
     note_unused(app, kOfServer, "where no server is needed", notes);
@@ -329,7 +330,7 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
     require_name(check_task(options.task), "--task");
   require_name(check_machine(options.machine), "--machine");
   if (!raw.planner.empty())
-    options.settings.planner = guided::parse_planner(raw.planner).value_or_throw();
+    options.settings.planner = ompl_planners::parse_planner(raw.planner).value_or_throw();
   options.report = raw.report == "yes";
   options.record_scenes = raw.record_scenes == "yes";
   options.settings.record_search = record_search_of(raw, options.report);

@@ -11,6 +11,7 @@
 #include "client/guided/geometry_warnings.hpp"
 #include "client/guided/path_measures.hpp"
 #include "client/guided/scene_record.hpp"
+#include "client/ompl/planner_choice.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
 #include "client/python/errors.hpp"
@@ -394,7 +395,7 @@ void bind_planning(py::module_& module) {
         settings.gate_distance = gate_distance;
         settings.tracks.retreat_m = retreat;
         if (!planner.empty())
-          settings.planner = guided::parse_planner(planner).value_or_throw();
+          settings.planner = ompl_planners::parse_planner(planner).value_or_throw();
         return plan_query(robot, problem, guidance, seed, sampling_mode, settings);
       },
       py::arg("robot"), py::arg("problem"), py::arg("guidance") = py::none(), py::kw_only(),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "proto/dds/endpoint.hpp"
 #include "proto/dds/packet_guard.hpp"
@@ -63,6 +64,18 @@ Sender* MatchedWriters::find(const Entity& reader, std::uint64_t writer) {
   if (known_.size() >= kMaxKnown)
     known_.clear();
   return &known_.emplace(writer, *std::move(sender)).first->second;
+}
+
+std::set<std::string> MatchedWriters::clients(const Entity& reader) {
+  std::set<std::string> clients;
+  std::vector<dds_instance_handle_t> writers(kMaxKnown);
+  const dds_return_t count =
+      dds_get_matched_publications(reader.get(), writers.data(), writers.size());
+  writers.resize(std::min(writers.size(), static_cast<std::size_t>(std::max(count, 0))));
+  for (const dds_instance_handle_t writer : writers)
+    if (const Sender* const sender = find(reader, writer))
+      clients.insert(sender->client);
+  return clients;
 }
 
 void MatchedWriters::forget_heard() {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -42,6 +43,9 @@ class MatchedWriters {
   /// \return null if the writer is gone, or is in no partition of one client (with security); valid
   ///         until the next call.
   Sender* find(const Entity& reader, std::uint64_t writer);
+
+  /// The clients whose writers a reader has matched now.
+  std::set<std::string> clients(const Entity& reader);
 
   void forget_heard();  ///< some reader has gone
 

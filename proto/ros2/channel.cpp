@@ -125,6 +125,8 @@ class Channel::Implementation {
         reader_, [this] { return serve_some(); }, &line_->readers().guard());
   }
 
+  std::set<std::string> nodes() { return senders_.clients(reader_); }
+
  private:
   struct Waiting {
     dds::Sender sender;
@@ -229,5 +231,7 @@ Channel::Channel(const dds::Participant& participant, dds::WaitLoop& loop,
           std::make_unique<Implementation>(participant, loop, topics, std::move(reading))) {}
 
 Channel::~Channel() = default;
+
+std::set<std::string> Channel::nodes() const { return implementation_->nodes(); }
 
 }  // namespace kinship::ros2

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "proto/dds/participant.hpp"
@@ -63,6 +64,9 @@ class Channel {
   ~Channel();
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
+
+  /// The nodes that can ask now (Caller::client). On the loop's thread.
+  std::set<std::string> nodes() const;
 
  private:
   class Implementation;

@@ -47,9 +47,24 @@ std::vector<Follows::Follow> Follows::of(const Announcement& announcement, TimeP
   return follows;
 }
 
+void Follows::keep_only(const std::set<std::string>& clients) {
+  const std::lock_guard lock(mutex_);
+  forget_if([&](const Entry& each) { return !clients.contains(each.follow.client); });
+}
+
+bool Follows::empty() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.empty();
+}
+
 void Follows::forget_ended(TimePoint now) {
+  forget_if([&](const Entry& each) { return each.end <= now; });
+}
+
+template <typename Is>
+void Follows::forget_if(const Is& is) {
   std::erase_if(entries_, [&](const auto& each) {
-    if (each.second.end > now)
+    if (!is(each.second))
       return false;
     const auto count = of_client_.find(each.first.first);
     if (--count->second == 0)

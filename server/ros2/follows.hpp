@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ class Follows {
   /// \return false if the node, or all together, have too many.
   bool keep(const std::string& client, const FetchRequest& query, TimePoint now);
 
+  /// Forgets the queries of other nodes: they have left.
+  void keep_only(const std::set<std::string>& clients);
+  bool empty() const;
+
   struct Follow {
     std::string client;
     FetchRequest query;  ///< as it was asked, but once and at once
@@ -40,9 +45,11 @@ class Follows {
     TimePoint end;
   };
 
+  template <typename Is>
+  void forget_if(const Is& is);
   void forget_ended(TimePoint now);
 
-  std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards what follows
   std::map<Key, Entry> entries_;
   std::map<std::string, std::size_t> of_client_;
 };

@@ -80,6 +80,7 @@ class QuestionsServed::Implementation {
   }
 
   void announce(const Announcement& announcement) {
+    forget_departed();
     for (const Follows::Follow& each : follows_.of(announcement, Follows::TimePoint::clock::now()))
       service_.fetches().fetch(
           each.query, each.client + " follow " + announcement.distribution_id.hex(),
@@ -93,6 +94,24 @@ class QuestionsServed::Implementation {
   }
 
  private:
+  /// What nodes follow that cannot ask any more.
+  void forget_departed() {
+    if (follows_.empty())
+      return;
+    std::set<std::string> here;
+    for (const auto& channel : channels_)
+      here.merge(channel->nodes());
+    follows_.keep_only(here);
+  }
+
+  bool follow(const std::string& client, const FetchRequest& query) {
+    const auto now = Follows::TimePoint::clock::now();
+    if (follows_.keep(client, query, now))
+      return true;
+    forget_departed();
+    return follows_.keep(client, query, now);
+  }
+
   template <typename Open>
   void open_topics(const Open& open) {
     open(topics_of("register", kinship_msgs_msg_dds__Registration__desc, "registered",
@@ -268,8 +287,7 @@ class QuestionsServed::Implementation {
     const Result<FetchRequest> query = read(message);
     if (!query)
       return refuse(codec::FetchConversation::refuse(query.error()), FetchStatus::Refused);
-    if (query->follow > std::chrono::seconds(0) &&
-        !follows_.keep(client, *query, Follows::TimePoint::clock::now()))
+    if (query->follow > std::chrono::seconds(0) && !follow(client, *query))
       return refuse({.message = "too many distributions are followed"}, FetchStatus::Busy);
     return [this, question, send, uuid, client, query = *query] {
       service_.fetches().fetch(

@@ -224,6 +224,16 @@ TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
   EXPECT_EQ(exported, declared);
 }
 
+TEST(CLibrary, LoadsNoLibraryThatRosBringsInAnotherBuild) {
+  const Ended needed = run({"/usr/bin/readelf", "--dynamic", "--wide", KINSHIP_C_LIBRARY});
+  ASSERT_EQ(needed.exit_code, 0) << needed.output;
+  EXPECT_NE(needed.output.find("Shared library: [libddsc"), std::string::npos) << needed.output;
+  for (const char* other : {"[libompl", "[libboost"})
+    EXPECT_EQ(needed.output.find(other), std::string::npos) << other << " in " << needed.output;
+  const Ended unused = run({"/usr/bin/ldd", "-u", KINSHIP_C_LIBRARY});
+  EXPECT_EQ(unused.output, "") << "loaded for nothing";
+}
+
 TEST(CLibrary, AloneIsFoundByPkgConfigAndByOtherCompilersAndFlags) {
   const std::string prefix = (kBuild / "tests" / "c_library").string();
   fs::remove_all(prefix);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -25,11 +26,11 @@ class Ros2 : public testing::TestWithParam<std::string> {
  protected:
   Ros2() { start(); }
 
-  void start() {
+  void start(const Words& more = {}) {
+    Words arguments = {"--ros2", "--ros2-domain", std::to_string(ros_domain_.number())};
+    arguments.insert(arguments.end(), more.begin(), more.end());
     server_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
-        .store = directory_ / "fleet.db",
-        .domain = domain_.number(),
-        .arguments = {"--ros2", "--ros2-domain", std::to_string(ros_domain_.number())}});
+        .store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = arguments});
   }
 
   Words node_arguments(const std::string& verb, const Words& options) const {
@@ -161,6 +162,34 @@ TEST_P(Ros2, WhoFollowsGetsTheNextRevision) {
   EXPECT_EQ(newer.substr(0, 13), "distribution ") << newer;
   EXPECT_NE(newer.substr(0, 15), "distribution 1 ");
   EXPECT_EQ(node.wait(), 0);
+}
+
+TEST_P(Ros2, WhoHasLeftFollowsNoMore) {
+  register_robot();
+  for (const char* const seed : {"seed=1", "seed=2", "seed=3"}) {
+    ASSERT_EQ(report({seed}), "0");
+    ASSERT_EQ(report({seed, "task=bin"}), "0");
+  }
+  EXPECT_EQ(run("fetch", {robot_, "follow=3600"}).substr(0, 10), "fetched 0 ");
+  for (int seed = 4; seed < 16; ++seed)
+    ASSERT_EQ(report({"seed=" + std::to_string(seed)}), "0");
+  EXPECT_EQ(run("fetch", {robot_}).substr(0, 10), "fetched 0 ");
+  EXPECT_EQ(run("fetch", {robot_, "task=bin"}).substr(0, 10), "fetched 0 ");
+  const std::string all = run("listen", {"until=bin"});
+  EXPECT_EQ(std::ranges::count(all, '\n'), 3) << "one for each query\n" << all;
+}
+
+TEST_P(Ros2, ANodeThatFloodsHasItsOwnQuotaAndDelaysNoOther) {
+  register_robot();
+  for (const char* const quota : {"10", "0"}) {  // refused beyond it, or all served
+    server_->terminate();
+    start({"--client-attempts-per-s", quota});
+    test::Program greedy(program(GetParam()),
+                         node_arguments("flood", {robot_, joints_, "task=flood"}));
+    ASSERT_EQ(greedy.read_line(), "flooding");
+    for (int i = 0; i < 5; ++i)
+      EXPECT_EQ(report({"patience=10"}), "0") << "with a quota of " << quota;
+  }
 }
 
 TEST_P(Ros2, MessagesOfTenMegabytesArriveAndLongerOnesDoNoHarm) {

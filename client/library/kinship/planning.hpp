@@ -10,6 +10,7 @@
 #include "client/guided/scene_record.hpp"
 #include "client/ompl/guided_state_sampler.hpp"
 #include "client/ompl/ompl_planner.hpp"
+#include "client/ompl/planner_choice.hpp"
 #include "client/ompl/recall_planner.hpp"
 #include "client/ompl/region_state_space.hpp"
 #include "client/ompl/state_space.hpp"

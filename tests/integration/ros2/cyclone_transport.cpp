@@ -21,7 +21,7 @@ dds_entity_t checked(dds_entity_t handle) {
 class CycloneTransport final : public Transport {
  public:
   explicit CycloneTransport(std::uint32_t domain) {
-    checked(dds_create_domain(
+    domain_ = checked(dds_create_domain(
         domain,
         "<Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
         "<AllowMulticast>false</AllowMulticast></General><Discovery>"
@@ -30,6 +30,8 @@ class CycloneTransport final : public Transport {
         "<Peers><Peer address=\"localhost\"/></Peers></Discovery></Domain>"));
     participant_ = checked(dds_create_participant(domain, nullptr, nullptr));
   }
+
+  ~CycloneTransport() override { dds_delete(domain_); }  // others hear of it at once
 
   int open_writer(const std::string& topic, const TopicType& type) override {
     const dds_entity_t handle = make_topic(topic, type);
@@ -118,7 +120,7 @@ class CycloneTransport final : public Transport {
     return does_hold;
   }
 
-  dds_entity_t participant_ = 0;
+  dds_entity_t domain_ = 0, participant_ = 0;
 };
 
 }  // namespace

@@ -248,6 +248,29 @@ int report(Transport& node, const Options& options) {
   return 0;
 }
 
+/// Reports without an end, each another one, as fast as the middleware takes them.
+int flood(Transport& node, const Options& options) {
+  const int writer = node.open_writer("rt/kinship/report", PlannedPath::type());
+  const int reader = node.open_reader("rt/kinship/receipt", Receipt::type(), false);
+  const auto deadline = Clock::now() + patience;
+  if (!node.wait_for_writer_match(writer, deadline) ||
+      !node.wait_for_reader_match(reader, deadline))
+    return none();
+  auto path = path_of(options);
+  PlannedPath::Wire wire{};
+  copy(path, wire);
+  Bytes bytes = to_cdr(PlannedPath::support(), &path);
+  std::cout << "flooding" << std::endl;
+  for (std::uint32_t number = 0;; ++number) {
+    std::memcpy(wire.uuid.uuid, &number, sizeof number);
+    std::memcpy(bytes.data() + 4, &number, sizeof number);  // behind the encapsulation
+    try {
+      node.write(writer, {&wire, bytes});
+    } catch (const std::runtime_error&) {  // the server takes no more for now
+    }
+  }
+}
+
 int call_report(Transport& node, const Options& options) {
   auto request = made<Report_Request>();
   request.path = path_of(options);
@@ -283,17 +306,16 @@ void print(const kinship_msgs__msg__DistributionAnswer& answer) {
 }
 
 /// The next distribution of this revision or a later one.
-bool print_distribution(Transport& node, int reader, std::uint64_t revision) {
+std::optional<Distribution::Ros> next_distribution(Transport& node, int reader,
+                                                   std::uint64_t revision) {
   const auto deadline = Clock::now() + patience;
   while (const auto bytes = node.take(reader, deadline)) {
     auto distribution = made<Distribution>();
     from_cdr(Distribution::support(), *bytes, &distribution);
-    if (distribution.revision < revision)
-      continue;
-    print(distribution);
-    return true;
+    if (distribution.revision >= revision)
+      return distribution;
   }
-  return false;
+  return std::nullopt;
 }
 
 /// With `more=N` also N later revisions.
@@ -307,9 +329,12 @@ int fetch(Transport& node, const Options& options) {
   std::uint64_t revision = answer->revision;
   if (answer->status != kinship_msgs__msg__DistributionAnswer__READY)
     return 0;
-  for (long left = options.number("more", 0); left >= 0; --left)
-    if (!print_distribution(node, reader, revision++))
+  for (long left = options.number("more", 0); left >= 0; --left) {
+    const auto found = next_distribution(node, reader, revision++);
+    if (!found)
       return none();
+    print(*found);
+  }
   return 0;
 }
 
@@ -325,10 +350,19 @@ int call_fetch(Transport& node, const Options& options) {
   return 0;
 }
 
-/// What was published before it came.
-int listen(Transport& node, const Options& /*options*/) {
+/// What was published before it came: the first of it, or all until one of the task `until`.
+int listen(Transport& node, const Options& options) {
   const int reader = node.open_reader("rt/kinship/distribution", Distribution::type(), true);
-  return print_distribution(node, reader, 0) ? 0 : none();
+  const std::string until = options.text("until");
+  std::string task;
+  do {
+    const auto found = next_distribution(node, reader, 0);
+    if (!found)
+      return none();
+    print(*found);
+    task = found->task.data;
+  } while (!until.empty() && task != until);
+  return 0;
 }
 
 int status(Transport& node, const Options& /*options*/) {
@@ -356,6 +390,8 @@ int run(std::uint32_t domain, const std::string& verb, const Words& words) {
     return register_robot(*node, options);
   if (verb == "report")
     return report(*node, options);
+  if (verb == "flood")
+    return flood(*node, options);
   if (verb == "call_report")
     return call_report(*node, options);
   if (verb == "fetch")

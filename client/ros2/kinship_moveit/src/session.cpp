@@ -1,7 +1,5 @@
 #include "session.hpp"
 
-#include <charconv>
-#include <cstdlib>
 #include <stdexcept>
 
 namespace kinship_moveit {
@@ -13,23 +11,12 @@ std::weak_ptr<Session>& the_session() {
   return session;
 }
 
-std::uint32_t domain_of(const std::string& text) {
-  std::uint32_t domain = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw std::runtime_error("KINSHIP_DOMAIN '" + text + "' is no domain");
-  return domain;
-}
-
-/// KINSHIP_DOMAIN and KINSHIP_SERVER, where no parameter says otherwise.
+/// Where no parameter says otherwise, libkinship reads the environment.
 Owned<kinship_client> open_client(const Settings& settings) {
   auto options = sized<kinship_client_options>();
-  const char* domain = std::getenv("KINSHIP_DOMAIN");
-  const char* server = std::getenv("KINSHIP_SERVER");
-  options.domain = settings.domain >= 0 ? static_cast<std::uint32_t>(settings.domain)
-                   : domain != nullptr  ? domain_of(domain)
-                                        : 0;
-  options.server = !settings.server.empty() ? settings.server.c_str() : server;
+  options.domain =
+      settings.domain >= 0 ? static_cast<std::uint32_t>(settings.domain) : KINSHIP_ENVIRONMENT;
+  options.server = settings.server.empty() ? nullptr : settings.server.c_str();
   options.outbox = settings.outbox.empty() ? nullptr : settings.outbox.c_str();
   options.security = settings.security.empty() ? nullptr : settings.security.c_str();
   options.timeout_ms = static_cast<std::uint32_t>(settings.timeout_ms);

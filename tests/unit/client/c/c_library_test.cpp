@@ -76,6 +76,36 @@ TEST(CLibrary, TellsItsVersionAlsoInC) {
   EXPECT_EQ(version_is_told_in_c(), 1);
 }
 
+TEST_F(CLibraryOffline, TheEnvironmentSaysWhatOptionsLeaveToIt) {
+  kinship_client_options options{};
+  options.size = sizeof options;
+  options.domain = domain_.number();
+  options.without_outbox = 1;
+  options.timeout_ms = 200;
+  const auto open = [&] {
+    kinship_client* client = nullptr;
+    const kinship_code code = kinship_client_open(&options, &client);
+    kinship_client_close(client);
+    return code == KINSHIP_OK ? "" : std::string(kinship_error_text());
+  };
+  setenv("KINSHIP_DOMAIN", "231", 1);
+  setenv("KINSHIP_TIMEOUT", "never", 1);
+  EXPECT_EQ(open(), "") << "what is said needs no environment";
+  options.domain = KINSHIP_ENVIRONMENT;
+  EXPECT_EQ(open(), "KINSHIP_DOMAIN '231' is not a domain from 0 to 230");
+  setenv("KINSHIP_DOMAIN", std::to_string(domain_.number()).c_str(), 1);
+  EXPECT_EQ(open(), "");
+  options.timeout_ms = 0;
+  EXPECT_EQ(open(), "KINSHIP_TIMEOUT 'never' is no time from 0.01 to 86400 s");
+  unsetenv("KINSHIP_TIMEOUT");
+  setenv("KINSHIP_SERVER", "<no host>", 1);
+  EXPECT_NE(open().find("'<no host>'"), std::string::npos) << open();
+  options.server = "127.0.0.1";
+  EXPECT_EQ(open(), "");
+  unsetenv("KINSHIP_SERVER");
+  unsetenv("KINSHIP_DOMAIN");
+}
+
 TEST_F(CLibraryOffline, CredentialsThatEndSoonAreTold) {
   EXPECT_STREQ(kinship_client_warning(client_), "");
   EXPECT_STREQ(kinship_client_warning(nullptr), "");

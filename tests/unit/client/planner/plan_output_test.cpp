@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "client/guided/planner_choice.hpp"
+#include "client/ompl/planner_choice.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "robots/models/robot_arguments.hpp"
 #include "tests/support/places.hpp"
@@ -143,16 +144,19 @@ TEST(PlannerChoice, ReadsWhatItCanBeTold) {
   EXPECT_EQ(parse_planner("cbirrt2").value().kind, PlannerKind::Cbirrt2);
   EXPECT_EQ(parse_planner("roadmap").value().kind, PlannerKind::Roadmap);
   EXPECT_EQ(parse_planner("rrtconnect").value().kind, PlannerKind::RrtConnect);
-  const PlannerChoice ompl = parse_planner("ompl:LazyPRM").value();
-  EXPECT_EQ(ompl.kind, PlannerKind::Ompl);
-  EXPECT_EQ(ompl.ompl_planner, "LazyPRM");
+  const PlannerChoice ompl = ompl_planners::parse_planner("ompl:LazyPRM").value();
+  EXPECT_EQ(ompl.kind, PlannerKind::Other);
   EXPECT_EQ(name_of(ompl), "OMPL LazyPRM");
-  for (const char* unknown : {"", "BiRRT", "rrt", "by problem", "ompl:", "ompl"})
+  for (const char* unknown : {"", "BiRRT", "rrt", "by problem", "ompl:", "ompl"}) {
     EXPECT_FALSE(parse_planner(unknown)) << unknown;
+    EXPECT_FALSE(ompl_planners::parse_planner(unknown)) << unknown;
+  }
+  EXPECT_EQ(ompl_planners::parse_planner("roadmap").value().kind, PlannerKind::Roadmap);
+  EXPECT_FALSE(parse_planner("ompl:LazyPRM"));
 }
 
 TEST(PlannerChoice, AnUnknownPlannerOfOmplIsAnsweredWithThoseThereAre) {
-  const Result<PlannerChoice> planner = parse_planner("ompl:Nobody");
+  const Result<PlannerChoice> planner = ompl_planners::parse_planner("ompl:Nobody");
   ASSERT_FALSE(planner);
   EXPECT_NE(planner.error().message.find("'Nobody'"), std::string::npos);
   EXPECT_NE(planner.error().message.find("RRTConnect"), std::string::npos);
@@ -165,7 +169,8 @@ TEST(PlannerChoice, TheProblemDecidesUnlessSaid) {
   EXPECT_EQ(kind_for(PlannerKind::RrtConnect, false), PlannerKind::RrtConnect);
   EXPECT_EQ(kind_for(PlannerKind::Roadmap, false), PlannerKind::Roadmap);
   EXPECT_EQ(kind_for(PlannerKind::Roadmap, true), PlannerKind::Roadmap);
-  EXPECT_EQ(planner_for(parse_planner("ompl:RRT").value(), true).value().ompl_planner, "RRT");
+  EXPECT_EQ(planner_for(ompl_planners::parse_planner("ompl:RRT").value(), true).value().other_name,
+            "OMPL RRT");
 }
 
 TEST(PlannerChoice, WhatAPlannerCannotDoIsRefusedWithWhatCan) {

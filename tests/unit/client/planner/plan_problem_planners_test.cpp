@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "client/ompl/planner_choice.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/client/planner/plan_problem_answers.hpp"
 
@@ -56,15 +57,14 @@ TEST(PlanProblem, APlannerThatCannotKeepToAConstraintIsNotStarted) {
   EXPECT_FALSE(refused.attempted);
   EXPECT_EQ(refused.result.planner, "");
   EXPECT_EQ(refused.result.reason,
-            "--planner birrt does not keep to a constraint: use --planner cbirrt2 or "
-            "ompl:RRTConnect");
+            "--planner birrt does not keep to a constraint: use --planner cbirrt2 or roadmap");
   EXPECT_EQ(planned(wall_problem(), settings).result.planner, "BiRRT");
   EXPECT_EQ(planned(line_problem()).result.planner, "CBiRRT2");
 }
 
 TEST(PlanProblem, APlannerOfOmplAnswersWithAndWithoutAConstraint) {
   PlanSettings settings;
-  settings.planner = parse_planner("ompl:RRTConnect").value();
+  settings.planner = ompl_planners::parse_planner("ompl:RRTConnect").value();
   const ProblemResult free = planned(wall_problem(), settings).result;
   ASSERT_TRUE(free.solved) << free.reason;
   EXPECT_EQ(free.planner, "OMPL RRTConnect");
@@ -129,7 +129,7 @@ TEST(PlanProblem, ARoadmapThatLeavesTooManyKernelsToItsTreesSaysSo) {
 
 TEST(PlanProblem, APlannerOfOmplStopsWhenAsked) {
   PlanSettings settings;
-  settings.planner = parse_planner("ompl:RRT").value();
+  settings.planner = ompl_planners::parse_planner("ompl:RRT").value();
   int asked = 0;
   EXPECT_TRUE(plan_problem(planar_robot(), wall_problem(), {}, settings, [&] {
                 return ++asked > 10;

@@ -54,5 +54,20 @@ TEST(Follows, ANodeWithTooManyHasNoMoreUntilOnesOfItEnd) {
   EXPECT_TRUE(follows.keep("greedy", query("one more"), kNow + kMinute));
 }
 
+TEST(Follows, NodesThatHaveLeftAreForgottenAndMakeRoom) {
+  Follows follows;
+  EXPECT_TRUE(follows.empty());
+  for (std::size_t i = 0; i < Follows::kMaxOfClient; ++i)
+    EXPECT_TRUE(follows.keep("gone", query("task" + std::to_string(i)), kNow));
+  EXPECT_TRUE(follows.keep("here", query("task1"), kNow));
+  follows.keep_only({"here", "silent"});
+  const auto found = follows.of(announcement_of("task1"), kNow);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].client, "here");
+  EXPECT_TRUE(follows.keep("gone", query("one more"), kNow)) << "its places are free";
+  follows.keep_only({});
+  EXPECT_TRUE(follows.empty());
+}
+
 }  // namespace
 }  // namespace kinship::ros2
