@@ -20,7 +20,7 @@ from terminal import Terminal
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
 WITH_INSTALLED_PROGRAMS = {"fleet.md", "operations.md", "reference.md"}  # which are in the PATH from the start
-WITH_PACKAGES_TOO = {"tutorial.md"}  # which integration_packages_tutorial runs once more
+WITH_PACKAGES_TOO = {"tutorial.md"}  # which walk_tutorial runs once more
 DOMAINS = 4  # that a document may name as KINSHIP_DOMAIN; most name none, which is 0
 LANGUAGES_WITHOUT_COMMANDS = {"text", "json", "toml", "cpp", "c", "python", "cmake", "xml", "yaml"}
 

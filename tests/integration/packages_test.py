@@ -12,7 +12,6 @@ SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 sys.path.append(str(SOURCE / "tests" / "documents"))
 from markdown import Document  # noqa: E402
 
-BUILD = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]).parent
 FILES = {
     "kinship-server": ["usr/bin/kinshipd", "usr/share/man/man8/kinshipd.8.gz", "etc/kinship/kinshipd.toml", "usr/lib/kinship/backup",
                        "usr/lib/sysusers.d/kinship.conf", "lib/systemd/system/kinshipd.service",
@@ -29,9 +28,7 @@ FILES = {
 
 
 def run(*command, **options) -> str:
-    # Packages that nobody installs need no compression.
-    ran = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"DPKG_DEB_COMPRESSOR_TYPE": "gzip",
-                                                                                    "DPKG_DEB_COMPRESSOR_LEVEL": "1"}, **options)
+    ran = subprocess.run(command, capture_output=True, text=True, **options)
     if ran.returncode != 0:
         raise AssertionError(f"{command}: exit code {ran.returncode}\n{ran.stdout}{ran.stderr}")
     return ran.stdout
@@ -41,8 +38,7 @@ class Packages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="kinship-packages-")))
-        run(SOURCE / "deploy" / "package", "--from", BUILD, "--into", cls.folder)
-        cls.packages = {file.name.split("_")[0]: file for file in cls.folder.glob("*.deb")}
+        cls.packages = {file.name.split("_")[0]: file for file in pathlib.Path(os.environ["KINSHIP_PACKAGES_DIR"]).glob("*.deb")}
 
     def field(self, name: str, field: str) -> str:
         return run("dpkg-deb", "--field", self.packages[name], field).strip()

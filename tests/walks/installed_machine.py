@@ -10,6 +10,7 @@ import time
 
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 BUILD = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]).parent
+PACKAGES = pathlib.Path(os.environ["KINSHIP_PACKAGES_DIR"])  # made of this build
 HOME = pathlib.PurePosixPath("/home/you")
 # What a person should not have to open: what the packages install is for programs, but their documents and examples.
 OURS = re.compile(r"/usr/(share|lib|include)/(?!doc/)\S*kinship")
@@ -42,34 +43,17 @@ def can_make_machines() -> bool:
         return tried.returncode == 0 and shutil.which("ip") is not None
 
 
-class Packages:
-    """Packages of this build, made once for all machines of a test."""
-
-    def __init__(self):
-        self._folder = tempfile.TemporaryDirectory(prefix="kinship-packages-")
-        self.folder = pathlib.Path(self._folder.name)
-        done = subprocess.run([SOURCE / "deploy" / "package", "--from", BUILD, "--into", self.folder], text=True, capture_output=True,
-                              env=os.environ | {"DPKG_DEB_COMPRESSOR_TYPE": "gzip", "DPKG_DEB_COMPRESSOR_LEVEL": "1"})
-        if done.returncode != 0:
-            raise RuntimeError(done.stdout + done.stderr)
-
-    def file(self, name: str) -> str:
-        return next(self.folder.glob(f"{name}_*.deb")).name
-
-    def close(self) -> None:
-        self._folder.cleanup()
-
-
 class InstalledMachine:
     """Use as a context: at its end its processes end, and all that was written on it is gone."""
 
-    def __init__(self, packages: Packages, *names: str):
-        """:param names: the packages to install."""
+    def __init__(self, *names: str):
+        """:param names: of the packages to install."""
+        files = [next(PACKAGES.glob(f"{name}_*.deb")).name for name in names]
         self._folder = tempfile.TemporaryDirectory(prefix="kinship-machine-")
         self.folder = pathlib.Path(self._folder.name)
         self._holder = subprocess.Popen(
             ["unshare", "--mount", "--pid", "--net", "--fork", "--kill-child", "bash", "-c", SET_UP, "bash", self.folder, SOURCE, BUILD,
-             packages.folder, *(packages.file(name) for name in names)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+             PACKAGES, *files], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         first = self._holder.stdout.readline()
         if first != "installed\n":
             raise RuntimeError(f"{names} cannot be installed: {first}{self._holder.stdout.read()}")

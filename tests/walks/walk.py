@@ -1,23 +1,18 @@
-"""What the walks share: packages once, people who leave at the end, and what is told of each."""
+"""What the walks share: machines and people until the end of a test, and what is told of each walk."""
 import unittest
 
-from installed_machine import InstalledMachine, Packages, Person, Walk, can_make_machines
+from installed_machine import InstalledMachine, Person, Walk, can_make_machines
 
 SKIPPED = 77
 
 
 class WalkTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.packages = Packages()
-        cls.addClassCleanup(cls.packages.close)
-
     def setUp(self):
         self.walk = Walk(self.id().rsplit(".", 1)[-1].removeprefix("test_"))
         self.addCleanup(lambda: print(self.walk.told()))
 
     def machine(self, *packages: str) -> InstalledMachine:
-        return self.enterContext(InstalledMachine(self.packages, *packages))
+        return self.enterContext(InstalledMachine(*packages))
 
     def person(self, machine: InstalledMachine) -> Person:
         person = Person(machine, self.walk)
