@@ -141,7 +141,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{console, ros2, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
          manual, sites, tables, types, store},
         {"CLI11", "spdlog"}}},
-      {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
+      {arguments, {{models, geometry, kinematics, manual, types}, {"Eigen", "CLI11"}}},
       {ompl, {{recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
        {{ompl, recall, planning, evidence, inverse, collision, geometry, kinematics, types},
