@@ -324,8 +324,8 @@ int show_experience(link::Client& server, const ExperienceOptions& options, std:
         link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = options.task});
     return refuse(kExperienceCommand,
                   task || task.error().code != ErrorCode::NotFound
-                      ? Error{ErrorCode::NotFound, "no paths of task '" + options.task +
-                                                       "' (see: kinship tasks list)"}
+                      ? Error{ErrorCode::NotFound,
+                              "no paths of task '" + options.task + "' (see: kinship tasks list)"}
                       : task.error(),  // with the nearest name
                   err);
   }
