@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "client/arguments/number_range.hpp"
+#include "proto/manual/manual.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::arguments {
@@ -32,12 +33,19 @@ std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profil
   return {named, estimator};
 }
 
+CLI::Option* add_numbers(CLI::App& app, const std::string& name, std::string& text,
+                         const std::string& description) {
+  return app.add_option(name, text, description)
+      ->type_name(manual::kNumbers)
+      ->check([](const std::string& word) { return complaint(models::parse_numbers(word)); });
+}
+
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
   app.add_option("--base", arguments.base_link, "base link (required with a URDF file)");
   app.add_option("--tip", arguments.tip_link, "tip link (required with a URDF file)");
   app.add_option("--label", arguments.label, "name for people (default: the folder's or file's)");
-  app.add_option("--transfer", arguments.transfer,
-                 "transfer frame in the tip link, \"x y z qx qy qz qw\"");
+  add_numbers(app, "--transfer", arguments.transfer,
+              "transfer frame in the tip link, \"x y z qx qy qz qw\"");
   app.add_option("--axes", arguments.axes,
                  "coordinates that matter, of x,y,z,roll,pitch,yaw (default: all)");
   app.add_option("--hold", arguments.held,

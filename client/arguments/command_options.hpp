@@ -22,6 +22,13 @@ namespace kinship::arguments {
 /// \return both options.
 std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profile);
 
+/// Adds an option that takes numbers with blanks or commas between them, as one word or several:
+/// `--q "0 0"`, `--q 0,0`, `--q 0 0`.
+/// \param text  the numbers, for models::parse_numbers(), once the command line is parsed; must
+///              outlive that.
+CLI::Option* add_numbers(CLI::App& app, const std::string& name, std::string& text,
+                         const std::string& description);
+
 /// Adds the options of a robot except its files: --base, --tip, --label, --transfer, --axes,
 /// --hold, --srdf, --package, --xacro-argument and those of drawn links. The program itself adds
 /// `source`. \param arguments  filled when the command line is parsed; must outlive that.

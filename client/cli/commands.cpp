@@ -1,12 +1,15 @@
 #include "client/cli/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
 
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
 #include "client/cli/session.hpp"
+#include "client/cli/terminal.hpp"
+#include "client/cli/wrapped_lines.hpp"
 #include "proto/manual/manual.hpp"
 #include "proto/manual/suggestion.hpp"
 #include "proto/tables/table_layout.hpp"
@@ -50,6 +53,12 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
     tables::TableLayout layout = tables::own_layout(out);
     layout.is_wide = session.is_wide;
     tables::set_table_layout(out, layout);
+    const bool is_for_people = !session.json && !session.is_wide;
+    std::optional<WrappedLines> wrapped_out, wrapped_err;
+    if (is_for_people && is_terminal(out))
+      wrapped_out.emplace(out, layout.width);
+    if (is_for_people && is_terminal(err) && is_terminal(out))
+      wrapped_err.emplace(err, layout.width);
     const int code = session.command();
     if (!out.flush()) {
       err << "kinship: cannot write to standard output\n";

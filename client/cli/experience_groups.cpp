@@ -1,13 +1,20 @@
 #include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
 
+#include "client/arguments/command_options.hpp"
 #include "client/cli/path_export.hpp"
 #include "client/cli/path_import.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
 #include "client/cli/upkeep_commands.hpp"
+#include "proto/types/exit_code.hpp"
 
 namespace kinship::cli {
 namespace {
+
+constexpr const char* kYes = "Do it; without, it is only said what would happen (exit code 2)";
 
 void add_export(CLI::App& group, Session& session) {
   constexpr std::size_t kMostPaths = 1'000'000'000;
@@ -93,10 +100,10 @@ void add_import(CLI::App& group, Session& session) {
           ->type_name("TASK")
           ->needs(robot);
   planner_data->needs(task);
-  command
-      ->add_option("--placement", options->placement,
-                   "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task frame "
-                   "is MoveIt's planning frame, for OMPL the base)")
+  arguments::add_numbers(
+      *command, "--placement", options->placement,
+      "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task frame "
+      "is MoveIt's planning frame, for OMPL the base)")
       ->needs(robot);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
@@ -124,10 +131,90 @@ void add_experience(CLI::App& group, Session& session) {
   });
 }
 
+void add_retire(CLI::App& group, Session& session, const char* meaning,
+                const std::string& example) {
+  struct Options {
+    std::string id;
+    bool yes = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(group, "retire", "Take a path out of every fit; it is kept for the record",
+                  "kinship paths retire " + example + " --yes");
+  command->add_option("id", options->id, meaning)->required()->type_name("PATH");
+  command->add_flag("--yes", options->yes, kYes);
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    return retire_path(server, options->id, options->yes, session.json, session.out, session.err);
+  });
+}
+
+void add_restore(CLI::App& group, Session& session, const char* meaning,
+                 const std::string& example) {
+  const auto options = std::make_shared<RestoreOptions>();
+  CLI::App* command = add_command(
+      group, "restore",
+      "Undo a retirement, or a reset: the paths are stored anew, under UUIDs of their own",
+      "kinship paths restore " + example + "\n  kinship paths restore --task box_to_shelf");
+  CLI::Option* id = command->add_option("id", options->id, meaning)->type_name("PATH");
+  command->add_option("--task", options->task, "All retired ones of this task")
+      ->type_name("TASK")
+      ->excludes(id);
+  command->add_option("--robot", options->robot, "Of this robot: label or digest prefix")
+      ->type_name("ROBOT")
+      ->excludes(id);
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    options->json = session.json;
+    if (options->id.empty() && options->task.empty() && options->robot.empty()) {
+      session.err << "paths restore: needs a path's UUID, --task or --robot\n";
+      return static_cast<int>(kWrongUsage);
+    }
+    return restore_paths(server, *options, session.out, session.err);
+  });
+}
+
+void add_task_upkeep(CLI::App& group, Session& session) {
+  struct Options {
+    std::string task, name;
+    bool yes = false;
+  };
+  const auto add = [&](const std::string& verb, const std::string& what,
+                       const std::string& examples) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = add_command(group, verb, what, examples);
+    command->add_option("task", options->task, "Its name")->required()->type_name("TASK");
+    add_json(*command, session);
+    return std::pair(command, options);
+  };
+  const auto [reset, to_reset] =
+      add("reset", "Retire all paths of a task: out of every fit, kept for the record",
+          "kinship tasks reset box_to_shelf\n  kinship tasks reset box_to_shelf --yes");
+  reset->add_flag("--yes", to_reset->yes, kYes);
+  on_run_with_server(*reset, session, [&session, options = to_reset](link::Client& server) {
+    return reset_task(server, options->task, options->yes, session.json, session.out, session.err);
+  });
+  const auto [rename, to_rename] = add("rename", "Give a task another name, which no task has yet",
+                                       "kinship tasks rename lod_machine load_machine");
+  rename->add_option("name", to_rename->name, "New name, 1 to 128 of A-Z a-z 0-9 _ . : -")
+      ->required();
+  on_run_with_server(*rename, session, [&session, options = to_rename](link::Client& server) {
+    return rename_task(server, options->task, options->name, session.json, session.out,
+                       session.err);
+  });
+  const auto [remove, to_remove] =
+      add("remove", "Retire all paths of a task and list it no more; its attempts stay on record",
+          "kinship tasks remove lod_machine\n  kinship tasks remove lod_machine --yes");
+  remove->add_flag("--yes", to_remove->yes, kYes);
+  on_run_with_server(*remove, session, [&session, options = to_remove](link::Client& server) {
+    return remove_task(server, options->task, options->yes, session.json, session.out, session.err);
+  });
+}
+
 }  // namespace
 
 void add_paths(CLI::App& app, Session& session) {
-  constexpr const char* kId = "UUID of the report, as paths list shows it";
+  constexpr const char* kId = "UUID of the report, or its first eight digits or more";
   constexpr const char* kExampleUuid = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
   CLI::App* paths = add_group(app, session, "paths", "Reported paths");
   add_one(*paths, session,
@@ -141,10 +228,8 @@ void add_paths(CLI::App& app, Session& session) {
            plot_path);
   add_export(*paths, session);
   add_import(*paths, session);
-  add_one(*paths, session,
-          {"retire", "id", kId, "Take a path out of every fit; it is kept for the record",
-           std::string("kinship paths retire ") + kExampleUuid},
-          retire_path);
+  add_retire(*paths, session, kId, kExampleUuid);
+  add_restore(*paths, session, kId, kExampleUuid);
 }
 
 void add_tasks(CLI::App& app, Session& session) {
@@ -161,22 +246,7 @@ void add_tasks(CLI::App& app, Session& session) {
        "over time",
        "kinship tasks plot box_to_shelf --output box_to_shelf.html"},
       plot_task);
-
-  struct Options {
-    std::string task;
-    bool yes = false;
-  };
-  const auto options = std::make_shared<Options>();
-  CLI::App* reset = add_command(
-      *tasks, "reset", "Retire all paths of a task: out of every fit, kept for the record",
-      "kinship tasks reset box_to_shelf\n  kinship tasks reset box_to_shelf --yes");
-  reset->add_option("task", options->task, "Its name")->required()->type_name("TASK");
-  reset->add_flag("--yes", options->yes,
-                  "Do it; without, it is only said what would happen (exit code 2)");
-  add_json(*reset, session);
-  on_run_with_server(*reset, session, [&session, options](link::Client& server) {
-    return reset_task(server, options->task, options->yes, session.json, session.out, session.err);
-  });
+  add_task_upkeep(*tasks, session);
 }
 
 }  // namespace kinship::cli

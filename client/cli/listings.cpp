@@ -1,5 +1,6 @@
 #include "client/cli/listings.hpp"
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <functional>
@@ -7,9 +8,11 @@
 #include <optional>
 #include <ostream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/cli/cell_text.hpp"
+#include "client/cli/clients_of_name.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
 #include "proto/tables/table.hpp"
@@ -121,18 +124,22 @@ RowColumns<AttemptSummary> columns_of_attempts() {
   const auto record = [](auto PlanningRecord::*member) {
     return [member](const Row& row) { return row.record.*member; };
   };
-  return {{"ATTEMPT", &Row::report_uuid},
+  constexpr std::size_t kShort = 8;  // enough for the next command
+  return {{"ATTEMPT", [](const Row& row) { return row.report_uuid.text().substr(0, kShort); }},
           {{"ROBOT", Fit::Cut}, &Row::label},
           {{"TASK", Fit::Cut}, &Row::task},
           {"OUTCOME", record(&PlanningRecord::outcome)},
           {"TIME_S", [](const Row& row) { return number_text(row.record.planning_time_s, 3); }},
           {"CHECKS", record(&PlanningRecord::collision_checks)},
           {"AGE", age(&Row::received_ms)},
-          {{"WHY", Fit::Cut}, or_none(&Row::why)},
+          {"WHY", or_none(&Row::why)},
+          {{"LENGTH", Fit::Wide},
+           [](const Row& row) { return row.length > 0 ? number_text(row.length, 2) : "-"; }},
           {{"PLANNER", Fit::Wide}, record(&PlanningRecord::planner)},
           {{"MODE", Fit::Wide}, record(&PlanningRecord::sampling_mode)},
           {{"MACHINE", Fit::Wide}, &Row::machine},
-          {{"RECEIVED", Fit::Wide}, time(&Row::received_ms)}};
+          {{"RECEIVED", Fit::Wide}, time(&Row::received_ms)},
+          {{"REPORT", Fit::Wide}, &Row::report_uuid}};
 }
 
 /// Labels of robots by their digests, asked for when the first is wanted.
@@ -223,22 +230,32 @@ std::string refused_text(const ClientUse& client) {
   return client.refused_for.empty() ? count : count + ", last for " + client.refused_for;
 }
 
-RowColumns<ClientUse> columns_of_clients() {
-  using Row = ClientUse;
-  return {{"CLIENT", &Row::client},
-          {{"ROBOTS", Fit::Cut}, labels_text},
-          {"ATTEMPTS/S", [](const Row& row) { return number_text(row.attempts_per_s, 1); }},
-          {"BYTES/S",
-           [](const Row& row) { return size_text(static_cast<std::uint64_t>(row.bytes_per_s)); }},
-          {"WAITING", [](const Row& row) { return row.on_way + row.waiting; }},
-          {"LEASES", &Row::leases},
-          {"FITS", &Row::fits},
-          {"REFUSED", refused_text},
-          {"SEEN", age(&Row::last_seen_ms)},
-          {{"ATTEMPTS", Fit::Wide}, &Row::attempts},
-          {{"NEW ROBOTS", Fit::Wide}, &Row::registered_robots},
-          {{"NEW TASKS", Fit::Wide}, &Row::created_tasks},
-          {{"STORED", Fit::Wide}, [](const Row& row) { return size_text(row.stored_bytes); }}};
+RowColumns<ClientsOfName> columns_of_clients() {
+  using Row = ClientsOfName;
+  const auto of = [](auto ClientUse::*member) {
+    return [member](const Row& row) { return row.use.*member; };
+  };
+  const auto bytes_text = [](const Row& row) {
+    return size_text(static_cast<std::uint64_t>(row.use.bytes_per_s));
+  };
+  return {
+      {{"CLIENT", Fit::Cut}, of(&ClientUse::client)},
+      {"CALLS", &Row::clients},
+      {{"ROBOTS", Fit::Cut}, [](const Row& row) { return labels_text(row.use); }},
+      {"REQUESTS", of(&ClientUse::requests)},
+      {"BAD", of(&ClientUse::bad_requests)},
+      {"BYTES/S", bytes_text},
+      {"WAITING", [](const Row& row) { return row.use.on_way + row.use.waiting; }},
+      {"REFUSED", [](const Row& row) { return refused_text(row.use); }},
+      {"SEEN", [now = now_ms()](const Row& row) { return age_text(row.use.last_seen_ms, now); }},
+      {{"ATTEMPTS/S", Fit::Wide},
+       [](const Row& row) { return number_text(row.use.attempts_per_s, 1); }},
+      {{"LEASES", Fit::Wide}, of(&ClientUse::leases)},
+      {{"FITS", Fit::Wide}, of(&ClientUse::fits)},
+      {{"ATTEMPTS", Fit::Wide}, of(&ClientUse::attempts)},
+      {{"NEW ROBOTS", Fit::Wide}, of(&ClientUse::registered_robots)},
+      {{"NEW TASKS", Fit::Wide}, of(&ClientUse::created_tasks)},
+      {{"STORED", Fit::Wide}, [](const Row& row) { return size_text(row.use.stored_bytes); }}};
 }
 
 std::string place_text(const AuditEntry& entry) {
@@ -282,6 +299,14 @@ std::vector<std::string> cells_of(const Row& row, const RowColumns<Row>& columns
   return cells;
 }
 
+template <typename Row>
+tables::Table table_of(const RowColumns<Row>& columns) {
+  std::vector<tables::Column> headings;
+  for (const RowColumn<Row>& column : columns)
+    headings.push_back(column.heading);
+  return tables::Table(std::move(headings));
+}
+
 struct Query {
   std::string command;  ///< named in messages
   AdminRequest request;
@@ -303,10 +328,7 @@ struct EveryRow {
 template <typename Row, typename Selection = EveryRow>
 int list_rows(link::Client& server, const Query& query, const RowColumns<Row>& columns,
               std::ostream& out, std::ostream& err, Selection selection = {}) {
-  std::vector<tables::Column> headings;
-  for (const RowColumn<Row>& column : columns)
-    headings.push_back(column.heading);
-  tables::Table table(std::move(headings));
+  tables::Table table = table_of(columns);
   std::string document = "{\"rows\":[";
   std::optional<Error> error;
   const auto add = [&](const std::string& text) {
@@ -389,8 +411,32 @@ void add_listings(CLI::App& noun, Session& session) {
 
 int list_clients(link::Client& server, std::size_t limit, bool json, std::ostream& out,
                  std::ostream& err) {
-  return list_rows(server, {"status --clients", {.verb = AdminVerb::ListClients}, limit, json},
-                   columns_of_clients(), out, err);
+  constexpr const char* kCommand = "status --clients";
+  if (json)
+    return list_rows(server, {kCommand, {.verb = AdminVerb::ListClients}, limit, json},
+                     RowColumns<ClientUse>(), out, err);
+  std::vector<ClientUse> clients;
+  std::optional<Error> unreadable;
+  std::optional<Error> error =
+      link::for_each_row(server, {.verb = AdminVerb::ListClients}, [&](const std::string& text) {
+        Result<ClientUse> row = json::row_from_json<ClientUse>(text);
+        if (row)
+          clients.push_back(std::move(row).value());
+        else
+          unreadable = link::unreadable_row(row.error());
+        return !unreadable;
+      });
+  if (error || unreadable)
+    return refuse(kCommand, error ? *error : *unreadable, err);
+  const RowColumns<ClientsOfName> columns = columns_of_clients();
+  tables::Table table = table_of(columns);
+  std::vector<ClientsOfName> names = by_name(clients);
+  if (limit > 0 && names.size() > limit)
+    names.resize(limit);
+  for (const ClientsOfName& name : names)
+    table.add_row(cells_of(name, columns));
+  table.print(out);
+  return kDone;
 }
 
 int list_attempts(link::Client& server, const AttemptListOptions& options, std::ostream& out,

@@ -18,7 +18,8 @@ namespace kinship::cli {
 /// where the verb takes filters.
 void add_listings(CLI::App& noun, Session& session);
 
-/// `status --clients`: the use that each client makes of the server, the busiest first.
+/// `status --clients`: the use of the server, the busiest clients first; those of one program and
+/// host are one row, but with `json` each is its own.
 /// \param limit  0: all.
 int list_clients(link::Client& server, std::size_t limit, bool json, std::ostream& out,
                  std::ostream& err);

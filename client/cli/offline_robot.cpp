@@ -2,7 +2,6 @@
 
 #include <ctime>
 #include <ostream>
-#include <sstream>
 #include <vector>
 
 #include "client/cli/cell_text.hpp"
@@ -81,14 +80,11 @@ Result<std::optional<Eigen::Isometry3d>> placement_of(const std::string& text) {
 }
 
 Result<Eigen::VectorXd> parse_configuration(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<double> values;
-  for (double value = 0; stream >> value;)
-    values.push_back(value);
-  if (!stream.eof() || values.empty())
-    return Error{ErrorCode::InvalidInput, "--q: '" + text + "' is no list of joint values"};
+  const auto values = models::parse_numbers(text);
+  if (!values)
+    return Error{values.error().code, "--q: " + values.error().message};
   return Eigen::VectorXd(
-      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+      Eigen::Map<const Eigen::VectorXd>(values->data(), static_cast<Eigen::Index>(values->size())));
 }
 
 std::optional<Error> check_configuration(const kinematics::Chain& chain, const Eigen::VectorXd& q) {

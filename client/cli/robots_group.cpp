@@ -61,13 +61,13 @@ void add_forward(CLI::App& group, Session& session) {
                   "kinship robots fk robots/models/ur10e --configurations starts.jsonl --json");
   add_robot_arguments(*command, options->robot);
   CLI::Option_group* configurations = command->add_option_group("configurations");
-  configurations->add_option("--q", options->configuration,
-                             "Joint values, rad or m, separated by spaces");
+  arguments::add_numbers(*configurations, "--q", options->configuration,
+                         "Joint values, rad or m, with blanks or commas");
   configurations
       ->add_option("--configurations", options->configurations, "File with lines [q_1, q_2, ...]")
       ->type_name("FILE");
   configurations->require_option(1);
-  command->add_option("--placement", options->placement, kPlacementHelp);
+  arguments::add_numbers(*command, "--placement", options->placement, kPlacementHelp);
   add_json(*command, session);
   on_run(*command, session, [&session, options] {
     options->json = session.json;
@@ -84,7 +84,8 @@ void add_inverse(CLI::App& group, Session& session) {
       "--collision-free --scene my.problems.jsonl");
   add_robot_arguments(*command, options->robot);
   CLI::Option_group* poses = command->add_option_group("poses");
-  poses->add_option("--pose", options->pose, "Of the frame in base link, \"x y z qx qy qz qw\"");
+  arguments::add_numbers(*poses, "--pose", options->pose,
+                         "Of the frame in base link, \"x y z qx qy qz qw\"");
   poses->add_option("--poses", options->poses, "File with lines [x, y, z, qx, qy, qz, qw]")
       ->type_name("FILE");
   poses->require_option(1);
@@ -92,7 +93,7 @@ void add_inverse(CLI::App& group, Session& session) {
       ->add_option("--frame", options->frame,
                    "Whose pose it is: tip, or transfer as in the goals of problems (default tip)")
       ->check(CLI::IsMember({"tip", "transfer"}));
-  command->add_option("--placement", options->placement, kPlacementHelp);
+  arguments::add_numbers(*command, "--placement", options->placement, kPlacementHelp);
   command->add_flag("--collision-free", options->collision_free,
                     "Leave out solutions in which the robot touches itself or the scene");
   command
@@ -183,10 +184,10 @@ void add_frames(CLI::App& group, Session& session) {
       "kinship robots frames arm.urdf\n"
       "  kinship robots frames robots/models/ur10e --q \"0 -1.57 1.57 0 1.57 0\"");
   add_robot_arguments(*command, options->robot);
-  command->add_option(
-      "--q", options->configuration,
-      "Joint values, rad or m, separated by spaces (default: 0, within the limits)");
-  command->add_option("--placement", options->placement, kPlacementHelp);
+  arguments::add_numbers(
+      *command, "--q", options->configuration,
+      "Joint values, rad or m, with blanks or commas (default: 0, within the limits)");
+  arguments::add_numbers(*command, "--placement", options->placement, kPlacementHelp);
   add_json(*command, session);
   on_run(*command, session, [&session, options] {
     options->json = session.json;

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <ostream>
+#include <string_view>
 #include <vector>
 
 #include "client/cli/cell_text.hpp"
@@ -96,6 +97,10 @@ void print_task(const TaskSummary& task, std::ostream& out) {
 
 void print_attempt(const Attempt& attempt, std::ostream& out) {
   const PlanningRecord& record = attempt.record;
+  constexpr std::string_view kProblem = " problem=";  // the last of the options
+  const std::size_t problem = record.planner_options.rfind(kProblem);
+  if (problem != std::string::npos)
+    out << "problem     " << record.planner_options.substr(problem + kProblem.size()) << '\n';
   out << "report      " << attempt.report_uuid.text() << '\n'
       << "robot       " << attempt.robot.short_hex() << '\n'
       << "task        " << attempt.task << '\n'
@@ -103,9 +108,14 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
       << "outcome     " << to_text(record.outcome) << " after " << record.collision_checks
       << " collision checks, " << number_text(record.planning_time_s, 3) << " s of "
       << number_text(record.time_limit_s, 1) << " s\n"
-      << "planner     " << record.planner << ' ' << record.planner_options << '\n'
-      << "mode        " << to_text(record.sampling_mode) << ", share "
-      << number_text(record.share, 2);
+      << "planner     " << record.planner << ' ' << record.planner_options.substr(0, problem)
+      << '\n'
+      << "mode        ";
+  if (record.outcome == Outcome::Failed && record.sampling_mode != SamplingMode::Guided)
+    out << "no sample was drawn: it could not be planned at all (planned as "
+        << to_text(record.sampling_mode) << ')';
+  else
+    out << to_text(record.sampling_mode) << ", share " << number_text(record.share, 2);
   if (record.distribution_id)
     out << ", distribution " << record.distribution_id->short_hex() << " revision "
         << record.distribution_revision;
@@ -323,11 +333,16 @@ int show_experience(link::Client& server, const ExperienceOptions& options, std:
     return refuse(kExperienceCommand, {ErrorCode::InvalidInput, reply->message}, err);
   if (reply->status == FetchStatus::Busy)
     return refuse(kExperienceCommand, {ErrorCode::Unavailable, reply->message}, err);
-  if (!reply->experience)
-    return refuse(
-        kExperienceCommand,
-        {ErrorCode::NotFound, "no paths of task '" + options.task + "' (see: kinship tasks list)"},
-        err);
+  if (!reply->experience) {
+    const auto task =
+        link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = options.task});
+    return refuse(kExperienceCommand,
+                  task || task.error().code != ErrorCode::NotFound
+                      ? Error{ErrorCode::NotFound,
+                              "no paths of task '" + options.task + "' (see: kinship tasks list)"}
+                      : task.error(),  // with the nearest name
+                  err);
+  }
   const TaskExperience& experience = *reply->experience;
   if (options.json) {
     out << json::to_json(experience) << '\n';

@@ -9,12 +9,15 @@
 #include "client/link/robot_names.hpp"
 #include "client/link/robot_upkeep.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "proto/json/attempt_json.hpp"
 #include "proto/types/names.hpp"
 
 namespace kinship::cli {
 namespace {
 
 constexpr std::string_view kRetirePath = "paths retire", kResetTask = "tasks reset";
+constexpr std::string_view kRestore = "paths restore", kRenameTask = "tasks rename",
+                           kRemoveTask = "tasks remove";
 constexpr const char* kNothingToRetire = "nothing to do: retired already\n";
 
 int retire(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
@@ -42,9 +45,9 @@ int say_what_would_happen(link::Client& server, const RobotSummary& robot, std::
   if (!distributions)
     return refuse(kRemove, distributions.error(), err);
   err << kRemove << ": this would retire " << count_text(robot.paths, "path") << " of '"
-      << robot.label << "' (" << robot.robot.short_hex()
-      << "): out of every fit, not to be undone. " << count_text(robot.attempts, "attempt")
-      << " would stay on record, " << count_text(distributions->size(), "distribution")
+      << robot.label << "' (" << robot.robot.short_hex() << "): out of every fit. "
+      << count_text(robot.attempts, "attempt") << " would stay on record, "
+      << count_text(distributions->size(), "distribution")
       << " for it would go, those of other robots that used its paths be fitted anew. To do it: "
          "kinship robots remove "
       << robot.label << " --yes; to free the label alone: kinship robots rename " << robot.label
@@ -67,9 +70,91 @@ void print_removal(const RobotRemoval& removal, std::ostream& out) {
 
 }  // namespace
 
-int retire_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
-                std::ostream& err) {
-  return retire(server, AdminVerb::RetirePath, id, json, out, err);
+int retire_path(link::Client& server, const std::string& id, bool confirmed, bool json,
+                std::ostream& out, std::ostream& err) {
+  if (confirmed)
+    return retire(server, AdminVerb::RetirePath, id, json, out, err);
+  const Result<std::string> row =
+      link::first_row_of(server, {.verb = AdminVerb::ShowPath, .argument = id});
+  if (!row)
+    return refuse(kRetirePath, row.error(), err);
+  const auto named = json::stored_attempt_from_json(*row);
+  if (!named)
+    return refuse(kRetirePath, link::unreadable_row(named.error()), err);
+  const Attempt& attempt = named->attempt;
+  err << kRetirePath << ": this would retire the path of " << attempt.report_uuid.text()
+      << ", task '" << attempt.task << "', robot " << attempt.robot.short_hex()
+      << ": out of every fit, kept for the record; kinship paths restore brings it back. To do "
+         "it: kinship paths retire "
+      << id << " --yes\n";
+  return kWrongUsage;
+}
+
+int restore_paths(link::Client& server, const RestoreOptions& options, std::ostream& out,
+                  std::ostream& err) {
+  const auto restored = link::row_of<Restoration>(server, {.verb = AdminVerb::RestorePath,
+                                                           .argument = options.id,
+                                                           .robot = options.robot,
+                                                           .task = options.task});
+  if (!restored)
+    return refuse(kRestore, restored.error(), err);
+  if (options.json) {
+    out << json::to_json(*restored) << '\n';
+  } else {
+    out << count_text(restored->paths, "path")
+        << (restored->task.empty() ? "" : " of task '" + restored->task + "'") << " restored";
+    if (restored->paths > 0)
+      out << ", under UUIDs of their own, the first " << restored->report_uuid.text();
+    if (restored->in_use > 0)
+      out << "; " << restored->in_use << " in use already";
+    if (restored->lost > 0)
+      out << "; " << restored->lost << " cannot be restored";
+    if (!restored->reason.empty())
+      out << " (" << restored->reason << ')';
+    out << '\n';
+  }
+  return restored->lost > 0 ? kFailed : kDone;
+}
+
+int rename_task(link::Client& server, const std::string& task, const std::string& name, bool json,
+                std::ostream& out, std::ostream& err) {
+  const auto summary = link::row_of<TaskSummary>(
+      server, {.verb = AdminVerb::RenameTask, .argument = name, .task = task});
+  if (!summary)
+    return refuse(kRenameTask, summary.error(), err);
+  if (json)
+    out << json::to_json(*summary) << '\n';
+  else
+    out << "task '" << task << "' is called '" << summary->task << "' now, with "
+        << count_text(summary->paths, "path") << "; its distributions are fitted anew\n"
+        << "Robots that still report '" << task << "' begin a task of that name again\n";
+  return kDone;
+}
+
+int remove_task(link::Client& server, const std::string& task, bool confirmed, bool json,
+                std::ostream& out, std::ostream& err) {
+  if (!confirmed) {
+    const auto summary =
+        link::row_of<TaskSummary>(server, {.verb = AdminVerb::ShowTask, .argument = task});
+    if (!summary)
+      return refuse(kRemoveTask, summary.error(), err);
+    err << kRemoveTask << ": this would retire " << count_text(summary->paths, "path") << " of '"
+        << task << "' and list it no more; " << count_text(summary->attempts, "attempt")
+        << " would stay on record. To do it: kinship tasks remove " << task << " --yes\n";
+    return kWrongUsage;
+  }
+  const auto removal =
+      link::row_of<TaskRemoval>(server, {.verb = AdminVerb::RemoveTask, .argument = task});
+  if (!removal)
+    return refuse(kRemoveTask, removal.error(), err);
+  if (json)
+    out << json::to_json(*removal) << '\n';
+  else
+    out << "task '" << removal->task << "' removed: " << count_text(removal->paths, "path")
+        << " retired, " << count_text(removal->attempts, "attempt") << " stay on record; "
+        << count_text(removal->distributions, "distribution")
+        << " gone. A new report of it lists it again\n";
+  return kDone;
 }
 
 int reset_task(link::Client& server, const std::string& task, bool confirmed, bool json,
@@ -88,7 +173,9 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
       summary->robots, [](const TaskRobotSummary& robot) { return robot.paths > 0; });
   err << kResetTask << ": this would retire " << count_text(summary->paths, "path") << " of "
       << count_text(static_cast<std::uint64_t>(robots), "robot")
-      << ": out of every fit, kept for the record, not to be undone. To do it: kinship tasks reset "
+      << ": out of every fit, kept for the record; kinship paths restore --task brings them back. "
+         "To "
+         "do it: kinship tasks reset "
       << task << " --yes\n";
   return kWrongUsage;
 }

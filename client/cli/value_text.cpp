@@ -114,9 +114,14 @@ void print_search(const SearchRecord& search, std::ostream& out) {
   if (!search.reason.empty())
     out << "why         " << search.reason << '\n';
   const char* heading = "in the way  ";
-  for (const Blocker& blocker : search.blockers) {
-    out << heading << "'" << blocker.first << "' touches '" << blocker.second << "' in "
-        << count_text(blocker.count, "refused configuration") << '\n';
+  for (const auto& [blocker, goals] : blockers_by_goals(search)) {
+    out << heading << "'" << blocker.first << "' touches '" << blocker.second << "' in ";
+    if (goals > 0)
+      out << goals << " of " << count_text(static_cast<std::uint64_t>(search.goals.cols()), "goal")
+          << (blocker.count > 0 ? " and " : "");
+    if (blocker.count > 0)
+      out << count_text(blocker.count, "refused configuration");
+    out << '\n';
     heading = "            ";
   }
   if (search.goals.cols() > 0)

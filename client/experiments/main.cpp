@@ -64,9 +64,9 @@ void add_station(CLI::App& app, const std::string& description, StationOptions& 
       ->capture_default_str();
   station->add_option("--seed", options.seed, "equal seeds give equal scenes for every robot")
       ->capture_default_str();
-  station->add_option("--placement", line.placement,
-                      "base of the robot in the task frame, \"x y z qx qy qz qw\"; known for "
-                      "panda, iiwa14 and ur10e of robots/models, otherwise identity");
+  arguments::add_numbers(*station, "--placement", line.placement,
+                         "base of the robot in the task frame, \"x y z qx qy qz qw\"; known for "
+                         "panda, iiwa14 and ur10e of robots/models, otherwise identity");
   station->add_option("--output", line.output, "file to write; standard output if missing");
 }
 
@@ -152,14 +152,7 @@ std::vector<std::string> studies_of(const CLI::App& order) {
 }
 
 Eigen::Isometry3d read_placement(const std::string& text) {
-  std::istringstream stream(text);
-  PoseArray numbers{};
-  std::string rest;
-  for (double& number : numbers)
-    stream >> number;
-  if (!stream || stream >> rest)
-    throw CLI::ValidationError("--placement", "'" + text + "' is not seven numbers");
-  const Result<Eigen::Isometry3d> pose = from_pose_array(numbers);
+  const Result<Eigen::Isometry3d> pose = models::parse_pose(text);
   if (!pose)
     throw CLI::ValidationError("--placement", pose.error().message);
   return *pose;

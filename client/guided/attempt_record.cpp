@@ -3,18 +3,23 @@
 #include <sstream>
 
 #include "proto/evidence/machine_speed.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 
 namespace kinship::guided {
 namespace {
 
-std::string describe(const PlanSettings& settings, const ProblemResult& result) {
+std::string describe(const PlanSettings& settings, const std::string& problem,
+                     const ProblemResult& result) {
   std::ostringstream text;
   text << "step=" << settings.resolution;
   if (settings.clearance_m > 0)
     text << " clearance_m=" << settings.clearance_m;
   text << " overshoot=" << settings.overshoot << " shortcut_checks=" << settings.shortcut_checks
        << " max_checks=" << settings.max_checks << (result.gate_fired ? " gate=fired" : "");
-  return text.str();
+  if (!problem.empty())  // to the end: it may have blanks
+    text << " problem=" << problem;
+  return cut_text(text.str(), kMaxPlannerOptionsBytes);
 }
 
 }  // namespace
@@ -31,7 +36,7 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   PlanningRecord& record = attempt.record;
   record.outcome = planned.outcome;
   record.planner = planned.planner;
-  record.planner_options = describe(settings, result);
+  record.planner_options = describe(settings, problem.name, result);
   record.planning_time_s = result.planning_time_s;
   record.collision_checks = result.collision_checks;
   record.projections = result.projections;

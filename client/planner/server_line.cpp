@@ -163,6 +163,7 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
       },
       std::move(wanted));
   guided::NoGuidance first_reason = guided::NoGuidance::None;
+  bool lacks_paths = false;
   for (const ProblemLine& line : lines) {
     if (stop_())
       break;
@@ -174,9 +175,13 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
     const std::string outcome = answer.guidance ? "" : "none, ";
     messages_ << "guidance for the placement of '" << line.problem->name << "': " << outcome
               << answer.message << '\n';
+    lacks_paths = lacks_paths || answer.message.starts_with("no paths of task");
     if (first_reason == guided::NoGuidance::None)
       first_reason = answer.why_not;
   }
+  if (options_.report && lacks_paths)
+    messages_ << "--report: the server has no paths of task '" << options_.task
+              << "': this run begins it under that name\n";
   return first_reason;
 }
 

@@ -132,8 +132,16 @@ void bind_administration(ClientClass& client) {
             return row_of(self, AdminVerb::RetirePath, path);
           },
           py::arg("path"),
-          "Takes a path, by its report_uuid, out of every fit for good, as `kinship paths retire`. "
+          "Takes a path, by its report_uuid, out of every fit, as `kinship paths retire --yes`. "
           "Returns task, paths and robots; raises NotFound.")
+      .def(
+          "restore",
+          [](const ClientHandle& self, const std::string& path) {
+            return row_of(self, AdminVerb::RestorePath, path);
+          },
+          py::arg("path"),
+          "Stores a retired path anew, as `kinship paths restore`. Returns task, paths, in_use, "
+          "lost, report_uuid and reason; raises NotFound.")
       .def(
           "reset",
           [](const ClientHandle& self, const std::string& task) {

@@ -84,7 +84,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
           : "No contact was recorded at this goal."})),
       ...(search.last_free.length ? [{name: "last free", q: search.last_free, names: blockers().slice(0, 2),
                                       text: "The free configuration nearest to a goal that the search reached" +
-                                        (search.blockers.length ? "; marked is what was in the way most often." : ".")}] : [])];
+                                        (search.blockers.length ? "; marked is what was in the way of most goals, or most often." : ".")}] : [])];
   }
   const blockers = () => search.blockers.flatMap(({first, second}) => [first, second]);
 
@@ -196,7 +196,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     byId("kind").textContent = path ? "Kinship path" : "Kinship attempt";
     byId("title").replaceChildren(linked(robot.label, href("robot", robot.label)), " on \u201c", linked(attempt.task, href("task", attempt.task)), "\u201d");
     byId("lead").textContent = `${attempt.report_uuid}: ${solved ? "solved" : record.outcome === "timeout" ? "not solved within its limits" : "could not be planned"} ` +
-      `after ${several(record.collision_checks, "collision check")}, sampled ${record.sampling_mode}` + (path ? "." : solved ? "; its path is not kept." : ".");
+      `after ${several(record.collision_checks, "collision check")}` + (record.outcome === "failed" ? "" : `, sampled ${record.sampling_mode}`) + (path ? "." : solved ? "; its path is not kept." : ".");
     const least = (series) => (series.least === null ? "\u2013" : millimetresText(series.distance_m[series.least]));
     fillTiles(byId("tiles"), [
       [count(record.collision_checks), "collision checks"], [seconds(record.planning_time_s), "planning time"],
@@ -207,7 +207,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     fillFacts(byId("facts"), [
       ["Report", attempt.report_uuid], ["Outcome", record.outcome], ["Planner", `${record.planner} ${record.planner_options}`.trim()],
       ["Machine", attempt.machine], ["Time limit", record.time_limit_s ? seconds(record.time_limit_s) : ""],
-      ["Sampling", record.sampling_mode === "guided" ? `guided, ${percent(record.share)} of the samples from the distribution` : record.sampling_mode],
+      ["Sampling", record.sampling_mode === "guided" ? `guided, ${percent(record.share)} of the samples from the distribution` : record.outcome === "failed" ? `none: no sample was drawn (planned as ${record.sampling_mode})` : record.sampling_mode],
       ["Waypoints", path ? count(path.waypoints.length) : ""], ["Length in joint space", path ? fixed(path.length, 2) : ""],
       ["Not compared", data.always_touching.length ? data.always_touching.map(([a, b]) => `${a} and ${b}`).join(", ") + ": they touch almost everywhere" : ""]]);
     if (record.distribution_id)
@@ -254,17 +254,18 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
     if (known.length) choose(byId("places").lastChild, known[known.length - 1]);
     if (!search || record.outcome === "solved") return;
     byId("why").hidden = false;
-    const most = search.last_free.length ? search.blockers[0] : null; // else no search was begun, and the reason names them
-    byId("why-text").textContent = [sentence(search.reason), most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${several(most.count, "configuration")} not free, more than any other pair.` : "",
+    const most = search.last_free.length ? search.blockers[0] || null : null; // else no search was begun, and the reason names them
+    const often = most && [most.goals ? `${most.goals} of ${several(search.goals.length, "goal")}` : "", most.count ? several(most.count, "configuration") : ""].filter(Boolean).join(" and ");
+    byId("why-text").textContent = [sentence(search.reason), most ? `\u201c${most.first}\u201d and \u201c${most.second}\u201d made ${often} not free.` : "",
                                     search.goal_contacts.length ? `${several(new Set(search.goal_contacts.map((contact) => contact.goal)).size, "goal configuration")} of ${count(search.goals.length)} touched something.` : ""]
       .filter(Boolean).join(" ") || "Nothing was recorded of it.";
     byId("blockers-section").hidden = search.blockers.length === 0;
-    fillTable(byId("blockers"), [["bodies", "configurations not free"], ...search.blockers.map(({first, second, count: times}) => [
+    fillTable(byId("blockers"), [["bodies", "goals", "configurations not free"], ...search.blockers.map(({first, second, goals, count: times}) => [
       make("button", {type: "button", onclick: () => {
         const last = known[known.length - 1];
         stage.put(last ? last.q : null, [first, second]);
         byId("place").textContent = `Marked: \u201c${first}\u201d and \u201c${second}\u201d.`;
-      }}, `${first} and ${second}`), count(times)])]);
+      }}, `${first} and ${second}`), goals ? `${goals} of ${search.goals.length}` : "\u2013", count(times)])]);
   }
 
   tell();

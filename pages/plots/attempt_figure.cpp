@@ -194,15 +194,16 @@ std::string json_of(const SearchRecord& search, const std::vector<Eigen::Matrix3
                    {"first", json_string(each.first)},
                    {"second", json_string(each.second)}});
   };
-  const auto blocker = [](const Blocker& each) {
-    return object({{"first", json_string(each.first)},
-                   {"second", json_string(each.second)},
-                   {"count", std::to_string(each.count)}});
+  const auto blocker = [](const GoalBlocker& each) {
+    return object({{"first", json_string(each.blocker.first)},
+                   {"second", json_string(each.blocker.second)},
+                   {"count", std::to_string(each.blocker.count)},
+                   {"goals", std::to_string(each.goals)}});
   };
   return object({{"start", list(search.start, number)},
                  {"goals", list(search.goals.colwise(),
                                 [](const auto& q) { return list(Eigen::VectorXd(q), number); })},
-                 {"blockers", list(search.blockers, blocker)},
+                 {"blockers", list(blockers_by_goals(search), blocker)},
                  {"goal_contacts", list(search.goal_contacts, contact)},
                  {"last_free", list(search.last_free, number)},
                  {"trees", list(trees, [](const std::string& tree) { return tree; })},

@@ -71,7 +71,8 @@ kinshipFigures.task = (element, data, {href = () => null} = {}) => {
     fillTiles(byId("tiles"), [
       [count(sum("attempts")), `attempts of ${several(robots.length, "robot")}`],
       [count(sum("solved")), "of them solved, each with a path"],
-      [judged ? percent(sum("solved") / judged) : "\u2013", "solved of those that could be planned"],
+      [count(sum("attempts") - sum("solved")), judged < sum("attempts")
+        ? `not solved, ${count(sum("attempts") - judged)} of them with no start or goal that is free` : "not solved"],
       ...compared.slice(0, 2).map((robot) => [fixed(newest(robot).ratio, 2) + "\u2009\u00d7",
         `uniform / guided, ${robot.label} now: 90 % ${fixed(newest(robot).low, 2)} to ${fixed(newest(robot).high, 2)}`])]);
   }

@@ -9,6 +9,7 @@
 
 #include "proto/dds/endpoint.hpp"
 #include "proto/dds/packet_guard.hpp"
+#include "proto/dds/self_description.hpp"
 #include "proto/security/certificate_name.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/types/uuid.hpp"
@@ -88,13 +89,12 @@ std::optional<Sender> MatchedWriters::look_up(const Entity& reader, std::uint64_
   const Endpoint endpoint(dds_get_matched_publication_data(reader.get(), writer));
   if (!endpoint)
     return std::nullopt;
-  Sender sender{.participant = endpoint->participant_instance_handle};
+  Sender sender{.client = {}, .participant = endpoint->participant_instance_handle};
   if (const auto peer = find_peer(prefix_of(endpoint->participant_key))) {
     sender.is_local = peer->is_local;
     sender.address = peer->source.address_text();
-  } else {
-    sender.is_local = is_in_this_process(sender.participant);
   }
+  describe(sender);
   if (!has_security_) {
     sender.client = text_of(endpoint->participant_key);
     return sender;
@@ -107,18 +107,25 @@ std::optional<Sender> MatchedWriters::look_up(const Entity& reader, std::uint64_
   return sender;
 }
 
-bool MatchedWriters::is_in_this_process(std::uint64_t participant) const {
+/// From what its participant announced.
+void MatchedWriters::describe(Sender& sender) const {
   std::array<void*, 1> samples{};
   std::array<dds_sample_info_t, 1> infos{};
-  const dds_return_t count =
-      dds_read_instance(participants_.get(), samples.data(), infos.data(), 1, 1, participant);
+  const dds_return_t count = dds_read_instance(participants_.get(), samples.data(), infos.data(), 1,
+                                               1, sender.participant);
   if (count < 1)
-    return false;
-  const bool is_here =
-      infos[0].valid_data &&
-      dds::is_in_this_process(*static_cast<const dds_builtintopic_participant_t*>(samples[0]));
+    return;
+  if (infos[0].valid_data) {
+    const auto& participant = *static_cast<const dds_builtintopic_participant_t*>(samples[0]);
+    if (sender.address.empty())
+      sender.is_local = is_in_this_process(participant);
+    if (!has_security_)
+      if (std::optional<SelfDescription> self = self_description_of(participant.qos)) {
+        sender.host = std::move(self->host);
+        sender.program = std::move(self->program);
+      }
+  }
   dds_return_loan(participants_.get(), samples.data(), count);
-  return is_here;
 }
 
 }  // namespace kinship::dds

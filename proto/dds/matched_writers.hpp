@@ -25,9 +25,11 @@ struct Sender {
   /// The client's name; without security the identifier of its participant, which differs in each
   /// process.
   std::string client;
-  std::string name = {};          ///< common name of its certificate; empty without security
-  bool is_local = false;          ///< its packets come from this machine (packet_guard)
-  std::string address = {};       ///< that its packets come from; empty: it is in this process
+  std::string name = {};     ///< common name of its certificate; empty without security
+  bool is_local = false;     ///< its packets come from this machine (packet_guard)
+  std::string address = {};  ///< that its packets come from; empty: it is in this process
+  // What its participant says of itself (participant.hpp), without security.
+  std::string host = {}, program = {};
   std::uint64_t participant = 0;  ///< its instance handle
   Hearing hearing = Hearing::Unknown;
 };
@@ -51,7 +53,7 @@ class MatchedWriters {
 
  private:
   std::optional<Sender> look_up(const Entity& reader, std::uint64_t writer) const;
-  bool is_in_this_process(std::uint64_t participant) const;
+  void describe(Sender& sender) const;
 
   bool has_security_;
   Entity participants_;                              // reader of the built-in topic of participants

@@ -16,6 +16,7 @@
 #include "proto/dds/packet_guard.hpp"
 #include "proto/dds/qos.hpp"
 #include "proto/dds/rejoin_watch.hpp"
+#include "proto/dds/self_description.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::dds {
@@ -157,7 +158,9 @@ std::unique_ptr<EndpointGuard> guard_of(const ParticipantOptions& options) {
 Entity create_participant(const ParticipantOptions& options) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  const Qos qos = options.security.empty() ? Qos() : security_qos(options.security);
+  Qos qos = options.security.empty() ? Qos(dds_create_qos()) : security_qos(options.security);
+  if (options.security.empty() && options.role == Role::Client)
+    set_description(qos.get(), own_description());
   const Handle handle = dds_create_participant(number_here(options), qos.get(), nullptr);
   if (handle < 0)
     throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));

@@ -169,7 +169,9 @@ class Replier<Conversation>::Implementation {
       return Caller{.client = sender.client,
                     .role = AccessRole::Admin,
                     .is_local = sender.is_local,
-                    .address = sender.address};
+                    .address = sender.address,
+                    .host = sender.host,
+                    .program = sender.program};
     if (!directory_)
       return Error{ErrorCode::Internal, "the server knows no clients"};
     Result<Caller> caller = directory_(sender.name);

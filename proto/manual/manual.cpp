@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +63,43 @@ void add_manual(CLI::App& app, int section) {
       ->group(kGroup);
 }
 
+namespace {
+
+/// The names of a command's options that take numbers, and of the commands below it.
+void collect_number_options(const CLI::App& app, std::set<std::string>& names) {
+  for (const CLI::Option* const option : app.get_options())
+    if (option->get_type_name() == kNumbers)
+      for (const std::string& name : option->get_lnames())
+        names.insert("--" + name);
+  for (const CLI::App* const below : app.get_subcommands([](const CLI::App*) { return true; }))
+    collect_number_options(*below, names);
+}
+
+/// A number, or a list of them.
+bool is_of_numbers(const std::string& word) {
+  return word.find_first_of("0123456789") != std::string::npos &&
+         word.find_first_not_of("0123456789+-.eE, \t") == std::string::npos;
+}
+
+void join_numbers(const CLI::App& app, std::vector<std::string>& words) {
+  std::set<std::string> names;
+  collect_number_options(app, names);
+  std::vector<std::string> joined;
+  bool is_list = false;  // the last word is one, of such an option
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool is_numbers = is_of_numbers(words[i]);
+    if (is_list && is_numbers) {
+      joined.back() += ' ' + words[i];
+      continue;
+    }
+    is_list = is_numbers && i > 0 && names.contains(words[i - 1]);
+    joined.push_back(words[i]);
+  }
+  words = std::move(joined);
+}
+
+}  // namespace
+
 void parse(CLI::App& app, int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "help") {
@@ -69,6 +108,7 @@ void parse(CLI::App& app, int argc, const char* const* argv) {
   } else if (words.size() == 1 && words.front() == "version") {
     words.front() = "--version";
   }
+  join_numbers(app, words);
   std::ranges::reverse(words);  // as CLI11 takes them
   app.parse(std::move(words));
 }

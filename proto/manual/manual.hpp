@@ -17,4 +17,8 @@ void add_manual(CLI::App& app, int section = 1);
 /// \throws CLI::ParseError, for explain() (suggestion.hpp).
 void parse(CLI::App& app, int argc, const char* const* argv);
 
+/// Type name of an option that takes a list of numbers: parse() joins the words of it, so that
+/// `--q 0 -1.5 2` is `--q "0 -1.5 2"`.
+inline constexpr const char* kNumbers = "NUMBERS";
+
 }  // namespace kinship::manual

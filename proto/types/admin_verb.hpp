@@ -40,9 +40,12 @@ enum class AdminVerb {
   HashBackup,            ///< begins a job; row: Job. Rows of the job: SHA-256 in hex, bytes
   ReadBackup,            ///< row: bytes of a backup from `cursor` on, in base64
   FindAttempts,          ///< rows: AttemptSummary as AttemptFilter says; filters robot and task
-  ListMeshes             ///< rows: StoredMesh, the contents of a robot's meshes that are here
+  ListMeshes,            ///< rows: StoredMesh, the contents of a robot's meshes that are here
+  RestorePath,           ///< of `argument`, or of robot and task as filters; row: Restoration
+  RenameTask,            ///< `task` gets the name `argument`; row: TaskSummary
+  RemoveTask             ///< row: TaskRemoval
 };
-inline constexpr AdminVerb kLastVerb = AdminVerb::ListMeshes;
+inline constexpr AdminVerb kLastVerb = AdminVerb::RemoveTask;
 
 /// Kind of object that `argument` of a request names, where a narrowed certificate or the owner of
 /// a job limits it.
@@ -119,7 +122,11 @@ inline constexpr auto kVerbRules = [] {
       VerbRule{ReadBackup, "read_backup", "download backups", kOperator, Is::Other,
                Changes | OfAll},
       VerbRule{FindAttempts, "find_attempts", "find attempts", kReader, Is::Other, Lists | Filters},
-      VerbRule{ListMeshes, "list_meshes", "see a robot's meshes", kReader, Is::Robot, Lists}};
+      VerbRule{ListMeshes, "list_meshes", "see a robot's meshes", kReader, Is::Robot, Lists},
+      VerbRule{RestorePath, "restore_path", "restore paths", kOperator, Is::Report,
+               Changes | Filters | Long},
+      VerbRule{RenameTask, "rename_task", "rename tasks", kAdmin, Is::Task, Changes | NamesTask},
+      VerbRule{RemoveTask, "remove_task", "remove tasks", kAdmin, Is::Task, Changes | Long}};
 }();
 
 /// Whether a table has one row for each verb, in their order.

@@ -34,6 +34,8 @@ struct Caller {
   bool is_local = false;     ///< by the address of its packets; decides nothing with security
   std::string address = {};  ///< its packets' own; empty: the caller is in the server's process
   TokenProof token = TokenProof::NotNeeded;
+  // What the participant says of itself, without security; for people, and decides nothing.
+  std::string host = {}, program = {};
 };
 
 }  // namespace kinship

@@ -28,6 +28,11 @@ struct ClientUse {
   std::uint64_t refused = 0;       ///< requests over a quota
   std::string refused_for = {};    ///< quota of the last refusal; empty: none
   std::int64_t last_seen_ms = 0;
+  // What it says of itself, without security; empty: nothing.
+  std::string host = {};
+  std::string program = {};
+  std::uint64_t requests = 0;      ///< in all
+  std::uint64_t bad_requests = 0;  ///< of an administrator: not found, or refused by a rule
 };
 
 inline constexpr std::size_t kMaxLabelsOfClient = 8;
@@ -48,6 +53,10 @@ inline constexpr std::tuple kFieldsOf<ClientUse>{
     Field{"stored_bytes", &ClientUse::stored_bytes},
     Field{"refused", &ClientUse::refused},
     Field{"refused_for", &ClientUse::refused_for, {.limit = kMaxWordBytes}},
-    Field{"last_seen_ms", &ClientUse::last_seen_ms}};
+    Field{"last_seen_ms", &ClientUse::last_seen_ms},
+    Field{"host", &ClientUse::host, {.limit = kMaxMachineBytes, .may_be_missing = true}},
+    Field{"program", &ClientUse::program, {.limit = kMaxWordBytes, .may_be_missing = true}},
+    Field{"requests", &ClientUse::requests, {.may_be_missing = true}},
+    Field{"bad_requests", &ClientUse::bad_requests, {.may_be_missing = true}}};
 
 }  // namespace kinship

@@ -5,6 +5,11 @@
 #include <vector>
 
 namespace kinship {
+namespace {
+
+constexpr std::string_view kBefore = " (did you mean '";
+
+}  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -32,7 +37,13 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
       least = distance;
       nearest = &candidate;
     }
-  return nearest == nullptr ? "" : " (did you mean '" + *nearest + "'?)";
+  return nearest == nullptr ? "" : std::string(kBefore) + *nearest + "'?)";
+}
+
+std::string without_suggestion(std::string message) {
+  if (const std::size_t at = message.rfind(kBefore); at != std::string::npos)
+    message.erase(at);
+  return message;
 }
 
 }  // namespace kinship

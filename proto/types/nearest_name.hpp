@@ -16,4 +16,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// several; empty if none is within two letters of it, or one for a word of four letters or fewer.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
+/// A message without the suggestion() at its end, for callers that may not see all names.
+std::string without_suggestion(std::string message);
+
 }  // namespace kinship

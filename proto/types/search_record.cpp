@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <functional>
+#include <set>
 #include <string_view>
+#include <tuple>
 
 #include "proto/types/names.hpp"
 #include "proto/types/rules.hpp"
@@ -104,6 +107,27 @@ std::optional<Error> check_search(const SearchRecord& search) {
   return rules.broken();
 }
 
+std::vector<GoalBlocker> blockers_by_goals(const SearchRecord& search) {
+  std::vector<GoalBlocker> blockers;
+  for (const Blocker& blocker : search.blockers)
+    blockers.push_back({blocker, 0});
+  std::set<std::tuple<std::uint32_t, std::string, std::string>> counted;
+  for (const GoalContact& contact : search.goal_contacts) {
+    if (!counted.emplace(contact.goal, contact.first, contact.second).second)
+      continue;
+    auto known = std::ranges::find_if(blockers, [&](const GoalBlocker& each) {
+      return each.blocker.first == contact.first && each.blocker.second == contact.second;
+    });
+    if (known == blockers.end())
+      known = blockers.insert(known, {{contact.first, contact.second, 0}, 0});
+    ++known->goals;
+  }
+  std::ranges::stable_sort(blockers, std::greater(), [](const GoalBlocker& each) {
+    return std::pair(each.goals, each.blocker.count);
+  });
+  return blockers;
+}
+
 std::string why_text(const SearchRecord& search) {
   constexpr std::size_t kTold = 3;
   std::string text = search.reason;
@@ -112,11 +136,17 @@ std::string why_text(const SearchRecord& search) {
   };
   const Eigen::VectorXd& free = search.last_free;
   const bool names_them = !text.empty() && free.size() == 0;  // no search was begun
-  const std::size_t told = names_them ? 0 : std::min(kTold, search.blockers.size());
+  const std::vector<GoalBlocker> blockers = blockers_by_goals(search);
+  const std::size_t told = names_them ? 0 : std::min(kTold, blockers.size());
   for (std::size_t i = 0; i < told; ++i) {
-    const Blocker& blocker = search.blockers[i];
-    add(i > 0 ? ", " : "; ", "'" + blocker.first + "' touches '" + blocker.second + "' (" +
-                                 std::to_string(blocker.count) + ")");
+    const auto& [blocker, goals] = blockers[i];
+    std::string often =
+        goals > 0 ? std::to_string(goals) + " of " + std::to_string(search.goals.cols()) + " goals"
+                  : std::string();
+    if (blocker.count > 0)
+      often += (often.empty() ? "" : ", ") + std::to_string(blocker.count);
+    add(i > 0 ? ", " : "; ",
+        "'" + blocker.first + "' touches '" + blocker.second + "' (" + often + ")");
   }
   if (free.size() > 0 && search.goals.cols() > 0 && search.goals.rows() == free.size()) {
     std::array<char, 64> distance{};

@@ -77,6 +77,16 @@ std::size_t search_bytes(const SearchRecord& search);
 /// begins with "search".
 std::optional<Error> check_search(const SearchRecord& search);
 
+/// A pair of bodies in the way, and the goals at which it touches.
+struct GoalBlocker {
+  Blocker blocker;        ///< count 0: at goals alone
+  std::size_t goals = 0;  ///< of the record's
+};
+
+/// The pairs in the way, also those that touch at goals alone: those that block the most goals
+/// first, then the most frequent.
+std::vector<GoalBlocker> blockers_by_goals(const SearchRecord& search);
+
 /// Why a query was not solved, in words of at most kMaxWhyBytes: the reason; of a search that was
 /// begun the bodies in the way, and how near to a goal it came. Empty if the record says nothing.
 std::string why_text(const SearchRecord& search);

@@ -145,6 +145,7 @@ struct AttemptSummary {
   /// Whether the store has its search record, and the why_text() of that; of FindAttempts alone.
   bool has_search = false;
   std::string why = {};
+  double length = 0;  ///< of its path, joint units; 0: none, or not by FindAttempts
 };
 
 template <>
@@ -157,7 +158,8 @@ inline constexpr std::tuple kFieldsOf<AttemptSummary>{
     Field{"record", &AttemptSummary::record},
     Field{"received_ms", &AttemptSummary::received_ms},
     Field{"has_search", &AttemptSummary::has_search, {.may_be_missing = true}},
-    Field{"why", &AttemptSummary::why, {.limit = kMaxWhyBytes, .may_be_missing = true}}};
+    Field{"why", &AttemptSummary::why, {.limit = kMaxWhyBytes, .may_be_missing = true}},
+    Field{"length", &AttemptSummary::length, {.min = 0, .may_be_missing = true}}};
 
 struct DistributionSummary {
   Digest id;
@@ -227,6 +229,39 @@ template <>
 inline constexpr std::tuple kFieldsOf<Retirement>{
     Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
     Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
+
+/// Retired paths that were stored anew, each under a UUID of its own.
+struct Restoration {
+  std::string task;          ///< of one path, or as asked for; empty: of all
+  std::uint64_t paths = 0;   ///< in use again by this request
+  std::uint64_t in_use = 0;  ///< left out: their content is in use
+  std::uint64_t lost = 0;    ///< left out: waypoints not kept, or not taken by the store
+  Uuid report_uuid = {};     ///< of the first restored path; zero: none
+  std::string reason = {};   ///< of the last one that was left out
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<Restoration>{
+    Field{"task", &Restoration::task, {.limit = kMaxTaskBytes}},
+    Field{"paths", &Restoration::paths},
+    Field{"in_use", &Restoration::in_use},
+    Field{"lost", &Restoration::lost},
+    Field{"report_uuid", &Restoration::report_uuid},
+    Field{"reason", &Restoration::reason, {.limit = kMaxMessageBytes}}};
+
+/// A task that is listed no more, and data removed with it.
+struct TaskRemoval {
+  std::string task;
+  std::uint64_t paths = 0;          ///< retired now
+  std::uint64_t attempts = 0;       ///< kept for the record, with their paths and UUIDs
+  std::uint64_t distributions = 0;  ///< of it, deleted
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<TaskRemoval>{
+    Field{"task", &TaskRemoval::task, {.limit = kMaxTaskBytes}},
+    Field{"paths", &TaskRemoval::paths}, Field{"attempts", &TaskRemoval::attempts},
+    Field{"distributions", &TaskRemoval::distributions}};
 
 /// A distribution that was removed from the store.
 struct Eviction {
@@ -457,6 +492,8 @@ inline constexpr std::tuple kAdminRows{RowName<RobotSummary>{"robot"},
                                        RowName<ClientUse>{"client"},
                                        RowName<BackupSummary>{"backup"},
                                        RowName<AuditEntry>{"audit entry"},
-                                       RowName<StoredMesh>{"mesh"}};
+                                       RowName<StoredMesh>{"mesh"},
+                                       RowName<Restoration>{"restoration"},
+                                       RowName<TaskRemoval>{"task removal"}};
 
 }  // namespace kinship

@@ -291,19 +291,29 @@ Result<RobotDescription> read_model_folder(const std::filesystem::path& folder) 
   }
 }
 
-Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
-  const auto parts = split(text, " ,\t");
-  PoseArray pose{};
-  if (parts.size() != pose.size())
-    return invalid_input("pose '" + std::string(text) + "': has " + std::to_string(parts.size()) +
-                         " numbers, must be 7: x y z qx qy qz qw");
-  for (std::size_t i = 0; i < pose.size(); ++i) {
-    const auto value = parse_number(parts[i]);
+Result<std::vector<double>> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, " ,\t")) {
+    const auto value = parse_number(part);
     if (!value)
-      return invalid_input("pose '" + std::string(text) + "': '" + std::string(parts[i]) +
-                           "' is no number");
-    pose[i] = *value;
+      return invalid_input("'" + std::string(text) + "': '" + std::string(part) + "' is no number");
+    numbers.push_back(*value);
   }
+  if (numbers.empty())
+    return invalid_input("'" + std::string(text) + "': no number");
+  return numbers;
+}
+
+Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers)
+    return invalid_input("pose " + numbers.error().message);
+  PoseArray pose{};
+  if (numbers->size() != pose.size())
+    return invalid_input("pose '" + std::string(text) + "': has " +
+                         std::to_string(numbers->size()) +
+                         " numbers, must be 7: x y z qx qy qz qw");
+  std::ranges::copy(*numbers, pose.begin());
   return from_pose_array(pose);
 }
 

@@ -64,7 +64,10 @@ Result<kinematics::RobotModel> read_model(DescribedRobot robot);
 /// have it. Otherwise it is the tip link's frame.
 bool says_transfer(const RobotArguments& arguments);
 
-/// "x y z qx qy qz qw" (spaces or commas) as a pose.
+/// Numbers with blanks or commas between them, one at least.
+Result<std::vector<double>> parse_numbers(std::string_view text);
+
+/// "x y z qx qy qz qw" (blanks or commas) as a pose.
 Result<Eigen::Isometry3d> parse_pose(std::string_view text);
 
 }  // namespace kinship::models

@@ -126,10 +126,16 @@ void fetch(service::FetchService& fetches, service::RegistrationService& robots,
            const std::function<void(const FetchReply&)>& done) {
   if (const auto refusal = access::refusal_of_fetch(caller, request.task, ""))
     return fetches.refuse(refusal->message, done);
+  if (access::is_narrowed(caller) && !access::withholds_sources(caller))
+    return fetches.fetch(request, waiter, [done](FetchReply reply) {
+      reply.message = without_suggestion(std::move(reply.message));
+      done(reply);
+    });
   if (!access::withholds_sources(caller))
     return fetches.fetch(request, waiter, done);
   const auto for_its_robots = [caller, robot = request.robot, done](FetchReply reply) {
     access::withhold_sources(caller, robot, reply);
+    reply.message = without_suggestion(std::move(reply.message));
     done(reply);
   };
   robots.name_robots(

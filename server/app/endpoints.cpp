@@ -46,6 +46,7 @@ Reply with_status(Reply reply, decltype(Reply::status) status) {
 template <typename Reply>
 auto gate_of(service::Service& service, const Reply& busy) {
   return [&service, busy](const Caller& caller, const codec::RequestSize& size) {
+    service.describe_client(caller);
     return reply_to(service.admit(caller.client, size.bytes, size.attempts), busy);
   };
 }
@@ -91,6 +92,7 @@ class Endpoints::Implementation {
                                   answer);
             },
             [&service](const Caller& caller, const codec::RequestSize& size) {
+              service.describe_client(caller);
               return reply_to(service.admit_robot(caller.client, size.bytes), RegisterReply{});
             }),
         report_(

@@ -14,13 +14,13 @@ FetchReply without_distribution(FetchStatus status, const std::string& message) 
   return reply;
 }
 
-FetchReply no_experience(const fitting::DistributionKey& key) {
+FetchReply no_experience(const fitting::DistributionKey& key, const std::string& advice) {
   std::string message = "no paths of task '" + key.task + "'";
   if (!key.sources.empty())
     message += " of the " + std::to_string(key.sources.size()) + " selected robots";
   if (key.since_ms > 0)
     message += " received since " + std::to_string(key.since_ms) + " ms";
-  return without_distribution(FetchStatus::NoExperience, message);
+  return without_distribution(FetchStatus::NoExperience, message + advice);
 }
 
 SharedReply shared(FetchReply reply) {

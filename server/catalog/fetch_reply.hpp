@@ -11,8 +11,8 @@ namespace kinship::catalog {
 /// Pending, NoExperience, UnknownRobot, Busy or Refused, with the reason.
 FetchReply without_distribution(FetchStatus status, const std::string& message);
 
-/// NoExperience, with the task and selection.
-FetchReply no_experience(const fitting::DistributionKey& key);
+/// NoExperience, with the task and selection. \param advice  that ends the message.
+FetchReply no_experience(const fitting::DistributionKey& key, const std::string& advice = {});
 
 SharedReply shared(FetchReply reply);
 SharedReply shared_pending();

@@ -91,6 +91,7 @@ std::optional<Refusal> ClientQuotas::admit(const std::string& client, std::size_
   const TimePoint now = clock_.now();
   const std::lock_guard lock(mutex_);
   Entry& entry = find(client, now);
+  ++entry.use.requests;
   const auto amount = static_cast<double>(attempts);
   if (auto refusal = over(entry, Quota::Bytes, static_cast<double>(bytes), now))
     return refusal;
@@ -174,6 +175,27 @@ void ClientQuotas::count_refusal(const std::string& client, Quota quota) {
   ClientUse& use = find(client, now).use;
   ++use.refused;
   use.refused_for = kQuotaNames[static_cast<std::size_t>(quota)];
+}
+
+void ClientQuotas::count_bad_request(const std::string& client) {
+  if (client.empty())
+    return;
+  const TimePoint now = clock_.now();
+  const std::lock_guard lock(mutex_);
+  ++find(client, now).use.bad_requests;
+}
+
+void ClientQuotas::describe(const std::string& client, const std::string& host,
+                            const std::string& program) {
+  if (client.empty() || (host.empty() && program.empty()))
+    return;
+  const TimePoint now = clock_.now();
+  const std::lock_guard lock(mutex_);
+  Entry& entry = find(client, now);
+  if (entry.client != client)  // it shares the quotas of others
+    return;
+  entry.use.host = host;
+  entry.use.program = program;
 }
 
 std::vector<ClientUse> ClientQuotas::list() const {

@@ -52,6 +52,11 @@ class ClientQuotas {
   /// Counts a refusal for a quota that is enforced elsewhere.
   void count_refusal(const std::string& client, Quota quota);
 
+  /// Counts a request of an administrator that named nothing, or broke a rule.
+  void count_bad_request(const std::string& client);
+  /// Takes over what a client says of itself; nothing if it says nothing.
+  void describe(const std::string& client, const std::string& host, const std::string& program);
+
   /// All counted clients, those with the most bytes in the last minute first, then the last seen.
   /// Their current numbers (on_way, waiting, leases, fits) are left at 0.
   std::vector<ClientUse> list() const;

@@ -28,7 +28,7 @@ enum class Trouble : std::uint8_t {
   FetchQuota,       ///< one client has too many leases, waiting fetches or fits
   FitMemory,        ///< a fit would exceed the memory limit
   FitEnded,         ///< a fit ended for want of memory, threads or the store; tried again later
-  AdminRefused,     ///< an admin request breaks a rule or names a missing object
+  AdminRefused,     ///< an admin request without the right to it
   AdminFailed,      ///< an admin request that the store or the queue could not serve
   ClientQuota,      ///< one client is over a quota of any kind
   NoMemory,         ///< something was put off because the system had no memory for it

@@ -78,7 +78,7 @@ void AdminService::administer(AdminRequest request, const std::string& request_k
   const std::optional<Error> refusal = refusal_of(caller, request);
   if (refusal && !rule_of(request.verb).is(VerbRule::Changes)) {
     const AdminPage page = page_of(*refusal);
-    count(page);
+    count_refused(page);
     return done(page);
   }
   // From memory, and on the thread that then asks for the next deadline.
@@ -90,15 +90,18 @@ void AdminService::administer(AdminRequest request, const std::string& request_k
   auto run = [this, request = std::move(request), request_key, client, done, caller, refusal] {
     const AdminPage page = refusal ? administration_.refuse(request, caller, *refusal)
                                    : administration_.answer(request, request_key, caller);
-    count(page);
+    if (refusal)
+      count_refused(page);
+    else
+      count(page, client);
     parts_.clients.count_reply(client, reply_bytes(page));
     done(page);
   };
-  const auto decline = [this, done] {
+  const auto decline = [this, done, client] {
     AdminPage page;
     page.message = "the server is busy or stopping";
     page.retry_after = TaskPools::kRetryAfter;
-    count(page);
+    count(page, client);
     done(page);
   };
   if (!pool.submit(runtime::WorkerPool::Priority::Interactive,
@@ -108,11 +111,17 @@ void AdminService::administer(AdminRequest request, const std::string& request_k
   }
 }
 
-void AdminService::count(const AdminPage& page) {
+/// A mistyped name is no trouble of the server.
+void AdminService::count(const AdminPage& page, const std::string& client) {
   if (page.status == AdminStatus::Failed)
     parts_.troubles.add(Trouble::AdminFailed, page.message);
-  else if (page.status == AdminStatus::Refused)
-    parts_.troubles.add(Trouble::AdminRefused, page.message);
+  else if (page.status != AdminStatus::Ok)
+    parts_.clients.count_bad_request(client);
+}
+
+/// Of a caller without the right.
+void AdminService::count_refused(const AdminPage& page) {
+  parts_.troubles.add(Trouble::AdminRefused, page.message);
 }
 
 /// Of clients that have quotas; a follower that was forgotten since is left out.

@@ -49,7 +49,8 @@ class AdminService {
   Administration::Parts administration_parts();
   std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
   runtime::WorkerPool& pool_for(AdminVerb verb);
-  void count(const AdminPage& page);
+  void count(const AdminPage& page, const std::string& client);
+  void count_refused(const AdminPage& page);
   std::vector<ClientUse> list_clients() const;
 
   const ServiceParts parts_;

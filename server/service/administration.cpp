@@ -112,24 +112,28 @@ const std::array<Administration::VerbHandler, kVerbRules.size()> Administration:
       {ReadBackup, &run<&A::read_backup>},
       {FindAttempts, &run<&A::find_attempts>},
       {ListMeshes, &run<&A::list_meshes>},
+      {RestorePath, &run<&A::restore_path>},
+      {RenameTask, &run<&A::rename_task>},
+      {RemoveTask, &run<&A::remove_task>},
   });
   static_assert(is_complete_for_verbs(kAll));
   return kAll;
 }();
 
 AdminPage Administration::attempt(const Call& call, const Caller& caller) {
+  const Narrowing narrowing(parts_.store, caller);
+  AdminPage page;
   try {
     check_filters(call.request);
-    const Narrowing narrowing(parts_.store, caller);
     narrowing.check(call.request);
-    AdminPage page = dispatch(call);
-    narrowing.apply(page);
-    return page;
+    page = dispatch(call);
   } catch (const Failure& failure) {
-    return page_of(failure.error());
+    page = page_of(failure.error());
   } catch (const std::exception& exception) {
     return page_of(Error{ErrorCode::Internal, exception.what()});
   }
+  narrowing.apply(page);
+  return page;
 }
 
 AdminPage Administration::dispatch(const Call& call) {
@@ -191,12 +195,12 @@ AdminPage Administration::list_meshes(const Call& call) {
 AdminPage Administration::show_task(const Call& call) {
   const std::string& task = call.request.argument;
   std::optional<TaskSummary> summary = parts_.store.find_task(task);
-  return summary ? page_of(std::move(*summary)) : page_of(not_found("task", task));
+  return summary ? page_of(std::move(*summary)) : page_of(no_task(parts_.store, task));
 }
 
 AdminPage Administration::show_path(const Call& call) {
   const std::string& uuid = call.request.argument;
-  std::optional<Attempt> attempt = parts_.store.find_attempt(report_of(uuid));
+  std::optional<Attempt> attempt = parts_.store.find_attempt(report_of(parts_.store, uuid));
   return attempt ? page_of(std::move(*attempt)) : page_of(not_found("report", uuid));
 }
 
@@ -236,7 +240,7 @@ std::optional<Digest> Administration::robot_filter(const AdminRequest& request) 
   if (!request.robot.empty())
     robot = find_robot(parts_.store, request.robot).value_or_throw().robot;
   if (!request.task.empty() && !parts_.store.find_task(request.task))
-    throw Failure(not_found("task", request.task));
+    throw Failure(no_task(parts_.store, request.task));
   return robot;
 }
 

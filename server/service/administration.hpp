@@ -2,11 +2,13 @@
 
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "proto/types/audit.hpp"
 #include "proto/types/caller.hpp"
@@ -28,8 +30,8 @@
 namespace kinship::service {
 
 /// Handles the requests of administrators. Robots are named by label or by a digest prefix of at
-/// least four digits, paths by report UUID, distributions by an id prefix. May be shared between
-/// threads.
+/// least four digits, paths by report UUID or at least eight digits of it, distributions by an id
+/// prefix. May be shared between threads.
 class Administration {
  public:
   /// References and functions; the objects behind them outlive this one.
@@ -108,8 +110,11 @@ class Administration {
   AdminPage list_meshes(const Call& call);
   AdminPage show_task(const Call& call);
   AdminPage reset_task(const Call& call);
+  AdminPage rename_task(const Call& call);
+  AdminPage remove_task(const Call& call);
   AdminPage show_path(const Call& call);
   AdminPage retire_path(const Call& call);
+  AdminPage restore_path(const Call& call);
   AdminPage list_distributions(const Call& call);
   AdminPage show_distribution(const Call& call);
   AdminPage explain_distribution(const Call& call);
@@ -131,8 +136,14 @@ class Administration {
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
   void forget_tasks_of(const Digest& robot);
+  void forget_tasks(std::initializer_list<std::string> tasks,
+                    const std::vector<Digest>& distributions);
+  void for_each_task(const std::function<void(const TaskSummary&)>& take) const;
   void name_solver(RobotSummary& summary);
   AdminPage retired(Result<Retirement> retirement, const std::string& what);
+  /// Restores the retired paths of a robot and a task, each empty for all.
+  void restore_listed(const std::optional<Digest>& robot, const std::string& task,
+                      Restoration& restored);
 
   const Parts parts_;
   AuditTrail trail_;

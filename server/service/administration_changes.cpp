@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "server/service/administration.hpp"
 #include "server/service/find_by_name.hpp"
+#include "server/service/restore_paths.hpp"
 
 namespace kinship::service {
 namespace {
@@ -43,9 +48,9 @@ AdminPage Administration::evict_distribution(const Call& call) {
 
 AdminPage Administration::retire_path(const Call& call) {
   const std::string& uuid = call.request.argument;
-  const Uuid report = report_of(uuid);
+  const Uuid report = report_of(parts_.store, uuid);
   try {
-    return retired(parts_.store.retire_path(report, &call.audit), "path " + uuid);
+    return retired(parts_.store.retire_path(report, &call.audit), "path " + report.text());
   } catch (const std::exception&) {  // it may be retired all the same
     if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
       parts_.guidance.forget_task(attempt->task);
@@ -76,6 +81,117 @@ AdminPage Administration::retired(Result<Retirement> retirement, const std::stri
   parts_.on_change(retirement->task,
                    what + ": " + std::to_string(retirement->paths) + " paths retired");
   return page_of(std::move(retirement).value());
+}
+
+AdminPage Administration::restore_path(const Call& call) {
+  const AdminRequest& request = call.request;
+  if (request.argument.empty() == (request.task.empty() && request.robot.empty()))
+    return page_of(
+        Error{ErrorCode::InvalidInput, "restore_path: takes a path's report, or a task or robot"});
+  Restoration restored;
+  restored.task = request.task;
+  const std::optional<Digest> robot = robot_filter(request);
+  std::vector<Uuid> one;
+  if (!request.argument.empty()) {
+    one.push_back(report_of(parts_.store, request.argument));
+    const std::optional<Attempt> attempt = parts_.store.find_attempt(one.front());
+    if (!attempt)
+      return page_of(not_found("report", request.argument));
+    restored.task = attempt->task;
+  }
+  trail_.begin(call.audit, {});
+  const auto tell = [&] {
+    if (restored.paths == 0)
+      return;
+    if (!restored.task.empty())
+      parts_.guidance.new_experience(restored.task);
+    else
+      for_each_task([&](const TaskSummary& task) { parts_.guidance.new_experience(task.task); });
+    parts_.on_change(restored.task, std::to_string(restored.paths) + " paths restored");
+  };
+  try {
+    if (one.empty())
+      restore_listed(robot, request.task, restored);
+    else
+      restore_paths(parts_.store, one, restored);
+  } catch (const Failure& failure) {
+    tell();
+    return page_of_unfinished(failure.error());
+  }
+  tell();
+  trail_.end(call.audit, {},
+             std::to_string(restored.paths) + " paths restored, " +
+                 std::to_string(restored.in_use + restored.lost) + " left out");
+  return page_of(std::move(restored));
+}
+
+void Administration::restore_listed(const std::optional<Digest>& robot, const std::string& task,
+                                    Restoration& restored) {
+  // Listed before the first is restored: the listing grows with each.
+  std::vector<Uuid> retired;
+  std::string cursor;
+  do {
+    const store::Page<PathSummary> page =
+        parts_.store.list_paths(robot, task, cursor, kMaxPageRows);
+    for (const PathSummary& path : page.rows)
+      if (path.retired_ms != 0 && !path.dropped)
+        retired.push_back(path.report_uuid);
+    cursor = page.next_cursor;
+  } while (!cursor.empty());
+  std::ranges::reverse(retired);  // the oldest first, as they came
+  for (const Uuid& report : retired) {
+    if (parts_.stop.stop_requested())
+      throw Failure(ErrorCode::Unavailable, "the server is stopping after " +
+                                                std::to_string(restored.paths) +
+                                                " paths were restored; ask again for the rest");
+    restore_paths(parts_.store, std::span(&report, 1), restored);
+  }
+}
+
+AdminPage Administration::rename_task(const Call& call) {
+  const std::string &task = call.request.task, &name = call.request.argument;
+  if (const auto error = check_task(name))
+    return page_of(*error);
+  if (!parts_.store.find_task(task))
+    return page_of(no_task(parts_.store, task));
+  const std::vector<Digest> gone =
+      parts_.store.rename_task(task, name, &call.audit).value_or_throw();
+  forget_tasks({task, name}, gone);
+  parts_.on_change(name, "task '" + task + "' is called '" + name + "' now");
+  TaskSummary unread;  // another server may have renamed it on
+  unread.task = name;
+  return page_of(parts_.store.find_task(name).value_or(std::move(unread)));
+}
+
+AdminPage Administration::remove_task(const Call& call) {
+  const std::string& task = call.request.argument;
+  if (!parts_.store.find_task(task))
+    return page_of(no_task(parts_.store, task));
+  Result<store::RemovedTask> removed = Error{};
+  try {
+    removed = parts_.store.remove_task(task, parts_.stop, &call.audit);
+  } catch (const std::exception&) {  // some of its paths may be retired
+    parts_.guidance.forget_task(task);
+    throw;
+  }
+  if (!removed) {
+    parts_.guidance.forget_task(task);
+    return removed.error().code == ErrorCode::Unavailable ? page_of_unfinished(removed.error())
+                                                          : page_of(removed.error());
+  }
+  forget_tasks({task}, removed->distributions);
+  parts_.on_change(task, "removed: " + std::to_string(removed->removal.paths) + " paths retired, " +
+                             std::to_string(removed->removal.attempts) +
+                             " attempts stay on record");
+  return page_of(removed->removal);
+}
+
+void Administration::forget_tasks(std::initializer_list<std::string> tasks,
+                                  const std::vector<Digest>& distributions) {
+  for (const Digest& distribution : distributions)
+    parts_.guidance.forget_distribution(distribution);
+  for (const std::string& task : tasks)
+    parts_.guidance.forget_task(task);
 }
 
 AdminPage Administration::rename_robot(const Call& call) {
@@ -116,12 +232,18 @@ AdminPage Administration::remove_robot(const Call& call) {
 /// Of a robot that was not removed as a whole.
 void Administration::forget_tasks_of(const Digest& robot) {
   parts_.guidance.forget_robot(robot);
+  for_each_task([&](const TaskSummary& task) {
+    if (std::ranges::any_of(task.robots, [&](const auto& row) { return row.robot == robot; }))
+      parts_.guidance.forget_task(task.task);
+  });
+}
+
+void Administration::for_each_task(const std::function<void(const TaskSummary&)>& take) const {
   std::string cursor;
   do {
     const store::Page<TaskSummary> page = parts_.store.list_tasks(cursor, kMaxPageRows);
     for (const TaskSummary& task : page.rows)
-      if (std::ranges::any_of(task.robots, [&](const auto& row) { return row.robot == robot; }))
-        parts_.guidance.forget_task(task.task);
+      take(task);
     cursor = page.next_cursor;
   } while (!cursor.empty());
 }

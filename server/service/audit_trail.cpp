@@ -29,6 +29,16 @@ std::string client_text(const Caller& caller) {
   return caller.client + ", " + place + (caller.token == TokenProof::Shown ? ", token shown" : "");
 }
 
+std::string target_of(const AdminRequest& request) {
+  if (request.verb == AdminVerb::RenameRobot)
+    return request.robot + " to " + request.argument;
+  if (request.verb == AdminVerb::RenameTask)
+    return request.task + " to " + request.argument;
+  if (request.argument.empty())  // of RestorePath: the filters
+    return request.task + (request.robot.empty() ? "" : " of " + request.robot);
+  return request.argument;
+}
+
 }  // namespace
 
 AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
@@ -39,8 +49,7 @@ AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
   entry.client = client_text(caller);
   entry.is_local = caller.is_local;
   entry.verb = rule_of(request.verb).name;
-  entry.target = request.verb == AdminVerb::RenameRobot ? request.robot + " to " + request.argument
-                                                        : request.argument;
+  entry.target = target_of(request);
   return entry;
 }
 

@@ -41,7 +41,7 @@ class FetchService final : public ServedGuidance {
   void postpone(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
   /// A task has new paths.
-  void new_experience(std::string_view task);
+  void new_experience(std::string_view task) override;
   /// An attempt was committed.
   void add(const catalog::AttemptCost& cost) { advice_.add(cost); }
   void forget_task(const std::string& task) override;

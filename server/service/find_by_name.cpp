@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/nearest_name.hpp"
+#include "server/catalog/nearest_task.hpp"
 
 namespace kinship::service {
 namespace {
@@ -38,6 +40,7 @@ bool begins_with(const Digest& digest, const std::string& prefix) {
 Result<RobotSummary> find_robot(const store::RobotStore& store, const std::string& name) {
   const std::string prefix = digest_prefix(name);
   std::vector<RobotSummary> alike;  // by their digest, the first two
+  std::vector<std::string> labels;
   std::string cursor;
   do {
     store::Page<RobotSummary> page = store.list_robots(cursor, kMaxPageRows);
@@ -46,6 +49,8 @@ Result<RobotSummary> find_robot(const store::RobotStore& store, const std::strin
         return std::move(robot);
       if (!prefix.empty() && alike.size() < 2 && begins_with(robot.robot, prefix))
         alike.push_back(std::move(robot));
+      else
+        labels.push_back(std::move(robot.label));
     }
     cursor = page.next_cursor;
   } while (!cursor.empty());
@@ -54,7 +59,7 @@ Result<RobotSummary> find_robot(const store::RobotStore& store, const std::strin
                                           "; a prefix of a digest needs at least " +
                                           std::to_string(kMinPrefix) + " digits"};
   if (alike.empty())
-    return not_found("robot", name);
+    return Error{ErrorCode::NotFound, not_found("robot", name).message + suggestion(name, labels)};
   if (alike.size() == 1)
     return std::move(alike.front());
   return Error{ErrorCode::Conflict, "robot '" + name + "' could be '" + alike[0].label + "' (" +
@@ -91,11 +96,32 @@ Result<Digest> find_distribution_id(const store::DistributionStore& store,
   return *found;
 }
 
-Uuid report_of(const std::string& text) {
-  const std::optional<Uuid> report = Uuid::parse(text);
-  if (!report)
-    throw Failure(ErrorCode::InvalidInput, "'" + text + "' is not a report's UUID");
-  return *report;
+Uuid report_of(const store::ExperienceStore& store, const std::string& text) {
+  constexpr std::string_view kFirst = "00000000-0000-0000-0000-000000000000";
+  constexpr std::string_view kLast = "ffffffff-ffff-ffff-ffff-ffffffffffff";
+  constexpr std::size_t kMinUuidPrefix = 8;
+  if (const std::optional<Uuid> report = Uuid::parse(text))
+    return *report;
+  const std::size_t length = text.size();
+  const auto first =
+      Uuid::parse(length < kFirst.size() ? text + std::string(kFirst.substr(length)) : text);
+  if (length < kMinUuidPrefix || !first)
+    throw Failure(ErrorCode::InvalidInput,
+                  "'" + text + "' is not a report's UUID, nor a prefix of at least " +
+                      std::to_string(kMinUuidPrefix) + " of its digits");
+  const auto last = Uuid::parse(text + std::string(kLast.substr(length)));
+  const std::vector<Uuid> reports = store.reports_between(*first, *last, 2);
+  if (reports.empty())
+    throw Failure(not_found("report", text));
+  if (reports.size() > 1)
+    throw Failure(ErrorCode::InvalidInput,
+                  "several reports begin with '" + text + "': more digits of the UUID, please");
+  return reports.front();
+}
+
+Error no_task(const store::ExperienceStore& store, const std::string& task) {
+  return {ErrorCode::NotFound,
+          not_found("task", task).message + catalog::nearest_task(store, task)};
 }
 
 Error not_found(const std::string& what, const std::string& name) {

@@ -7,6 +7,7 @@
 #include "proto/types/summaries.hpp"
 #include "proto/types/uuid.hpp"
 #include "server/store/distribution_store.hpp"
+#include "server/store/experience_store.hpp"
 #include "server/store/robot_store.hpp"
 
 /// Look-ups by the names that people use.
@@ -21,10 +22,15 @@ Result<RobotSummary> find_robot(const store::RobotStore& store, const std::strin
 ///         whole id is returned even if no distribution has it.
 Result<Digest> find_distribution_id(const store::DistributionStore& store, const std::string& name);
 
-/// \throws Failure(InvalidInput) for an invalid UUID.
-Uuid report_of(const std::string& text);
+/// The report of a UUID, or of a prefix of at least eight digits; a whole UUID is returned even if
+/// no report has it.
+/// \throws Failure(InvalidInput) for an invalid or ambiguous prefix; Failure(NotFound).
+Uuid report_of(const store::ExperienceStore& store, const std::string& text);
 
-/// "no task 'bin'"
+/// "no task 'lod' (did you mean 'load'?)", with the nearest of all tasks.
+Error no_task(const store::ExperienceStore& store, const std::string& task);
+
+/// "no report 'bin'"
 Error not_found(const std::string& what, const std::string& name);
 
 }  // namespace kinship::service

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "proto/types/failure.hpp"
+#include "proto/types/nearest_name.hpp"
 #include "server/access/access.hpp"
 #include "server/access/withheld_sources.hpp"
 #include "server/service/find_by_name.hpp"
@@ -82,8 +84,9 @@ void Narrowing::check_argument(const AdminRequest& request) const {
 }
 
 void Narrowing::check_report(const std::string& uuid) const {
-  const std::optional<Uuid> report = Uuid::parse(uuid);
-  const std::optional<Attempt> attempt = report ? store_.find_attempt(*report) : std::nullopt;
+  if (uuid.empty())  // of RestorePath, which then has filters
+    return;
+  const std::optional<Attempt> attempt = store_.find_attempt(report_of(store_, uuid));
   if (attempt && !access::may_see(caller_, attempt->task, label_of(attempt->robot)))
     throw Failure(not_found("report", uuid));
 }
@@ -96,8 +99,10 @@ void Narrowing::check_distribution(const std::string& prefix) const {
 }
 
 void Narrowing::apply(AdminPage& page) const {
-  if (access::is_narrowed(caller_))
-    std::erase_if(page.rows, [this](AdminRow& row) { return !keeps(row); });
+  if (!access::is_narrowed(caller_))
+    return;
+  std::erase_if(page.rows, [this](AdminRow& row) { return !keeps(row); });
+  page.message = without_suggestion(std::move(page.message));
 }
 
 /// Also cuts the parts of a row that are about others.

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "proto/types/distribution.hpp"
 #include "proto/types/summaries.hpp"
@@ -24,6 +25,8 @@ class ServedGuidance {
   virtual void forget_distribution(const Digest& id) = 0;
   /// Paths of a task were retired: distributions made of them may not be served.
   virtual void forget_task(const std::string& task) = 0;
+  /// Paths of a task were restored.
+  virtual void new_experience(std::string_view task) = 0;
   /// A robot was removed: its distributions may not be served, nor announced.
   virtual void forget_robot(const Digest& robot) = 0;
 };

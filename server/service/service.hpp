@@ -47,6 +47,10 @@ class Service {
                                        std::size_t attempts = 0);
   /// The same for a registration.
   std::optional<quotas::Refusal> admit_robot(const std::string& client, std::size_t bytes);
+  /// Takes over what a caller says of itself, for `kinship status --clients`.
+  void describe_client(const Caller& caller) {
+    clients_.describe(caller.client, caller.host, caller.program);
+  }
 
   /// For the wait loop: when to call expire().
   std::optional<TimePoint> next_deadline() const;

@@ -44,6 +44,12 @@ struct StoreStatus {
   std::vector<ReplicaUse> replicas;  ///< hosts of a database, for the readings of fits
 };
 
+/// A removed task, and the ids of its deleted distributions.
+struct RemovedTask {
+  TaskRemoval removal;
+  std::vector<Digest> distributions;
+};
+
 /// Tells a store's status, retires experience, keeps the audit log and makes backups; see Store.
 class AdminStore {
  public:
@@ -61,6 +67,19 @@ class AdminStore {
                                          const AuditEntry* audit = nullptr) = 0;
   virtual Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop = {},
                                         const AuditEntry* audit = nullptr) = 0;
+
+  /// Gives a task another name, durable on return: its paths, attempts and retirements are those of
+  /// the new name, its distributions are deleted. A report that names the old task, also one from
+  /// another store, begins a task of that name; one that is known already stays known.
+  /// \return the deleted distributions; NotFound for an unknown task; Conflict if there is one of
+  ///         the new name, also a removed one.
+  virtual Result<std::vector<Digest>> rename_task(std::string_view task, std::string_view name,
+                                                  const AuditEntry* audit = nullptr) = 0;
+  /// reset_task(), then deletes the distributions of the task and lists it no more, until another
+  /// attempt of it arrives. Attempts and paths stay for the record.
+  /// \return NotFound for an unknown task; Unavailable as reset_task().
+  virtual Result<RemovedTask> remove_task(std::string_view task, const std::stop_token& stop = {},
+                                          const AuditEntry* audit = nullptr) = 0;
 
   /// Adds an entry to the audit log, durable on return, with the current time and the next number.
   /// Entries are never changed or removed.

@@ -122,6 +122,9 @@ class ExperienceStore {
   /// its path if that is damaged or dropped, without its scene or search record if that is damaged
   /// or was let go.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
+  /// Reports of attempts from one UUID to another, both included, in order; at most `limit`.
+  virtual std::vector<Uuid> reports_between(const Uuid& first, const Uuid& last,
+                                            std::size_t limit) const = 0;
   /// Attempts with their paths and scenes for export, oldest first; without the attempts of
   /// retired, dropped and damaged paths. A page ends early once its waypoints and scenes (as
   /// scene_bytes() counts) exceed `max_bytes`, but has at least one.

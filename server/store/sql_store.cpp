@@ -112,6 +112,51 @@ Result<Retirement> SqlStore::reset_task(std::string_view task, const std::stop_t
   });
 }
 
+Result<std::vector<Digest>> SqlStore::rename_task(std::string_view task, std::string_view name,
+                                                  const AuditEntry* audit) {
+  return write([&](Session& session, const RetireSome&) {
+    return store::rename_task(session, task, name, audit);
+  });
+}
+
+Result<RemovedTask> SqlStore::remove_task(std::string_view task, const std::stop_token& stop,
+                                          const AuditEntry* audit) {
+  TaskRemoval removal;
+  removal.task = task;
+  const Result<TaskReset> reset = write([&](Session& session, const RetireSome&) {
+    Result<TaskReset> begun = begin_reset(session, task, audit);
+    if (begun)  // a later attempt brings the task back
+      removal.attempts = attempts_of_task(session, begun->task_id);
+    return begun;
+  });
+  if (!reset)
+    return reset.error();
+  const Result<Retirement> retired = reset_in_steps(task, stop, [&](const Retirement& so_far) {
+    return write([&](Session& session, const RetireSome& retire_some) {
+      return continue_reset(session, *reset, so_far, retire_some, nullptr);
+    });
+  });
+  if (!retired)
+    return retired.error();
+  removal.paths = retired->paths;
+  return write([&](Session& session, const RetireSome&) {
+    return end_task_removal(session, reset->task_id, removal, audit);
+  });
+}
+
+std::vector<Uuid> SqlStore::reports_between(const Uuid& first, const Uuid& last,
+                                            std::size_t limit) const {
+  return read(View::EachStatement, [&](Session& session) {
+    std::vector<Uuid> reports;
+    for (const Row& row : session.query(
+             "SELECT report_uuid FROM attempt WHERE report_uuid >= $1 AND report_uuid <= $2 AND " +
+                 session.is_intact("attempt") + " ORDER BY report_uuid LIMIT $3",
+             first, last, limit))
+      reports.push_back(id_of<Uuid>(row.column_blob(0)));
+    return reports;
+  });
+}
+
 std::uint64_t SqlStore::put_distribution(const Distribution& distribution, const FitRight& right) {
   return write([&](Session& session, const RetireSome&) {
     require_fit_right(session, distribution.id, right);

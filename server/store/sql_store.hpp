@@ -44,6 +44,12 @@ class SqlStore : public Store {
   AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override;
   Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
                                 const AuditEntry* audit) override;
+  Result<std::vector<Digest>> rename_task(std::string_view task, std::string_view name,
+                                          const AuditEntry* audit) override;
+  Result<RemovedTask> remove_task(std::string_view task, const std::stop_token& stop,
+                                  const AuditEntry* audit) override;
+  std::vector<Uuid> reports_between(const Uuid& first, const Uuid& last,
+                                    std::size_t limit) const override;
 
   std::uint64_t put_distribution(const Distribution& distribution, const FitRight& right) override;
   std::optional<Distribution> find_distribution(const Digest& id) const override;

@@ -141,7 +141,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{console, ros2, service, access, quotas, runtime, metrics, http, security, dds, codec, json,
          manual, sites, tables, types, store},
         {"CLI11", "spdlog"}}},
-      {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
+      {arguments, {{models, geometry, kinematics, manual, types}, {"Eigen", "CLI11"}}},
       {ompl, {{guided, recall, planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {guided,
        {{recall, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},

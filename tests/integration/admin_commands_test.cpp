@@ -111,13 +111,60 @@ TEST_F(AdminCommands, ImportKnowsRobotsByLabelAndNamesThoseItDoesNotKnow) {
 TEST_F(AdminCommands, ARetiredPathIsListedAsSuchAndNotExported) {
   teach(server_);
   const std::string id = attempts_.front().report_uuid.text();
-  const Answer retired = server_.ends(0, "paths retire " + id);
+  expect_has(server_.ends(2, "paths retire " + id).err, "would retire the path of " + id);
+  EXPECT_NE(server_.kinship("paths export").out.find(id), std::string::npos);
+  const Answer retired = server_.ends(0, "paths retire " + id.substr(0, 13) + " --yes");
   expect_has(retired.out, "1 path of task 'sweep' retired");
-  expect_has(server_.ends(0, "paths retire " + id).out, "retired already");
+  expect_has(server_.ends(0, "paths retire " + id + " --yes").out, "retired already");
   EXPECT_EQ(server_.kinship("paths export").out.find(id), std::string::npos);
   expect_has(server_.ends(0, "paths list --json").out, "\"retired_ms\":1");
-  server_.ends(3, "paths retire " + Uuid::random().text());
-  server_.ends(2, "paths retire seven");
+  server_.ends(3, "paths retire " + Uuid::random().text() + " --yes");
+  server_.ends(2, "paths retire seven --yes");
+
+  const Answer restored = server_.ends(0, "paths restore " + id + " --json");
+  EXPECT_EQ(json::row_from_json<Restoration>(restored.out).value_or_throw().paths, 1U);
+  EXPECT_EQ(count_lines(server_.kinship("paths export").out), 8U);
+  expect_has(server_.ends(0, "paths restore " + id).out, "1 in use already");
+  server_.ends(2, "paths restore");
+  server_.ends(3, "paths restore " + Uuid::random().text());
+}
+
+TEST_F(AdminCommands, ATaskIsRenamedAndRemovedAndAWrongNameIsAnsweredWithTheNearest) {
+  teach(server_);
+  expect_has(server_.ends(3, "tasks show swep").err, "did you mean 'sweep'");
+  expect_has(server_.ends(3, "tasks experience swep").err, "did you mean 'sweep'");
+  expect_has(server_.ends(3, "distributions fetch --task swep --robot panda").err,
+             "did you mean 'sweep'");
+  expect_has(server_.ends(3, "robots show pandar").err, "did you mean 'panda'");
+  expect_has(server_.ends(0, "tasks rename sweep swipe").out, "is called 'swipe' now, with 6 paths");
+  server_.ends(3, "tasks show sweep");
+  server_.ends(0, "distributions fetch --task swipe --robot panda");
+  server_.ends(2, "tasks rename swipe no/name");
+  expect_has(server_.ends(2, "tasks remove swipe").err, "would retire 6 paths of 'swipe'");
+  const Answer removed = server_.ends(0, "tasks remove swipe --yes --json");
+  EXPECT_EQ(json::row_from_json<TaskRemoval>(removed.out).value_or_throw().attempts, 7U);
+  EXPECT_EQ(server_.ends(0, "tasks list").out, "(none)\n");
+  server_.ends(3, "distributions fetch --task swipe --robot panda");
+  expect_has(server_.ends(0, "status").out, "kinshipd ");
+  EXPECT_EQ(server_.kinship("status").out.find("trouble "), std::string::npos);
+}
+
+TEST_F(AdminCommands, CallsOfOneProgramAreOneClient) {
+  teach(server_);
+  for (int i = 0; i < 3; ++i)
+    server_.ends(0, "tasks list");
+  server_.ends(3, "tasks show nothing");
+  const Answer table = server_.ends(0, "status --clients");
+  std::istringstream lines(table.out);
+  std::string row;
+  while (std::getline(lines, row) && !row.starts_with("kinship on "))
+    continue;
+  std::istringstream words(row);
+  std::string name, on, host;
+  int calls = 0;
+  words >> name >> on >> host >> calls;
+  EXPECT_GE(calls, 5) << table.out;
+  expect_has(server_.ends(0, "status --clients --json").out, "\"program\":\"kinship\"");
 }
 
 TEST_F(AdminCommands, TheExperienceOfATaskIsListed) {

@@ -27,7 +27,7 @@ std::vector<std::string> lines_of(const Answer& audit) {
 TEST_F(Audit, WhatAdministratorsDoIsToldAndSurvivesABackupARestartAndARestore) {
   teach(server_);
   const std::string uuid = attempts_[0].report_uuid.text();
-  server_.ends(0, "paths retire " + uuid);
+  server_.ends(0, "paths retire " + uuid + " --yes");
   server_.ends(0, "robots rename ur10e ur10e_2");
   server_.ends(3, "tasks reset nothing --yes");
   server_.ends(0, "backup copy.db");

@@ -108,7 +108,7 @@ class Shells : public Manual, public testing::WithParamInterface<const char*> {
 TEST_P(Shells, CompleteVerbsOptionsAndTheirWords) {
   EXPECT_EQ(offered("kinship pa"), (Words{"paths"}));
   EXPECT_EQ(offered("kinship --domain 7 paths "),
-            (Words{"list", "show", "export", "import", "plot", "retire"}));
+            (Words{"list", "show", "export", "import", "plot", "retire", "restore"}));
   EXPECT_EQ(offered("kinship paths list -o "), (Words{"table", "wide", "json"}));
   const Words options = offered("kinship paths list --");
   for (const char* const option : {"--task", "--robot", "--limit", "--json", "--server"})

@@ -55,7 +55,7 @@ class Space(ConsoleTest):
         gone, unsolved = attempt("panda", 100), attempt("ur10e", 101, waypoints=None)
         unsolved["record"] = {**unsolved["record"], "outcome": "timeout"}
         cls.server.give([*cls.given, gone, unsolved])
-        cls.server.kinship("paths", "retire", gone["report_uuid"])
+        cls.server.kinship("paths", "retire", gone["report_uuid"], "--yes")
         query = ("--task", TASK, "--robot", "ur10e", "--placement", "-0.2 1.3 0.1 0 0 0 1", "--wait", "100")
         cls.kept = [json.loads(cls.server.kinship("distributions", "fetch", *query, "--profile", profile, "--json"))
                     for profile in ("default", "default,components=3")]

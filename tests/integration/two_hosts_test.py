@@ -172,7 +172,8 @@ class TwoHosts(unittest.TestCase):
 
         paths, distributions = listed("paths"), listed("distributions")
         self.assertTrue(paths and distributions, "it has reported and fetched")
-        changes = [f"paths retire {paths[0]['report_uuid']}", f"distributions evict {distributions[0]['id']}",
+        changes = [f"paths retire {paths[0]['report_uuid']} --yes",
+                   f"paths restore {paths[0]['report_uuid']}", f"distributions evict {distributions[0]['id']}",
                    "backup night.db", "robots rename ur10e arm", "tasks reset load_machine --yes",
                    "robots remove ur10e --yes"]
         for host in (self.robot, self.server):  # also on the server's own machine

@@ -23,8 +23,10 @@
     return now.bounds_s[Math.min(bucket, now.bounds_s.length - 1)];
   }
 
-  function tilesOf({status, disk}) {
+  /// \param unsolved  attempts of the last day; null: not known yet.
+  function tilesOf({status, disk}, unsolved) {
     return [[count(status.robots), "robots"], [count(status.tasks), "tasks"], [count(status.paths), "paths"], [count(status.attempts), "attempts"],
+            ...(unsolved === null ? [] : [[count(unsolved), "attempts of the last day unsolved"]]),
             [count(status.distributions), "distributions"],
             [bytes(status.store_bytes), disk ? `of store; ${bytes(disk.free)} free` : "of store"]];
   }
@@ -106,12 +108,22 @@
       store.append(facts);
       const tellEvent = showEvents(events);
       const timer = showSavings(savings);
-      let before = null, toldRefusals = "";
+      let before = null, toldRefusals = "", unsolved = null;
+      async function readUnsolved() {
+        try {
+          unsolved = (await figure("slow", "24")).pairs.reduce((all, pair) => all + pair.unsolved, 0);
+        } catch (error) {
+          unsolved = null;
+        }
+        if (before) status(before);
+      }
+      readUnsolved();
+      const unsolvedTimer = setInterval(readUnsolved, 60000);
       function status(now) {
         warnings.replaceChildren(...warningsOf(now).map((text) => make("p", {class: "alarm"}, text)));
         if (!now.status) return;
         tiles.replaceChildren();
-        fillTiles(tiles, tilesOf(now));
+        fillTiles(tiles, tilesOf(now, unsolved));
         showStoreFacts(facts, now);
         const troubles = JSON.stringify(now.status.troubles);
         if (troubles !== toldRefusals) refusalTable.set(now.status.troubles);
@@ -124,6 +136,9 @@
         }
         before = now;
       }
-      return {status, event: tellEvent, close: () => clearInterval(timer)};
+      return {status, event: tellEvent, close: () => {
+        clearInterval(timer);
+        clearInterval(unsolvedTimer);
+      }};
     }});
 })();

@@ -72,9 +72,9 @@
   listingPage({
     path: "/clients", title: "Clients", nav: "Clients", verb: "list_clients", seconds: 5, empty: "No client has asked for anything yet.",
     lead: "Who takes how much of the server, since it started or since it last forgot this client.",
-    columns: () => [text("client", (c) => c.client), long("robots", (c) => c.robots.join(", ")),
+    columns: () => [text("client", (c) => (c.program || c.host ? `${c.program || "?"} on ${c.host || "?"}` : c.client)), long("robots", (c) => c.robots.join(", ")),
       {title: "attempts / s", of: (c) => c.attempts_per_s, show: fraction((c) => c.attempts_per_s, 2)},
       {title: "kB / s", of: (c) => c.bytes_per_s / 1000, show: fraction((c) => c.bytes_per_s / 1000, 1)}, {title: "attempts", of: (c) => c.attempts},
       {title: "on their way", of: (c) => c.on_way}, {title: "waiting", of: (c) => c.waiting}, {title: "leases", of: (c) => c.leases}, {title: "fits", of: (c) => c.fits},
-      {title: "stored, kB", of: (c) => c.stored_bytes / 1000}, {title: "refused", of: (c) => c.refused}, text("for", (c) => c.refused_for), time("last seen", (c) => c.last_seen_ms)]});
+      {title: "stored, kB", of: (c) => c.stored_bytes / 1000}, {title: "bad requests", of: (c) => c.bad_requests || 0}, {title: "refused", of: (c) => c.refused}, text("for", (c) => c.refused_for), time("last seen", (c) => c.last_seen_ms)]});
 })();

@@ -10,8 +10,8 @@
 
   /// What the planner's options say of the gate, which draws uniformly where a distribution is far from the query.
   const gateText = (options) => (/\bgate=fired\b/.test(options) ? ", by its gate uniform" : "");
-  const samplingText = ({sampling_mode: mode, share, planner_options: options}) =>
-    (mode === "guided" ? `guided, ${percent(share)}` : mode) + gateText(options);
+  const samplingText = ({sampling_mode: mode, share, outcome, planner_options: options}) =>
+    outcome === "failed" && mode !== "guided" ? "none" : (mode === "guided" ? `guided, ${percent(share)}` : mode) + gateText(options);
   const timeOf = ({planning_time_s: time, time_limit_s: limit}) => seconds(time) + (limit ? ` of ${fixed(limit, limit < 10 ? 1 : 0)}\u202fs` : "");
 
   function checksOf({collision_checks: checks, planner_options: options}) {

@@ -83,6 +83,15 @@ bool is_wanted(const AttemptFilter& filter, const LightAttempt& attempt) {
   return false;
 }
 
+/// 0 for an attempt without a path.
+double length_of_path(Session& session, std::int64_t attempt_id) {
+  const Rows rows = session.query(
+      "SELECT length FROM path WHERE id = (SELECT path_id FROM attempt WHERE id = $1) AND " +
+          session.is_intact("path"),
+      attempt_id);
+  return rows.empty() ? 0 : rows.front().column_real(0);
+}
+
 /// Nothing if it, its robot or its task cannot be read, or its robot is removed.
 std::optional<AttemptSummary> select_summary(Session& session, std::int64_t id) {
   constexpr int kFirstOfRecord = 6;
@@ -112,6 +121,7 @@ std::optional<AttemptSummary> select_summary(Session& session, std::int64_t id) 
   const std::optional<std::string> why = select_why(session, summary->report_uuid);
   summary->has_search = why.has_value();
   summary->why = why.value_or("");
+  summary->length = session.unless_damaged([&] { return length_of_path(session, id); });
   return summary;
 }
 

@@ -4,7 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
+#include "proto/types/audit.hpp"
+#include "proto/types/digest.hpp"
+#include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 #include "server/store/session.hpp"
 #include "server/store/store.hpp"
@@ -19,5 +23,17 @@ Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::
 
 /// In a snapshot.
 std::optional<TaskSummary> summary_of_task(Session& session, std::string_view task);
+
+/// As AdminStore::rename_task(), in the caller's transaction.
+Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
+                                        std::string_view name, const AuditEntry* audit);
+
+/// All attempts, also of removed robots.
+std::uint64_t attempts_of_task(Session& session, std::int64_t task_id);
+
+/// The last transaction of a removal, after the reset.
+/// \param removal  with the number of attempts beyond which the task is listed again.
+RemovedTask end_task_removal(Session& session, std::int64_t task_id, TaskRemoval removal,
+                             const AuditEntry* audit);
 
 }  // namespace kinship::store

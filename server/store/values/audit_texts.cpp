@@ -67,6 +67,11 @@ std::string describe_removal(const RobotRemoval& removal) {
          rest;
 }
 
+std::string describe_removal(const TaskRemoval& removal) {
+  return "removed, " + in_number(static_cast<std::int64_t>(removal.paths), "path") + " retired, " +
+         in_number(static_cast<std::int64_t>(removal.distributions), "distribution") + " gone";
+}
+
 std::string describe_distribution(const Distribution& distribution) {
   return "task '" + distribution.task + "', robot " + distribution.robot.short_hex() +
          ": revision " + std::to_string(distribution.revision);

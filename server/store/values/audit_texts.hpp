@@ -35,6 +35,7 @@ std::string describe_robot(std::string_view label, const Digest& robot, std::int
                            std::int64_t attempts);
 
 std::string describe_removal(const RobotRemoval& removal);
+std::string describe_removal(const TaskRemoval& removal);
 
 /// Describes a distribution before its eviction.
 std::string describe_distribution(const Distribution& distribution);

@@ -206,6 +206,18 @@ class TroubledStore final : public store::Store {
     on_reset(task);
     return store_.reset_task(task, stop, audit);
   }
+  Result<std::vector<Digest>> rename_task(std::string_view task, std::string_view name,
+                                          const AuditEntry* audit) override {
+    return store_.rename_task(task, name, audit);
+  }
+  Result<store::RemovedTask> remove_task(std::string_view task, const std::stop_token& stop,
+                                         const AuditEntry* audit) override {
+    return store_.remove_task(task, stop, audit);
+  }
+  std::vector<Uuid> reports_between(const Uuid& first, const Uuid& last,
+                                    std::size_t limit) const override {
+    return store_.reports_between(first, last, limit);
+  }
   /// Called before the sums of attempts are read; may block.
   std::function<void()> on_totals = [] {};
   store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {

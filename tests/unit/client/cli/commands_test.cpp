@@ -226,10 +226,13 @@ TEST(Commands, EachHasHelpWithAnExample) {
                                                           {"robots", "frames"},
                                                           {"robots", "suggest-srdf"},
                                                           {"tasks", "reset"},
+                                                          {"tasks", "rename"},
+                                                          {"tasks", "remove"},
                                                           {"tasks", "experience"},
                                                           {"paths", "export"},
                                                           {"paths", "import"},
                                                           {"paths", "retire"},
+                                                          {"paths", "restore"},
                                                           {"distributions", "fetch"},
                                                           {"distributions", "explain"},
                                                           {"distributions", "evict"},
@@ -240,6 +243,27 @@ TEST(Commands, EachHasHelpWithAnExample) {
     EXPECT_EQ(answer.code, kDone) << command.front();
     EXPECT_NE(answer.out.find("Example"), std::string::npos) << answer.out;
   }
+}
+
+TEST(Commands, NumbersMayHaveBlanksOrCommasInOneWordOrSeveral) {
+  const std::string robot = test::source_dir() + "/robots/models/ur10e";
+  const Answer one = run_command({"robots", "fk", robot, "--q", "0 -1.57 1.57 0 1.57 0"});
+  ASSERT_EQ(one.code, kDone) << one.err;
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {robot, "--q", "0,-1.57,1.57,0,1.57,0"},
+           {robot, "--q", "0", "-1.57", "1.57", "0", "1.57", "0"},
+           {"--q", "0", "-1.57", "1.57", "0", "1.57", "0", robot},
+           {"--q", "0", "-1.57", "1.57", "0", "1.57", "0", "--placement", "0", "0", "0", "0", "0",
+            "0", "1", robot}}) {
+    std::vector<std::string> command = {"robots", "fk"};
+    command.insert(command.end(), words.begin(), words.end());
+    const Answer answer = run_command(command);
+    EXPECT_EQ(answer.code, kDone) << answer.err;
+    EXPECT_EQ(answer.out.substr(0, 60), one.out.substr(0, 60));
+  }
+  const Answer wrong = run_command({"robots", "fk", robot, "--q", "0 zero"});
+  EXPECT_EQ(wrong.code, kWrongUsage);
+  EXPECT_NE(wrong.err.find("'zero' is no number"), std::string::npos) << wrong.err;
 }
 
 TEST(Commands, AMissingFileIsNamedBeforeAServerIsAsked) {

@@ -2,16 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <vector>
 
+#include "client/cli/clients_of_name.hpp"
 #include "client/cli/compare_command.hpp"
 #include "client/cli/distribution_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/value_text.hpp"
 #include "client/cli/watch_command.hpp"
+#include "client/cli/wrapped_lines.hpp"
 
 namespace kinship::cli::printed_text_test {
 namespace {
@@ -26,6 +30,60 @@ TEST(AgeText, HasOneUnit) {
   EXPECT_EQ(age(86'400 * 3), "3d");
   EXPECT_EQ(age(-5), "0s") << "of a machine whose clock is ahead";
   EXPECT_EQ(age_text(0, kNow_ms), "-");
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::size_t longest = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    longest = std::max(longest, line.size());
+  return longest;
+}
+
+TEST(Wrapped, WordsGoOnBeneathTheTextOfTheirLabel) {
+  EXPECT_EQ(wrapped("note    one two three", 14), "note    one\n        two\n        three");
+  EXPECT_EQ(wrapped("kinship: one two three", 14), "kinship: one\n  two three");
+  EXPECT_EQ(wrapped("short", 14), "short");
+  EXPECT_EQ(wrapped("{\"a\": 1, \"b\": 2, \"c\": 3}", 14), "{\"a\": 1, \"b\": 2, \"c\": 3}");
+  EXPECT_EQ(wrapped("a_word_that_is_longer_than_that and more", 14),
+            "a_word_that_is_longer_than_that\n  and more");
+  std::string words = "why     ";
+  for (int i = 0; i < 100; ++i)
+    words += "words ";
+  EXPECT_LE(longest_line(wrapped(words, 80)), 80U);
+}
+
+TEST(WrappedLines, WritesWholeLinesWrappedAndAPartAsItIs) {
+  std::ostringstream out;
+  {
+    WrappedLines lines(out, 10);
+    out << "one two three\n" << "what is flushed is not wrapped" << std::flush << " at all\nend";
+  }
+  out << '.';
+  EXPECT_EQ(out.str(), "one two\n  three\nwhat is flushed is not wrapped at all\nend.");
+}
+
+TEST(ByName, ClientsOfAProgramAndHostAreAddedUp) {
+  ClientUse call;
+  call.client = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
+  call.program = "kinship";
+  call.host = "host7";
+  call.requests = 2;
+  call.robots = {"panda"};
+  call.last_seen_ms = 5;
+  ClientUse later = call;
+  later.client = "another";
+  later.last_seen_ms = 9;
+  ClientUse robot;
+  robot.client = "robot_7";
+  const std::vector<ClientsOfName> names = by_name({call, robot, later});
+  ASSERT_EQ(names.size(), 2U);
+  EXPECT_EQ(names[0].use.client, "kinship on host7");
+  EXPECT_EQ(names[0].clients, 2U);
+  EXPECT_EQ(names[0].use.requests, 4U);
+  EXPECT_EQ(names[0].use.robots, std::vector<std::string>{"panda"});
+  EXPECT_EQ(names[0].use.last_seen_ms, 9);
+  EXPECT_EQ(names[1].use.client, "robot_7");
 }
 
 TEST(SizeText, HasOneDigitBehindThePoint) {

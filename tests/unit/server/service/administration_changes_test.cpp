@@ -103,6 +103,96 @@ TEST_F(AdministrationChanges, ARetiredPathIsNotExported) {
   EXPECT_NE(log().find("task 'shelf': path " + attempts[0].report_uuid.text()), std::string::npos);
 }
 
+TEST_F(AdministrationChanges, ARestoredPathIsInUseAgainUnderAUuidOfItsOwn) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 3, 1);
+  report(attempts);
+  const std::string uuid = attempts[0].report_uuid.text();
+  ASSERT_EQ(ask(AdminVerb::RetirePath, uuid).status, AdminStatus::Ok);
+  const Restoration restored = row<Restoration>(ask(AdminVerb::RestorePath, uuid));
+  EXPECT_EQ(restored.task, "shelf");
+  EXPECT_EQ(restored.paths, 1U);
+  EXPECT_EQ(restored.in_use + restored.lost, 0U) << restored.reason;
+  const Attempt again = row<Attempt>(ask(AdminVerb::ShowPath, restored.report_uuid.text()));
+  EXPECT_EQ(again.path->waypoints(), attempts[0].path->waypoints());
+  EXPECT_NE(again.record.planner_options.find(uuid), std::string::npos);
+  EXPECT_EQ(again.record.sampling_mode, SamplingMode::Uniform) << "evidence counts once";
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "shelf")).paths, 3U);
+  const Restoration known = row<Restoration>(ask(AdminVerb::RestorePath, uuid));
+  EXPECT_EQ(known.paths, 0U);
+  EXPECT_EQ(known.in_use, 1U);
+  // The restored one may be retired, and the first one restored once more.
+  ASSERT_EQ(ask(AdminVerb::RetirePath, restored.report_uuid.text()).status, AdminStatus::Ok);
+  EXPECT_EQ(row<Restoration>(ask(AdminVerb::RestorePath, uuid)).paths, 1U);
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "shelf")).paths, 3U);
+}
+
+TEST_F(AdministrationChanges, AResetTaskIsRestoredWhole) {
+  report(fleet::solved(teacher_, "shelf", 4, 1));
+  report({fleet::unsolved(teacher_.digest, "shelf")});
+  ASSERT_EQ(ask(AdminVerb::ResetTask, "shelf").status, AdminStatus::Ok);
+  AdminRequest request = fleet::question(AdminVerb::RestorePath);
+  request.task = "shelf";
+  EXPECT_EQ(row<Restoration>(administer(request)).paths, 4U);
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "shelf")).paths, 4U);
+  const Restoration again = row<Restoration>(administer(request));
+  EXPECT_EQ(again.paths, 0U);
+  EXPECT_EQ(again.in_use, 4U);
+  EXPECT_EQ(ask(AdminVerb::RestorePath).status, AdminStatus::Refused) << "all of everything";
+}
+
+TEST_F(AdministrationChanges, ARenamedTaskKeepsItsPathsAndAnOldReportItsName) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "lod", 2, 1);
+  report(attempts);
+  report(fleet::solved(teacher_, "table", 1, 9));
+  AdminRequest request = fleet::question(AdminVerb::RenameTask, "load");
+  request.task = "lod";
+  EXPECT_EQ(row<TaskSummary>(administer(request)).paths, 2U);
+  EXPECT_EQ(ask(AdminVerb::ShowTask, "lod").status, AdminStatus::NotFound);
+  EXPECT_EQ(row<Attempt>(ask(AdminVerb::ShowPath, attempts[0].report_uuid.text())).task, "load");
+  EXPECT_EQ(report({attempts[0]}).receipts.at(0).status, ReceiptStatus::Duplicate) << "sent again";
+  EXPECT_EQ(report(fleet::solved(teacher_, "lod", 1, 5)).receipts.at(0).status,
+            ReceiptStatus::Stored);
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 1U);
+  const AdminPage onto = administer(request);
+  EXPECT_EQ(onto.status, AdminStatus::Refused);
+  EXPECT_NE(onto.message.find("'load' exists"), std::string::npos) << onto.message;
+  request.argument = "no name";
+  EXPECT_EQ(administer(request).status, AdminStatus::Refused);
+}
+
+TEST_F(AdministrationChanges, ARemovedTaskIsListedAgainOnceItIsReported) {
+  report(fleet::solved(teacher_, "lod", 2, 1));
+  report(fleet::solved(teacher_, "shelf", 1, 9));
+  const TaskRemoval removal = row<TaskRemoval>(ask(AdminVerb::RemoveTask, "lod"));
+  EXPECT_EQ(removal.paths, 2U);
+  EXPECT_EQ(removal.attempts, 2U);
+  EXPECT_EQ(ask(AdminVerb::ListTasks).rows.size(), 1U);
+  EXPECT_EQ(ask(AdminVerb::RemoveTask, "lod").status, AdminStatus::NotFound);
+  report(fleet::solved(teacher_, "lod", 1, 5));
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 1U);
+  EXPECT_EQ(ask(AdminVerb::ListTasks).rows.size(), 2U);
+}
+
+TEST_F(AdministrationChanges, AnUnknownNameIsAnsweredWithTheNearest) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "load_machine", 1, 1);
+  report(attempts);
+  EXPECT_EQ(ask(AdminVerb::ShowTask, "lod_machine").message,
+            "no task 'lod_machine' (did you mean 'load_machine'?)");
+  EXPECT_EQ(ask(AdminVerb::ShowRobot, "techer").message,
+            "no robot 'techer' (did you mean 'teacher'?)");
+  FetchRequest request = request_for(pupil_);
+  request.task = "lod_machine";
+  EXPECT_EQ(fetch(request).message,
+            "no paths of task 'lod_machine' (did you mean 'load_machine'?)");
+  const std::string uuid = attempts[0].report_uuid.text();
+  EXPECT_EQ(row<Attempt>(ask(AdminVerb::ShowPath, uuid.substr(0, 8))).report_uuid,
+            attempts[0].report_uuid);
+  EXPECT_EQ(ask(AdminVerb::ShowPath, uuid.substr(0, 7)).status, AdminStatus::Refused);
+  EXPECT_EQ(ask(AdminVerb::ShowPath, "ffffffff").status, AdminStatus::NotFound);
+  for (const TroubleCount& trouble : service_->status().troubles)
+    EXPECT_NE(trouble.what, "admin verb refused") << trouble.last;
+}
+
 TEST_F(AdministrationChanges, ABackupNeverTouchesWhatIsThere) {
   std::ofstream(directory_ / "thesis.txt") << "irreplaceable";
   std::filesystem::create_symlink("nowhere", directory_ / "link");

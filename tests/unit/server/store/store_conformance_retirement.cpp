@@ -29,6 +29,50 @@ TEST_P(StoreConformance, ARetiredPathIsInNoFitButOnRecord) {
   EXPECT_EQ(listed[1].report_uuid, solved(2).report_uuid);
 }
 
+TEST_P(StoreConformance, ARenamedTaskKeepsEverythingButItsName) {
+  test::report(*store_, {solved(1), solved(2)});
+  report(test::make_attempt(panda_.digest, "table", 3));
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));
+  reopen();
+  EXPECT_FALSE(store_->find_task("shelf"));
+  EXPECT_EQ(store_->find_task("rack")->paths, 2U);
+  EXPECT_EQ(store_->find_attempt(solved(1).report_uuid)->task, "rack");
+  EXPECT_EQ(report(solved(1)), ReceiptStatus::Duplicate) << "under its old name";
+  EXPECT_FALSE(store_->find_task("shelf"));
+  EXPECT_EQ(store_->rename_task("rack", "table").error().code, ErrorCode::Conflict);
+  EXPECT_EQ(store_->rename_task("shelf", "rack").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(report(solved(4)), ReceiptStatus::Stored);
+  EXPECT_EQ(store_->find_task("shelf")->paths, 1U);
+}
+
+TEST_P(StoreConformance, ARemovedTaskIsOnRecordAndListedAgainWithItsNextAttempt) {
+  test::report(*store_, {solved(1), solved(2)});
+  report(test::make_attempt(panda_.digest, "table", 3));
+  const Result<RemovedTask> removed = store_->remove_task("shelf");
+  ASSERT_TRUE(removed) << removed.error().message;
+  EXPECT_EQ(removed->removal.paths, 2U);
+  EXPECT_EQ(removed->removal.attempts, 2U);
+  reopen();
+  EXPECT_FALSE(store_->find_task("shelf"));
+  const std::vector<TaskSummary> listed = store_->list_tasks("", 10).rows;
+  ASSERT_EQ(listed.size(), 1U);
+  EXPECT_EQ(listed[0].task, "table");
+  EXPECT_TRUE(store_->find_attempt(solved(1).report_uuid));
+  EXPECT_EQ(report(solved(1)), ReceiptStatus::Duplicate);
+  EXPECT_FALSE(store_->find_task("shelf")) << "a report that is known is no news";
+  EXPECT_EQ(report(test::make_unsolved(panda_.digest, "shelf", 4)), ReceiptStatus::Recorded);
+  EXPECT_EQ(store_->find_task("shelf")->attempts, 3U);
+  EXPECT_EQ(store_->remove_task("nothing").error().code, ErrorCode::NotFound);
+}
+
+TEST_P(StoreConformance, ReportsAreFoundByTheBeginningOfTheirUuid) {
+  test::report(*store_, {solved(1), solved(2), solved(3)});
+  const Uuid one = solved(1).report_uuid, three = solved(3).report_uuid;
+  EXPECT_EQ(store_->reports_between(one, one, 2), std::vector{one});
+  EXPECT_EQ(store_->reports_between(std::min(one, three), std::max(one, three), 9).size(), 3U);
+  EXPECT_EQ(store_->reports_between(std::min(one, three), std::max(one, three), 2).size(), 2U);
+}
+
 TEST_P(StoreConformance, TheLastRetirementOfARobotStaysToBeSeen) {
   report(solved(1));
   ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "proto/types/summaries.hpp"
+#include "proto/types/uuid.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::service {
+
+/// Undoes retirements: stores each retired path anew, as a report of its own, so that other stores
+/// take it over as any new report, where the retirement of the first one stands. The UUID follows
+/// from that of the retired report, so that a repetition changes nothing. The copy counts as
+/// planned uniformly: an attempt is evidence once. Waits for the store.
+///
+/// \param reports   as many as fit into memory, with their paths and scenes.
+/// \param restored  in: so far; out: with these, of which each is restored or left out.
+/// \throws Failure(Unavailable) if the store took one in no time; those before it are restored.
+void restore_paths(store::Store& store, std::span<const Uuid> reports, Restoration& restored);
+
+/// UUID of the report that restores the path of a retired one.
+Uuid restored_report(const Uuid& retired);
+
+}  // namespace kinship::service

@@ -1,0 +1,75 @@
+// On a terminal of 80 columns nothing that `kinship` tells is wider.
+
+#include <fcntl.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <sstream>
+
+#include "proto/types/characters.hpp"
+#include "tests/integration/admin_commands.hpp"
+#include "tests/support/places.hpp"
+
+namespace kinship::admin_commands_test {
+namespace {
+
+constexpr unsigned short kColumns = 80;
+
+/// What a program writes to a terminal of its own, both streams.
+std::string on_terminal(const std::string& program, std::vector<std::string> words) {
+  winsize size{.ws_row = 25, .ws_col = kColumns, .ws_xpixel = 0, .ws_ypixel = 0};
+  words.insert(words.begin(), program);
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  argv.push_back(nullptr);
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
+  if (child == 0) {
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  std::string text;
+  std::array<char, 4096> part{};
+  for (ssize_t got = 0; (got = read(terminal, part.data(), part.size())) > 0;)
+    text.append(part.data(), static_cast<std::size_t>(got));
+  close(terminal);
+  waitpid(child, nullptr, 0);
+  std::erase(text, '\r');
+  return text;
+}
+
+class TerminalWidth : public AdminCommands {
+ protected:
+  void expect_fits(const std::string& line, std::size_t least_lines = 1) const {
+    const std::string text =
+        on_terminal(test::bin_dir() + "/kinship", server_.with_domain(line, "60"));
+    EXPECT_GE(count_lines(text), least_lines) << line << ": " << text;
+    std::istringstream lines(text);
+    for (std::string each; std::getline(lines, each);)
+      EXPECT_LE(character_count(each), std::size_t{kColumns}) << line << ": " << each;
+  }
+};
+
+TEST_F(TerminalWidth, NoLineIsWiderThanTheTerminal) {
+  teach(server_);
+  const Digest distribution = fetch_rehearsed(server_).distribution.value().id;
+  const std::string uuid = attempts_.front().report_uuid.text();
+  for (const char* const listing :
+       {"status", "status --clients", "robots list", "tasks list", "paths list", "attempts list",
+        "distributions list", "jobs list", "backup list", "audit"})
+    expect_fits(listing);
+  for (const std::string& told :
+       {std::string("robots show panda"), std::string("tasks show sweep"), "paths show " + uuid,
+        "attempts show " + uuid, "distributions show " + distribution.hex(),
+        "distributions explain " + distribution.hex(), std::string("tasks experience sweep"),
+        std::string("robots compare --task sweep"), "paths retire " + uuid,
+        std::string("tasks remove sweep"), std::string("tasks show swep"),
+        std::string("robots remove panda")})
+    expect_fits(told);
+}
+
+}  // namespace
+}  // namespace kinship::admin_commands_test
