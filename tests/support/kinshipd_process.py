@@ -7,7 +7,8 @@ import subprocess
 import tempfile
 
 FIRST, LAST = 70, 101  # of reserved_domain.hpp
-MODELS = pathlib.Path(os.environ.get("KINSHIP_SOURCE_DIR", ".")) / "robots" / "models"
+SOURCE = pathlib.Path(os.environ.get("KINSHIP_SOURCE_DIR", "."))
+MODELS = SOURCE / "robots" / "models"
 
 
 def _is_free(port: int) -> bool:
