@@ -46,6 +46,8 @@ class Packages(unittest.TestCase):
     def test_are_five_of_this_version(self):
         self.assertEqual(set(self.packages), set(FILES))
         version = re.search(r"^project\(kinship VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(), re.M).group(1)
+        for package in (SOURCE / "client" / "ros2").glob("*/package.xml"):  # of colcon
+            self.assertIn(f"<version>{version}</version>", package.read_text(), package)
         architecture = run("dpkg", "--print-architecture").strip()
         for name in FILES:
             self.assertEqual(self.field(name, "Version"), version)
