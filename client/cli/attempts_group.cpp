@@ -8,7 +8,8 @@
 namespace kinship::cli {
 namespace {
 
-constexpr const char* kAttemptId = "UUID of the report, as attempts list shows it";
+constexpr const char* kAttemptId =
+    "UUID of the report, or its first eight digits, as attempts list shows them";
 constexpr const char* kExampleAttempt = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
 
 void add_attempt_list(CLI::App& group, Session& session) {

@@ -47,12 +47,41 @@ struct Chosen {
 
 std::shared_ptr<Chosen> add_choice(CLI::App& command) {
   auto chosen = std::make_shared<Chosen>();
-  command.add_option("reports", chosen->named, "Their UUIDs (default: all that are set aside)")
+  command
+      .add_option("reports", chosen->named,
+                  "Their UUIDs, or eight digits or more of each (default: all that are set "
+                  "aside)")
       ->type_name("UUID");
   command.add_flag("--rejected", chosen->is_rejected,
                    "All that the server refused or that are damaged");
   command.add_option("--outbox", chosen->outbox, kOutboxHelp)->type_name("FOLDER");
   return chosen;
+}
+
+/// The reports that are kept apart.
+std::vector<Uuid> kept_in(const link::Outbox& outbox) {
+  std::vector<Uuid> kept = outbox.reports_set_aside();
+  std::ranges::copy(outbox.reports_rejected(), std::back_inserter(kept));
+  return kept;
+}
+
+/// The report of a UUID, or the only one that is kept apart and begins with its first digits.
+/// \throws Failure(InvalidInput or NotFound)
+Uuid report_named(const std::string& text, const link::Outbox& outbox) {
+  constexpr std::size_t kMinDigits = 8;  // as of reports at a server
+  if (const std::optional<Uuid> report = Uuid::parse(text))
+    return *report;
+  if (text.size() < kMinDigits || text.find_first_not_of("0123456789abcdef-") != std::string::npos)
+    throw Failure(ErrorCode::InvalidInput, "'" + text + "' is no UUID of a report, nor its first " +
+                                               std::to_string(kMinDigits) + " digits or more");
+  std::vector<Uuid> alike = kept_in(outbox);
+  std::erase_if(alike, [&](const Uuid& each) { return !each.text().starts_with(text); });
+  if (alike.empty())
+    throw Failure(ErrorCode::NotFound, "report " + text + " is neither set aside nor rejected");
+  if (alike.size() > 1)
+    throw Failure(ErrorCode::InvalidInput,
+                  std::to_string(alike.size()) + " reports begin with '" + text + "'");
+  return alike.front();
 }
 
 /// Calls `act` on each chosen report; \return how many there were.
@@ -61,12 +90,10 @@ std::size_t for_each_chosen(const Chosen& chosen, const link::Outbox& outbox,
                             const std::function<bool(const Uuid&)>& act) {
   std::size_t count = 0;
   for (const std::string& text : chosen.named) {
-    const std::optional<Uuid> report = Uuid::parse(text);
-    if (!report)
-      throw Failure(ErrorCode::InvalidInput, "'" + text + "' is no UUID of a report");
-    if (!act(*report))
+    const Uuid report = report_named(text, outbox);
+    if (!act(report))
       throw Failure(ErrorCode::NotFound,
-                    "report " + report->text() + " is neither set aside nor rejected");
+                    "report " + report.text() + " is neither set aside nor rejected");
     ++count;
   }
   if (chosen.named.empty())
@@ -87,8 +114,7 @@ int resend(const Session& session, const Chosen& chosen) {
 
 int drop(const Session& session, const Chosen& chosen, bool is_confirmed) {
   link::Outbox outbox = open_outbox(session, chosen.outbox);
-  std::vector<Uuid> kept = outbox.reports_set_aside();
-  std::ranges::copy(outbox.reports_rejected(), std::back_inserter(kept));
+  const std::vector<Uuid> kept = kept_in(outbox);
   const std::size_t dropped = for_each_chosen(chosen, outbox, [&](const Uuid& report) {
     return is_confirmed ? outbox.drop(report) : std::ranges::count(kept, report) > 0;
   });

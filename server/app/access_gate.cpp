@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/nearest_name.hpp"
 #include "server/access/access.hpp"
 #include "server/access/withheld_sources.hpp"
 

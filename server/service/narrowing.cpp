@@ -63,7 +63,19 @@ void Narrowing::check(const AdminRequest& request) const {
   if (!request.robot.empty() && !caller_.robots.empty() &&
       access::refusal_of_robot(caller_, label_of(request.robot)))
     throw_if(access::refusal_of_robot(caller_, request.robot));
+  if (request.verb == AdminVerb::RestorePath && request.argument.empty())
+    check_filters_of_restoration(request);
   check_argument(request);
+}
+
+/// Without them it would restore paths of others.
+void Narrowing::check_filters_of_restoration(const AdminRequest& request) const {
+  if (!caller_.tasks.empty() && request.task.empty())
+    throw Failure(ErrorCode::InvalidInput,
+                  "restore_path: your certificate is for some tasks: name one of them");
+  if (!caller_.robots.empty() && request.robot.empty())
+    throw Failure(ErrorCode::InvalidInput,
+                  "restore_path: your certificate is for some robots: name one of them");
 }
 
 void Narrowing::check_argument(const AdminRequest& request) const {

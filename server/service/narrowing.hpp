@@ -29,6 +29,7 @@ class Narrowing {
   std::string label_of(const Digest& robot) const;
   std::string label_of(const std::string& name) const;
   void check_argument(const AdminRequest& request) const;
+  void check_filters_of_restoration(const AdminRequest& request) const;
   void check_report(const std::string& uuid) const;
   void check_distribution(const std::string& prefix) const;
   bool keeps(AdminRow& row) const;

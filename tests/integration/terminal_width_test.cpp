@@ -7,6 +7,9 @@
 
 #include <array>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "proto/types/characters.hpp"
 #include "tests/integration/admin_commands.hpp"
@@ -37,6 +40,10 @@ std::string on_terminal(const std::string& program, std::vector<std::string> wor
     text.append(part.data(), static_cast<std::size_t>(got));
   close(terminal);
   waitpid(child, nullptr, 0);
+  constexpr std::string_view kBeginAgain =
+      "\033[K";  // a line of progress takes the place of another
+  for (std::size_t at = 0; (at = text.find(kBeginAgain, at)) != std::string::npos;)
+    text.replace(at, kBeginAgain.size(), "\n");
   std::erase(text, '\r');
   return text;
 }

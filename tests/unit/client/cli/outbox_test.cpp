@@ -54,7 +54,7 @@ TEST_F(OutboxCommands, ListNamesWhatWaitsAndWhy) {
 
 TEST_F(OutboxCommands, ResendOffersAllOrTheNamedOnesAgain) {
   const Uuid first = set_aside(), second = set_aside();
-  EXPECT_EQ(run_outbox({"resend", first.text()}), kDone) << err_.str();
+  EXPECT_EQ(run_outbox({"resend", first.text().substr(0, 8)}), kDone) << err_.str();
   EXPECT_EQ(outbox_.pending(), std::vector{first});
   EXPECT_EQ(outbox_.reports_set_aside(), std::vector{second});
   EXPECT_EQ(run_outbox({"resend", first.text()}), kNotFound);

@@ -126,6 +126,12 @@ TEST_F(Access, NarrowedToATaskNothingTellsTheNamesOfOthers) {
             AdminStatus::NotFound);
   EXPECT_EQ(ask(anna, AdminVerb::ResetTask, "bin").status, AdminStatus::Refused);
   EXPECT_EQ(real_store_->find_task("bin")->paths, 1U);
+  ASSERT_TRUE(real_store_->reset_task("bin"));
+  EXPECT_EQ(ask(anna, AdminVerb::RestorePath, "", "", "teacher").status, AdminStatus::Refused);
+  EXPECT_EQ(ask(anna, AdminVerb::RestorePath, "", "bin").status, AdminStatus::Refused);
+  EXPECT_EQ(real_store_->find_task("bin")->paths, 0U);
+  EXPECT_EQ(ask(anna, AdminVerb::ShowTask, "shel").message, "no task 'shel'")
+      << "a near name may be one of others";
   EXPECT_EQ(ask(anna, AdminVerb::ListAudit).status, AdminStatus::Refused);
 }
 
