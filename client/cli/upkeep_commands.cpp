@@ -99,7 +99,7 @@ int restore_paths(link::Client& server, const RestoreOptions& options, std::ostr
   if (!restored)
     return refuse(kRestore, restored.error(), err);
   if (options.json) {
-    out << json::to_json(*restored) << '\n';
+    out << json::to_document(*restored) << '\n';
   } else {
     out << count_text(restored->paths, "path")
         << (restored->task.empty() ? "" : " of task '" + restored->task + "'") << " restored";
@@ -123,7 +123,7 @@ int rename_task(link::Client& server, const std::string& task, const std::string
   if (!summary)
     return refuse(kRenameTask, summary.error(), err);
   if (json)
-    out << json::to_json(*summary) << '\n';
+    out << json::to_document(*summary) << '\n';
   else
     out << "task '" << task << "' is called '" << summary->task << "' now, with "
         << count_text(summary->paths, "path") << "; its distributions are fitted anew\n"
@@ -148,7 +148,7 @@ int remove_task(link::Client& server, const std::string& task, bool confirmed, b
   if (!removal)
     return refuse(kRemoveTask, removal.error(), err);
   if (json)
-    out << json::to_json(*removal) << '\n';
+    out << json::to_document(*removal) << '\n';
   else
     out << "task '" << removal->task << "' removed: " << count_text(removal->paths, "path")
         << " retired, " << count_text(removal->attempts, "attempt") << " stay on record; "

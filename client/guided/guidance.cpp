@@ -152,7 +152,7 @@ GuidanceAnswer without_guidance(const FetchReply& reply, const GuidanceOptions& 
                                              ? validate(*reply.distribution, wanted.dof)
                                              : "the server sent no distribution");
     case FetchStatus::NoExperience:
-      return refusal(NoGuidance::NotFound,
+      return refusal(NoGuidance::NoExperience,
                      or_else(reply.message, "no experience with task '" + wanted.task + "'"));
     case FetchStatus::UnknownRobot:
       return refusal(

@@ -41,7 +41,7 @@ struct GuidanceOptions {
 };
 
 /// Why there is no guidance, for a program's exit code.
-enum class NoGuidance { None, NoServer, NotFound, Failed };
+enum class NoGuidance { None, NoServer, NoExperience, NotFound, Failed };
 
 /// The answer for one placement.
 struct GuidanceAnswer {

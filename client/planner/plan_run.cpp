@@ -37,6 +37,7 @@ int exit_code_without(guided::NoGuidance why_not) {
       return kDone;
     case guided::NoGuidance::NoServer:
       return kNoServer;
+    case guided::NoGuidance::NoExperience:
     case guided::NoGuidance::NotFound:
       return kNotFound;
     case guided::NoGuidance::Failed:

@@ -157,13 +157,14 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
   for (const ProblemLine& line : lines)
     if (line.problem && wanted.start.size() == 0)
       wanted.start = line.problem->start;
+  const bool wants_all = wanted.selection.sources.empty() && wanted.selection.since_ms == 0;
   guidance_ = std::make_unique<guided::GuidanceCache>(
       [this](const FetchRequest& request) {
         return wait_for<FetchReply>([&] { return client_->fetch(request); });
       },
       std::move(wanted));
   guided::NoGuidance first_reason = guided::NoGuidance::None;
-  bool lacks_paths = false;
+  bool begins_task = false;
   for (const ProblemLine& line : lines) {
     if (stop_())
       break;
@@ -175,11 +176,11 @@ guided::NoGuidance ServerLine::fetch_guidance(guided::GuidanceOptions wanted,
     const std::string outcome = answer.guidance ? "" : "none, ";
     messages_ << "guidance for the placement of '" << line.problem->name << "': " << outcome
               << answer.message << '\n';
-    lacks_paths = lacks_paths || answer.message.starts_with("no paths of task");
+    begins_task = begins_task || (answer.why_not == guided::NoGuidance::NoExperience && wants_all);
     if (first_reason == guided::NoGuidance::None)
       first_reason = answer.why_not;
   }
-  if (options_.report && lacks_paths)
+  if (options_.report && begins_task)
     messages_ << "--report: the server has no paths of task '" << options_.task
               << "': this run begins it under that name\n";
   return first_reason;

@@ -12,7 +12,7 @@ std::string to_text(const Format& format) {
 
 std::string in_format(const Format& format, std::string_view document) {
   constexpr std::string_view kBegin = "{\"format\":";
-  if (document.starts_with(kBegin))
+  if (document.starts_with(kBegin) || !document.starts_with('{'))
     return std::string(document);
   const std::string_view rest = document.substr(1);
   return std::string(kBegin) + '"' + to_text(format) + (rest == "}" ? "\"" : "\",") +

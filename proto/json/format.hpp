@@ -43,7 +43,8 @@ inline constexpr Format kTaskExperienceFormat{"task-experience"};
 
 std::string to_text(const Format& format);  ///< e.g. "kinship.problem/1"
 
-/// \param document  the text of an object; one that begins with its format stays as it is.
+/// \param document  the text of an object; one that begins with its format, and what is no object,
+///                  stays as it is.
 /// \return the object with its format as the first member.
 std::string in_format(const Format& format, std::string_view document);
 

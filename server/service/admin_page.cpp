@@ -10,6 +10,7 @@ namespace kinship::service {
 AdminPage page_of(const Error& error) {
   AdminPage answer;
   answer.message = error.message;
+  answer.error = error.code;
   switch (error.code) {
     case ErrorCode::NotFound:
       answer.status = AdminStatus::NotFound;

@@ -40,6 +40,7 @@ struct AdminPage {
   std::string next_cursor;
   std::string message;
   RetryAfter retry_after{0};
+  ErrorCode error = ErrorCode::Internal;  ///< of a page that is not Ok
 };
 
 /// The error as a page without rows.

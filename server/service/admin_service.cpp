@@ -111,9 +111,10 @@ void AdminService::administer(AdminRequest request, const std::string& request_k
   }
 }
 
-/// A mistyped name is no trouble of the server.
+/// A mistyped name is no trouble of the server; a store that is away is.
 void AdminService::count(const AdminPage& page, const std::string& client) {
-  if (page.status == AdminStatus::Failed)
+  if (page.status == AdminStatus::Failed ||
+      (page.status != AdminStatus::Ok && page.error == ErrorCode::Unavailable))
     parts_.troubles.add(Trouble::AdminFailed, page.message);
   else if (page.status != AdminStatus::Ok)
     parts_.clients.count_bad_request(client);

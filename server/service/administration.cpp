@@ -121,19 +121,26 @@ const std::array<Administration::VerbHandler, kVerbRules.size()> Administration:
 }();
 
 AdminPage Administration::attempt(const Call& call, const Caller& caller) {
-  const Narrowing narrowing(parts_.store, caller);
-  AdminPage page;
   try {
-    check_filters(call.request);
-    narrowing.check(call.request);
-    page = dispatch(call);
+    const Narrowing narrowing(parts_.store, caller);
+    AdminPage page = checked(call, narrowing);
+    narrowing.apply(page);  // of a refusal too: it may suggest names
+    return page;
   } catch (const Failure& failure) {
-    page = page_of(failure.error());
+    return page_of(failure.error());
   } catch (const std::exception& exception) {
     return page_of(Error{ErrorCode::Internal, exception.what()});
   }
-  narrowing.apply(page);
-  return page;
+}
+
+AdminPage Administration::checked(const Call& call, const Narrowing& narrowing) {
+  try {
+    check_filters(call.request);
+    narrowing.check(call.request);
+    return dispatch(call);
+  } catch (const Failure& failure) {
+    return page_of(failure.error());
+  }
 }
 
 AdminPage Administration::dispatch(const Call& call) {

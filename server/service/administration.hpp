@@ -29,6 +29,8 @@
 
 namespace kinship::service {
 
+class Narrowing;
+
 /// Handles the requests of administrators. Robots are named by label or by a digest prefix of at
 /// least four digits, paths by report UUID or at least eight digits of it, distributions by an id
 /// prefix. May be shared between threads.
@@ -99,6 +101,7 @@ class Administration {
   }
 
   AdminPage attempt(const Call& call, const Caller& caller);
+  AdminPage checked(const Call& call, const Narrowing& narrowing);
   AdminPage dispatch(const Call& call);
 
   // Each throws Failure(NotFound) for a missing object, and Failure(InvalidInput) for an invalid or

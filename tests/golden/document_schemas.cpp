@@ -329,11 +329,13 @@ void add_rows(std::vector<DocumentSchema>& all) {
   };
   const auto of = []<typename Row>(std::type_identity<Row>) { return static_cast<Row*>(nullptr); };
   add_single(of(std::type_identity<RobotSummary>()), "robots rename.");
-  add_single(of(std::type_identity<TaskSummary>()), "tasks show.");
+  add_single(of(std::type_identity<TaskSummary>()), "tasks show, tasks rename.");
   add_single(of(std::type_identity<ServerStatus>()), "status.");
   add_single(of(std::type_identity<Eviction>()), "distributions evict.");
   add_single(of(std::type_identity<Retirement>()), "paths retire, tasks reset.");
+  add_single(of(std::type_identity<Restoration>()), "paths restore.");
   add_single(of(std::type_identity<RobotRemoval>()), "robots remove.");
+  add_single(of(std::type_identity<TaskRemoval>()), "tasks remove.");
   add_single(of(std::type_identity<Job>()), "jobs wait, jobs cancel, backup now.");
   add_list(of(std::type_identity<RobotSummary>()), "robots list.");
   add_list(of(std::type_identity<TaskSummary>()), "tasks list.");

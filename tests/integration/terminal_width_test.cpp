@@ -20,8 +20,13 @@ namespace {
 
 constexpr unsigned short kColumns = 80;
 
-/// What a program writes to a terminal of its own, both streams.
-std::string on_terminal(const std::string& program, std::vector<std::string> words) {
+struct Shown {
+  std::string text;  ///< both streams
+  int code = -1;     ///< of its exit
+};
+
+/// A program on a terminal of its own.
+Shown on_terminal(const std::string& program, std::vector<std::string> words) {
   winsize size{.ws_row = 25, .ws_col = kColumns, .ws_xpixel = 0, .ws_ypixel = 0};
   words.insert(words.begin(), program);
   std::vector<char*> argv;
@@ -39,22 +44,23 @@ std::string on_terminal(const std::string& program, std::vector<std::string> wor
   for (ssize_t got = 0; (got = read(terminal, part.data(), part.size())) > 0;)
     text.append(part.data(), static_cast<std::size_t>(got));
   close(terminal);
-  waitpid(child, nullptr, 0);
+  int status = 0;
+  waitpid(child, &status, 0);
   constexpr std::string_view kBeginAgain =
       "\033[K";  // a line of progress takes the place of another
   for (std::size_t at = 0; (at = text.find(kBeginAgain, at)) != std::string::npos;)
     text.replace(at, kBeginAgain.size(), "\n");
   std::erase(text, '\r');
-  return text;
+  return {text, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
 }
 
 class TerminalWidth : public AdminCommands {
  protected:
-  void expect_fits(const std::string& line, std::size_t least_lines = 1) const {
-    const std::string text =
-        on_terminal(test::bin_dir() + "/kinship", server_.with_domain(line, "60"));
-    EXPECT_GE(count_lines(text), least_lines) << line << ": " << text;
-    std::istringstream lines(text);
+  void expect_fits(int code, const std::string& line) const {
+    const Shown shown = on_terminal(test::bin_dir() + "/kinship", server_.with_domain(line, "60"));
+    EXPECT_EQ(shown.code, code) << line << ": " << shown.text;
+    EXPECT_FALSE(shown.text.empty()) << line;
+    std::istringstream lines(shown.text);
     for (std::string each; std::getline(lines, each);)
       EXPECT_LE(character_count(each), std::size_t{kColumns}) << line << ": " << each;
   }
@@ -67,15 +73,17 @@ TEST_F(TerminalWidth, NoLineIsWiderThanTheTerminal) {
   for (const char* const listing :
        {"status", "status --clients", "robots list", "tasks list", "paths list", "attempts list",
         "distributions list", "jobs list", "backup list", "audit"})
-    expect_fits(listing);
+    expect_fits(0, listing);
   for (const std::string& told :
        {std::string("robots show panda"), std::string("tasks show sweep"), "paths show " + uuid,
         "attempts show " + uuid, "distributions show " + distribution.hex(),
         "distributions explain " + distribution.hex(), std::string("tasks experience sweep"),
-        std::string("robots compare --task sweep"), "paths retire " + uuid,
-        std::string("tasks remove sweep"), std::string("tasks show swep"),
-        std::string("robots remove panda")})
-    expect_fits(told);
+        std::string("robots compare --task sweep")})
+    expect_fits(0, told);
+  for (const std::string& unconfirmed : {"paths retire " + uuid, std::string("tasks remove sweep"),
+                                         std::string("robots remove panda")})
+    expect_fits(2, unconfirmed);
+  expect_fits(3, "tasks show swep");
 }
 
 }  // namespace
