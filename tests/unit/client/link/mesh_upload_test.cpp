@@ -145,5 +145,21 @@ TEST(MeshOutbox, KeepsContentsUntilAServerHasThem) {
   EXPECT_TRUE(outbox.robots_with_contents().empty());
 }
 
+TEST(MeshOutbox, ForgetsMeshesThatAreToStayHere) {
+  const test::TemporaryDirectory directory;
+  Outbox outbox(directory.path());
+  Digest digest;
+  digest.bytes[0] = 1;
+  outbox.keep_robot(digest, robot());
+  outbox.forget_meshes(digest);
+  EXPECT_TRUE(outbox.robot(digest)->meshes.empty());
+  EXPECT_FALSE(outbox.content(mesh_of(1).digest()));
+  RobotDescription without = robot();
+  without.meshes.clear();
+  without.contents.clear();
+  outbox.keep_robot(digest, without);
+  EXPECT_TRUE(outbox.robot(digest)->meshes.empty());
+}
+
 }  // namespace
 }  // namespace kinship::link::mesh_upload_test
