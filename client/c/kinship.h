@@ -77,7 +77,7 @@ typedef struct kinship_client_options {
   const char* resend; /**< old reports to a store never seen: "all", "none"; NULL: unacknowledged */
 } kinship_client_options;
 
-/** Needs no server. \param options NULL: as KINSHIP_DOMAIN, KINSHIP_SERVER, KINSHIP_SECURITY say */
+/** Needs no server. \param options  NULL: as KINSHIP_DOMAIN, _SERVER, _TIMEOUT, _SECURITY say */
 KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* options,
                                              kinship_client** client);
 /** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */

@@ -139,30 +139,4 @@ void OtherStores::age(std::chrono::milliseconds sending) const {
   }
 }
 
-Result<Resend> parse_resend(std::string_view word) {
-  if (word.empty())
-    return Resend::Unacknowledged;
-  if (word == "all")
-    return Resend::All;
-  if (word == "none")
-    return Resend::None;
-  return invalid_input("resend '" + std::string(word) + "' is neither 'all' nor 'none'");
-}
-
-std::string describe(const std::vector<KeptReports>& kept) {
-  std::size_t reports = 0;
-  std::string stores;
-  for (const KeptReports& each : kept) {
-    reports += each.reports;
-    stores += (stores.empty() ? "" : ", ") + each.store;
-  }
-  if (reports == 0)
-    return "";
-  return std::to_string(reports) + (reports == 1 ? " report" : " reports") + " of " +
-         (kept.size() == 1 ? "an older store (" : "older stores (") + stores + ") " +
-         (reports == 1 ? "is" : "are") +
-         " kept, which this store does not get by itself: 'kinship outbox resend --all' or "
-         "--resend all sends, 'kinship outbox drop --all' deletes";
-}
-
 }  // namespace kinship::link
