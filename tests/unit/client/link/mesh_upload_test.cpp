@@ -6,10 +6,14 @@
 
 #include "client/link/outbox.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/store_epoch.hpp"
+#include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::link::mesh_upload_test {
 namespace {
+
+constexpr std::uint64_t kSeed = 37;
 
 TriangleMesh mesh_of(double size_m) {
   Eigen::Matrix3Xd corners(3, 3);
@@ -159,6 +163,26 @@ TEST(MeshOutbox, ForgetsMeshesThatAreToStayHere) {
   without.contents.clear();
   outbox.keep_robot(digest, without);
   EXPECT_TRUE(outbox.robot(digest)->meshes.empty());
+}
+
+TEST(MeshOutbox, AStoreNeverSeenGetsContentsOfRobotsWithReportsAlone) {
+  const test::TemporaryDirectory directory;
+  Outbox outbox(directory.path());
+  outbox.note_store(next_epoch({}), {});
+  test::RandomValues values(kSeed);
+  const Attempt attempt = values.attempt(5);
+  const auto keep = [&](const Digest& digest, double size_m) {
+    RobotDescription description = robot();
+    description.meshes.resize(1);
+    description.meshes.front().content = mesh_of(size_m).digest();
+    description.contents = {mesh_of(size_m).content()};
+    outbox.keep_robot(digest, description);
+  };
+  keep(attempt.robot, 1);
+  keep(values.digest(), 2);
+  outbox.add(attempt);
+  outbox.note_store(next_epoch({}), {});
+  EXPECT_EQ(outbox.robots_with_contents(), std::vector<Digest>{attempt.robot});
 }
 
 }  // namespace
