@@ -171,7 +171,6 @@ Result<RegisterReply> Client::Line::send(const kinematics::Chain& chain,
                                          const RobotDescription& description) {
   if (outbox) {
     outbox->keep_robot(chain.digest(), description);
-    sender->note_robot(chain.digest());
     const std::lock_guard lock(robots_mutex);
     robots[chain.digest()] = {description.label, chain.dof()};
   }

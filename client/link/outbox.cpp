@@ -263,7 +263,7 @@ std::optional<MeshContent> Outbox::content(const Digest& content) const {
   return text ? content_of(*text, content) : std::nullopt;
 }
 
-void Outbox::drop_contents(const RobotDescription& description) {
+void Outbox::drop_contents(const RobotDescription& description) const {
   std::error_code error;  // what stays is offered again
   for (const LinkMesh& mesh : description.meshes)
     fs::remove(folder_ / kMeshes / mesh.content.hex(), error);
@@ -309,8 +309,24 @@ std::optional<Uuid> Outbox::change_store(const Uuid& from, const Uuid& to) const
   const std::optional<Uuid> known = others_.known_epoch(to);
   if (!known && resend_ == Resend::None)
     others_.hold_back(from, opened_);
+  if (!known)
+    drop_contents_without_reports();
   write_durably(folder_ / kEpoch, known.value_or(to).text() + "\n");
   return known;
+}
+
+/// Of robots that a store never seen is not to get: sending contents registers them.
+void Outbox::drop_contents_without_reports() const {
+  const std::vector<Digest> robots = robots_with_contents();
+  if (robots.empty())
+    return;
+  std::set<Digest> reported;
+  for (const Uuid& uuid : pending())
+    if (const Result<Attempt> attempt = read(uuid))
+      reported.insert(attempt->robot);
+  for (const Digest& each : robots)
+    if (const auto description = robot(each); description && !reported.contains(each))
+      drop_contents(*description);
 }
 
 std::size_t Outbox::resend_sent() const {

@@ -80,7 +80,7 @@ class Outbox {
   /// Nothing also if its file is damaged.
   std::optional<MeshContent> content(const Digest& content) const;
   /// Drops the contents of a robot's meshes: a server has them.
-  void drop_contents(const RobotDescription& description);
+  void drop_contents(const RobotDescription& description) const;
   /// Robots that name contents which are kept.
   std::vector<Digest> robots_with_contents() const;
 
@@ -111,6 +111,7 @@ class Outbox {
   std::vector<Uuid> reports_in(std::string_view part) const;
   std::optional<Uuid> change_store(const Uuid& from, const Uuid& to) const;
   std::size_t resend_sent() const;
+  void drop_contents_without_reports() const;
 
   const std::filesystem::path folder_;
   const Resend resend_;

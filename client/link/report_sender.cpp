@@ -60,11 +60,6 @@ ReportSender::~ReportSender() {
   thread_.join();
 }
 
-void ReportSender::note_robot(const Digest& robot) {
-  const std::lock_guard lock(mutex_);
-  own_robots_.insert(robot);
-}
-
 void ReportSender::wake() {
   {
     const std::lock_guard lock(mutex_);
@@ -243,7 +238,7 @@ bool ReportSender::probe_epoch() {
   return exchange(probe).has_value();
 }
 
-/// Registers this program's robots with contents of meshes in the outbox again: an earlier
+/// Registers the robots with contents of meshes in the outbox again: an earlier
 /// registration ended before the server had them.
 void ReportSender::send_contents() {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
@@ -253,14 +248,8 @@ void ReportSender::send_contents() {
     return;
   servers_with_contents_ = servers;
   contents_left_.reset();
-  std::set<Digest> own;
-  {
-    const std::lock_guard lock(mutex_);
-    own = own_robots_;
-  }
   for (const Digest& robot : outbox_.robots_with_contents()) {
-    const auto description =
-        own.contains(robot) ? outbox_.robot(robot) : Result<RobotDescription>(Error{});
+    const Result<RobotDescription> description = outbox_.robot(robot);
     if (!description)
       continue;
     const Result<RegisterReply> reply = register_robot_(*description);

@@ -49,9 +49,9 @@ class ReportSender {
 
   /// \param outbox          must outlive the sender.
   /// \param register_robot  called on the sender's thread for robots that the server does not know
-  ///                        and the outbox has a description of, and for noted ones with contents
-  ///                        of meshes in the outbox when a server comes, and each minute until it
-  ///                        has them; empty: they wait.
+  ///                        and the outbox has a description of, and for those with contents of
+  ///                        meshes in the outbox when a server comes, and each minute until it has
+  ///                        them; empty: they wait.
   /// \param now             the time by which `sent/` grows older.
   /// \param count_servers   a new server is probed if nothing is pending, and every server now and
   ///                        then: its reply shows whether its store has lost sent reports. Empty:
@@ -64,8 +64,6 @@ class ReportSender {
   ReportSender(const ReportSender&) = delete;
   ReportSender& operator=(const ReportSender&) = delete;
 
-  /// Has contents of a robot's meshes in the outbox sent: this program has registered it.
-  void note_robot(const Digest& robot);
   void wake();   ///< the outbox has a new report
   void retry();  ///< sends at once, also during a pause: the server has changed
   Counts counts() const;
@@ -120,7 +118,6 @@ class ReportSender {
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   Counts counts_;
-  std::set<Digest> own_robots_;                                      // of this program
   std::map<Uuid, std::chrono::steady_clock::time_point> passed_by_;  // until when
   std::string last_passed_by_, last_set_aside_;                      // and why
   bool is_woken_ = false;
