@@ -25,6 +25,7 @@ link::ClientOptions read_options(const kinship_client_options& given) {
   options.has_outbox = given.without_outbox == 0;
   options.timeout = given.timeout_ms != 0 ? std::chrono::milliseconds(given.timeout_ms)
                                           : link::timeout_from_environment();
+  options.resend = link::parse_resend(text_or_empty(given.resend)).value_or_throw();
   return options;
 }
 
@@ -183,11 +184,17 @@ kinship_code kinship_flush(kinship_client* client, uint32_t timeout_ms, kinship_
   return guarded([&] {
     require(client, "client");
     const auto state = client->line.flush(std::chrono::milliseconds(timeout_ms));
+    thread_local std::string last_refusal;
+    last_refusal = state.last_refusal;
+    std::size_t kept = 0;
+    for (const kinship::link::KeptReports& each : state.kept)
+      kept += each.reports;
     if (outbox != nullptr)
-      write_structure({0, state.pending, state.accepted, state.refused}, outbox, "outbox");
-    return state.pending == 0
-               ? KINSHIP_OK
-               : remember(KINSHIP_UNAVAILABLE,
-                          std::to_string(state.pending) + " reports wait: " + state.problem);
+      write_structure({0, state.pending, state.accepted, state.refused, last_refusal.c_str(), kept},
+                      outbox, "outbox");
+    if (state.pending > 0)
+      return remember(KINSHIP_UNAVAILABLE,
+                      std::to_string(state.pending) + " reports wait: " + state.problem);
+    return KINSHIP_OK;
   });
 }

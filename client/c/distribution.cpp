@@ -5,19 +5,27 @@
 
 #include "client/c/errors.hpp"
 #include "client/c/handles.hpp"
+#include "client/link/reported_placement.hpp"
 
 namespace kinship::c_library {
 namespace {
 
 using SharedDistribution = std::shared_ptr<const Distribution>;
 
-FetchRequest read_request(const kinship_request& given) {
+/// Without a placement: where the robot stood when it last reported the task, as far as the server
+/// tells.
+FetchRequest read_request(kinship_client& client, const kinship_request& given) {
   require(given.task, "request->task");
   FetchRequest request;
   request.task = given.task;
   request.robot = read_robot(given.robot, "request->robot");
   if (given.T_task_base != nullptr)
     request.T_task_base = read_pose(given.T_task_base, "request->T_task_base");
+  else if (const auto reported =
+               link::reported_placement(client.line, request.task, request.robot.hex()))
+    request.T_task_base = reported->T_task_base;
+  else if (reported.error().code == ErrorCode::Unavailable)
+    throw Failure(reported.error());
   if (given.profile != nullptr)
     request.profile = given.profile;
   request.deadline = std::chrono::milliseconds(given.deadline_ms);
@@ -25,8 +33,8 @@ FetchRequest read_request(const kinship_request& given) {
 }
 
 /// The same for paths to recall.
-FetchRequest read_recall_request(const kinship_request& given) {
-  FetchRequest request = read_request(given);
+FetchRequest read_recall_request(kinship_client& client, const kinship_request& given) {
+  FetchRequest request = read_request(client, given);
   request.experience_bytes = kDefaultExperienceBytes;
   if (given.start != nullptr) {
     if (given.start_dof < 1 || given.start_dof > kMaxDof)
@@ -100,7 +108,7 @@ kinship_code kinship_fetch(kinship_client* client, const kinship_request* reques
     require(client, "client");
     require(distribution, "distribution");
     *distribution = nullptr;
-    const kinship::FetchRequest wanted = read_request(read_structure(request, "request"));
+    const kinship::FetchRequest wanted = read_request(*client, read_structure(request, "request"));
     const auto reply = client->line.fetch(wanted);
     if (!reply)
       return remember(reply.error());
@@ -119,14 +127,14 @@ kinship_code kinship_fetch_recall(kinship_client* client, const kinship_request*
     require(client, "client");
     require(recall, "recall");
     *recall = nullptr;
-    kinship::FetchRequest wanted = read_recall_request(read_structure(request, "request"));
+    kinship::FetchRequest wanted = read_recall_request(*client, read_structure(request, "request"));
     const kinship::kinematics::Chain chain = client->chain_of(wanted.robot);
     wanted.rehearsed = wanted.deadline.count() > 0;
     const auto reply = client->line.fetch(wanted);
     if (!reply)
       return remember(reply.error());
     if (reply->recall && !reply->recall->paths.empty()) {
-      *recall = new kinship_recall(chain, *reply->recall);
+      *recall = new kinship_recall(chain, *reply->recall, wanted.T_task_base);
       return KINSHIP_OK;
     }
     const bool is_ready = reply->status == kinship::FetchStatus::Ready;
@@ -184,12 +192,13 @@ kinship_code kinship_follower_open(kinship_client* client, const kinship_request
     *follower = nullptr;
     const kinship_request given = read_structure(request, "request");
     if (given.with_recall == 0) {
-      *follower = new kinship_follower{client->line.follow(read_request(given)), {}};
+      *follower = new kinship_follower{client->line.follow(read_request(*client, given))};
       return KINSHIP_OK;
     }
-    const kinship::FetchRequest wanted = read_recall_request(given);
+    const kinship::FetchRequest wanted = read_recall_request(*client, given);
     kinship::kinematics::Chain chain = client->chain_of(wanted.robot);
-    *follower = new kinship_follower{client->line.follow(wanted), std::move(chain)};
+    *follower =
+        new kinship_follower{client->line.follow(wanted), std::move(chain), wanted.T_task_base};
     return KINSHIP_OK;
   });
 }
@@ -233,7 +242,7 @@ kinship_code kinship_follower_recall(kinship_follower* follower, const kinship_r
       return remember(KINSHIP_PENDING, "no paths to recall have come yet");
     if (held != nullptr && held->guide.library().revision == newest->revision)
       return remember(KINSHIP_PENDING, "the paths that are held are the newest");
-    *recall = new kinship_recall(*follower->chain, *newest);
+    *recall = new kinship_recall(*follower->chain, *newest, follower->T_task_base);
     return KINSHIP_OK;
   });
 }

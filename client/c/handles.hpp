@@ -56,15 +56,18 @@ struct kinship_distribution {
 
 struct kinship_follower {
   std::unique_ptr<kinship::link::Follower> value;
-  std::optional<kinship::kinematics::Chain> chain;  // with recall
-  std::atomic<bool> had_paths = false;              // to recall
+  std::optional<kinship::kinematics::Chain> chain = {};  // with recall
+  std::optional<Eigen::Isometry3d> T_task_base = {};     // that was asked for
+  std::atomic<bool> had_paths = false;                   // to recall
 };
 
 struct kinship_recall {
-  kinship_recall(const kinship::kinematics::Chain& chain, const kinship::RecallLibrary& library)
-      : guide(chain, library) {}
+  kinship_recall(const kinship::kinematics::Chain& chain, const kinship::RecallLibrary& library,
+                 const std::optional<Eigen::Isometry3d>& asked_for)
+      : guide(chain, library), T_task_base(asked_for.value_or(Eigen::Isometry3d::Identity())) {}
   const kinship::recall::RecallGuide guide;
-  std::mutex mutex;  // guards the trust
+  const Eigen::Isometry3d T_task_base;  // that it is for
+  std::mutex mutex;                     // guards the trust
   kinship::recall::RecallTrust trust;
 };
 

@@ -42,11 +42,10 @@ typedef enum kinship_code {
   KINSHIP_STORAGE = 6,     /**< a file could not be written */
   KINSHIP_INTERNAL = 7,    /**< a bug of ours, or an answer that nobody expects */
   KINSHIP_PENDING = 8,     /**< the distribution is still being made: ask again later */
-  KINSHIP_NO_EXPERIENCE = 9,  /**< nobody has done the task yet */
-  KINSHIP_UNKNOWN_ROBOT = 10, /**< register it first */
-  KINSHIP_REFUSED = 11,       /**< a rule is against it; the same again is refused again */
-  KINSHIP_CODE_WIDTH =
-      0x7fffffff /**< no code: enumerations are as wide as int, whatever the compiler is told */
+  KINSHIP_NO_EXPERIENCE = 9,      /**< nobody has done the task yet */
+  KINSHIP_UNKNOWN_ROBOT = 10,     /**< register it first */
+  KINSHIP_REFUSED = 11,           /**< a rule is against it; the same again is refused again */
+  KINSHIP_CODE_WIDTH = 0x7fffffff /**< no code: enumerations are as wide as int everywhere */
 } kinship_code;
 
 /** Version of the library that runs, e.g. "0.1.0"; never freed. */
@@ -78,6 +77,7 @@ typedef struct kinship_client_options {
   int without_outbox;   /**< not 0: delivers nothing, kinship_report() is refused */
   uint32_t timeout_ms;  /**< to register, or fetch without deadline; 0: KINSHIP_TIMEOUT, or 5000 */
   const char* security; /**< folder of credentials; NULL: as KINSHIP_SECURITY says, or none */
+  const char* resend; /**< old reports to a store never seen: "all", "none"; NULL: unacknowledged */
 } kinship_client_options;
 
 /** Needs no server. \param options  NULL: all as the environment says. */
@@ -101,14 +101,14 @@ typedef struct kinship_held_joint {
 /** A robot by the text of its URDF; kinship_register_file() reads files, meshes too. */
 typedef struct kinship_robot_description {
   size_t size;
-  const char* label;            /**< for people; unique at a server */
-  const char* urdf;             /**< text of the URDF */
-  const char* base_link;        /**< where the chain begins */
-  const char* tip_link;         /**< where it ends */
-  const double* T_tip_transfer; /**< frame that robots of a task place alike; NULL: the tip's */
+  const char* label;                  /**< for people; unique at a server */
+  const char* urdf;                   /**< text of the URDF */
+  const char* base_link;              /**< where the chain begins */
+  const char* tip_link;               /**< where it ends */
+  const double* T_tip_transfer;       /**< of the frame that robots place alike; NULL: the tip's */
   const char* const* never_colliding; /**< 2 n names of links, pair by pair; NULL: none */
   size_t never_colliding_pairs;       /**< n */
-  const char* axes; /**< of it that the task prescribes, e.g. "x,y,yaw"; NULL: all six */
+  const char* axes; /**< of that frame that the task prescribes, e.g. "x,y,yaw"; NULL: all six */
   const kinship_held_joint* held_joints; /**< NULL: none */
   size_t held_joint_count;
 } kinship_robot_description;
@@ -212,29 +212,30 @@ typedef struct kinship_attempt {
 } kinship_attempt;
 
 /** Puts the attempt into the outbox: durable on return, sent in the background. Never waits for the
- * network. */
+ * network. \return KINSHIP_NOT_FOUND for a robot that was never registered with the outbox,
+ * KINSHIP_INVALID_INPUT if its joints are not those of the path. */
 KINSHIP_API kinship_code kinship_report(kinship_client* client, const kinship_attempt* attempt);
 
 /** The same of a line of an experience file, as `kinship paths export` writes them: what
  * kinship_attempt has no member for can be said there: the region that the hand had to stay in, and
- * what explains a failure ("search", see proto/FORMATS.md: start, goals, bodies in the way,
- * reason). The robot stands there as digest, 64 hexadecimal digits.
+ * what explains a failure ("search", see proto/FORMATS.md). The robot is its digest in hex.
  *
  *   {"report_uuid": "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "task": "carry", "robot": "30a1...",
  *    "machine": "cell 3", "T_task_base": [0, 0, 0, 0, 0, 0, 1],
  *    "waypoints": [[0, 0.5], [1, 0.5]], "record": {"outcome": "solved", "planner": "mine",
  *    "planner_options": "", "planning_time_s": 0.5, "collision_checks": 1000, "projections": 0,
  *    "time_limit_s": 10, "sampling_mode": "uniform", "share": 0, "distribution_id": null,
- *    "distribution_revision": 0},
- *    "scene": {"boxes": [{"name": "table", "pose": [0.6, 0, -0.05, 0, 0, 0, 1],
- *    "size": [0.8, 1.2, 0.1]}]}} */
+ *    "distribution_revision": 0}, "scene": {"boxes": [{"name": "table",
+ *    "pose": [0.6, 0, -0.05, 0, 0, 0, 1], "size": [0.8, 1.2, 0.1]}]}} */
 KINSHIP_API kinship_code kinship_report_line(kinship_client* client, const char* line);
 
 typedef struct kinship_outbox {
   size_t size;
-  size_t pending;  /**< wait for their receipt */
-  size_t accepted; /**< since the client was opened */
-  size_t refused;  /**< since then; kept on disk with the reason */
+  size_t pending;           /**< wait for their receipt */
+  size_t accepted;          /**< since the client was opened */
+  size_t refused;           /**< since then; kept on disk with the reason */
+  const char* last_refusal; /**< why; "": none was. Valid until this thread's next flush */
+  size_t kept; /**< that stores acknowledged which the server had before: `kinship outbox` */
 } kinship_outbox;
 
 /** Waits until nothing is pending or the time has passed. \param outbox  what is then; may be NULL.
@@ -253,9 +254,11 @@ typedef struct kinship_request {
   size_t size;
   const kinship_robot* robot;
   const char* task;
-  const double* T_task_base; /**< where this robot stands; NULL: used as identity */
-  const char* profile;       /**< NULL: "default" */
-  uint32_t deadline_ms;      /**< 0: what is there, within the client's timeout */
+  /** Where this robot stands; NULL: as it last reported the task, which costs two more requests; if
+   * it never did, identity. */
+  const double* T_task_base;
+  const char* profile;  /**< NULL: "default" */
+  uint32_t deadline_ms; /**< 0: what is there, within the client's timeout */
   /** Where queries of the robot usually begin, joint units: what other robots recorded is planned
    * from there for kinship_recall; NULL: the server looks for a start. */
   const double* start;

@@ -36,8 +36,8 @@ typedef struct kinship_query {
   uint64_t seed;             /**< equal queries with equal seeds have equal paths */
   /** "birrt", "roadmap" or "rrtconnect"; NULL: birrt. */
   const char* algorithm;
-  /** What guides it, of the robot at this placement; NULL: not guided by that. They are used during
-   * the call only. */
+  /** What guides it, of the robot at this placement (else: KINSHIP_INVALID_INPUT); NULL: not guided
+   * by that. They are used during the call only. */
   const kinship_distribution* distribution;
   kinship_recall* recall;
   double share; /**< of samples drawn from the distribution; 0: the one it recommends */

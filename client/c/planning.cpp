@@ -72,11 +72,13 @@ std::optional<guided::Guidance> read_guidance(const kinship_query& given,
     guidance.guided_fraction =
         given.share > 0 ? given.share : distribution.advice.recommended_share;
     guidance.guide = Guide::Mixture;
+    guidance.T_task_base = distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
   }
   if (given.recall != nullptr) {
     refuse_other(given.recall->guide.warper().chain().dof(), "recall");
     guidance.recall = {std::shared_ptr<const recall::RecallGuide>(), &given.recall->guide};
     guidance.guide = with_recall(guidance.guide);
+    guidance.T_task_base = given.recall->T_task_base;
   }
   return guidance;
 }

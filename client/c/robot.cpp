@@ -151,6 +151,10 @@ kinship_code kinship_register_file(kinship_client* client, const kinship_robot_f
   return guarded([&] {
     require(client, "client");
     require(robot, "robot");
-    return register_with(*client, read_file(read_structure(file, "file")), *robot, dof);
+    const kinship_robot_file given = read_structure(file, "file");
+    const kinship::kinematics::RobotModel model = read_file(given);
+    if (given.without_meshes != 0)
+      client->line.forget_meshes(model.chain.digest());
+    return register_with(*client, model, *robot, dof);
   });
 }

@@ -49,7 +49,8 @@ void add_fetch(CLI::App& group, Session& session) {
   const auto options = std::make_shared<FetchOptions>();
   CLI::App* command = add_command(
       group, "fetch", "A robot's distribution for a task, made if need be",
-      "kinship distributions fetch --task box_to_shelf --robot ur10e --samples 1000 --csv\n"
+      "kinship distributions fetch --task box_to_shelf --robot ur10e --placement '0.2 -0.1 0 0 0 0 "
+      "1' --samples 1000 --csv\n"
       "  kinship distributions fetch --task box_to_shelf --robot ur10e --sources panda --since "
       "14d");
   for (CLI::Option* option : add_query(*command, options->query))
@@ -76,7 +77,8 @@ void add_explain(CLI::App& group, Session& session) {
   const auto query = std::make_shared<DistributionQuery>();
   CLI::App* command = add_command(
       group, "explain", "What a distribution is made of, why it failed, how far it is behind",
-      "kinship distributions explain --task box_to_shelf --robot ur10e\n"
+      "kinship distributions explain --task box_to_shelf --robot ur10e --placement '0.2 -0.1 0 0 0 "
+      "0 1'\n"
       "  kinship distributions explain --distribution 3f9a0c");
   add_query_or_id(*command, *query, "--distribution");
   add_json(*command, session);
@@ -92,7 +94,8 @@ void add_distribution_plot(CLI::App& group, Session& session) {
       group, "plot",
       "A page that shows a distribution over its robot, the poses that were lost, its joints and "
       "its sources",
-      "kinship distributions plot --task box_to_shelf --robot ur10e --output ur10e.html\n"
+      "kinship distributions plot --task box_to_shelf --robot ur10e --placement '0.2 -0.1 0 0 0 0 "
+      "1' --output ur10e.html\n"
       "  kinship distributions plot 3f9a0c --output - > ur10e.html");
   add_query_or_id(*command, *query, "id");
   add_page_output(*command, options->output)->required();
@@ -125,7 +128,8 @@ void add_configurations(CLI::App& app, Session& session) {
   const auto options = std::make_shared<ConfigurationsOptions>();
   CLI::App* command = add_command(
       *group, "export", "Exactly the rows that a distribution's fit saw, as CSV",
-      "kinship configurations export --task box_to_shelf --robot ur10e --output rows.csv\n"
+      "kinship configurations export --task box_to_shelf --robot ur10e --placement '0.2 -0.1 0 0 0 "
+      "0 1' --output rows.csv\n"
       "  kinship configurations export --distribution 3f9a0c");
   add_query_or_id(*command, options->query, "--distribution");
   command->add_option("--output", options->output, "File (default: standard output)")

@@ -109,7 +109,9 @@ void add_import(CLI::App& group, Session& session) {
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->json = session.json;
     options->progress = session.shows_progress();
-    return import_paths(server, *options, std::cin, session.out, session.err);
+    const int code = import_paths(server, *options, std::cin, session.out, session.err);
+    tell_of_older_reports(session, server);
+    return code;
   });
 }
 

@@ -1,11 +1,15 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <functional>
+#include <iostream>
 #include <iterator>
 #include <ostream>
 
 #include "client/cli/cell_text.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/terminal.hpp"
+#include "client/link/admin_rows.hpp"
 #include "client/link/outbox.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/tables/table.hpp"
@@ -38,14 +42,16 @@ int list_outbox(const Session& session, const link::Outbox& outbox) {
   return kDone;
 }
 
-/// Which of the reports that are set aside or rejected a command is about.
+/// Which of the reports that do not wait a command is about.
 struct Chosen {
   std::vector<std::string> named;  ///< UUIDs
   bool is_rejected = false;        ///< none named: those that are rejected, not those set aside
+  bool is_all = false;             ///< with those that were acknowledged
   std::filesystem::path outbox;    ///< its folder; empty: that of the server
 };
 
-std::shared_ptr<Chosen> add_choice(CLI::App& command) {
+/// \param all  what --all adds.
+std::shared_ptr<Chosen> add_choice(CLI::App& command, const std::string& all) {
   auto chosen = std::make_shared<Chosen>();
   command
       .add_option("reports", chosen->named,
@@ -54,6 +60,7 @@ std::shared_ptr<Chosen> add_choice(CLI::App& command) {
       ->type_name("UUID");
   command.add_flag("--rejected", chosen->is_rejected,
                    "All that the server refused or that are damaged");
+  command.add_flag("--all", chosen->is_all, all)->excludes("--rejected")->excludes("reports");
   command.add_option("--outbox", chosen->outbox, kOutboxHelp)->type_name("FOLDER");
   return chosen;
 }
@@ -105,29 +112,88 @@ std::size_t for_each_chosen(const Chosen& chosen, const link::Outbox& outbox,
 
 int resend(const Session& session, const Chosen& chosen) {
   link::Outbox outbox = open_outbox(session, chosen.outbox);
-  const std::size_t sent =
+  std::size_t sent =
       for_each_chosen(chosen, outbox, [&](const Uuid& report) { return outbox.resend(report); });
+  if (chosen.is_all)
+    sent += outbox.resend_acknowledged();
   session.out << count_text(sent, "report")
               << " pending again; the next program with this outbox sends them\n";
+  if (const std::string kept = describe(outbox.kept_of_older_stores()); !kept.empty())
+    session.err << "outbox: " << kept << '\n';
   return kDone;
+}
+
+std::size_t count_of_older_stores(const link::Outbox& outbox) {
+  std::size_t count = 0;
+  for (const link::KeptReports& kept : outbox.kept_of_older_stores())
+    count += kept.reports;
+  return count;
 }
 
 int drop(const Session& session, const Chosen& chosen, bool is_confirmed) {
   link::Outbox outbox = open_outbox(session, chosen.outbox);
   const std::vector<Uuid> kept = kept_in(outbox);
-  const std::size_t dropped = for_each_chosen(chosen, outbox, [&](const Uuid& report) {
+  std::size_t dropped = for_each_chosen(chosen, outbox, [&](const Uuid& report) {
     return is_confirmed ? outbox.drop(report) : std::ranges::count(kept, report) > 0;
   });
+  if (chosen.is_all)
+    dropped += is_confirmed ? outbox.drop_of_older_stores() : count_of_older_stores(outbox);
   session.out << count_text(dropped, "report")
               << (is_confirmed ? " deleted\n" : " would be deleted for good: say --yes\n");
   return kDone;
 }
 
+/// Lists them, and asks a person what becomes of those of older stores.
+int look(const Session& session, const std::filesystem::path& folder) {
+  link::Outbox outbox = open_outbox(session, folder);
+  list_outbox(session, outbox);
+  const std::string kept = describe(outbox.kept_of_older_stores());
+  if (kept.empty() || !is_terminal(session.out) || isatty(STDIN_FILENO) != 1)
+    return kDone;
+  session.out << kept << ".\nSend them, delete them, or leave them there? [send/delete/leave] "
+              << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  Chosen all;
+  all.outbox = folder;
+  all.is_all = true;
+  if (answer == "send")
+    return resend(session, all);
+  if (answer == "delete")
+    return drop(session, all, true);
+  session.out << "They are left there.\n";
+  return kDone;
+}
+
 }  // namespace
+
+void tell_of_older_reports(const Session& session, link::Client& server) {
+  try {
+    const auto folder = link::default_outbox_folder(session.domain, session.host);
+    if (!std::filesystem::is_directory(folder / "pending"))
+      return;
+    const auto status = link::row_of<ServerStatus>(server, AdminRequest());
+    if (!status)
+      return;
+    const link::Outbox outbox(folder);
+    if (const auto kept = describe(outbox.kept_beside(status->store_epoch)); !kept.empty())
+      session.err << "outbox: " << kept << '\n';
+  } catch (const Failure&) {  // there is none that this user may look into
+  }
+}
 
 void add_outbox(CLI::App& app, Session& session) {
   CLI::App* group =
-      add_group(app, session, "outbox", "Reports on this host that have no receipt (no server)");
+      add_group(app, session, "outbox",
+                "Reports on this host that have no receipt, or one of an older store; "
+                "alone it lists them, and asks on a terminal (no server)");
+  const auto folder = std::make_shared<std::filesystem::path>();
+  group->add_option("--outbox", *folder, kOutboxHelp)->type_name("FOLDER");
+  group->require_subcommand(0, 1);
+  group->callback([&session, group, folder] {
+    if (group->get_subcommands().empty())
+      session.command = [&session, folder] { return look(session, *folder); };
+  });
   CLI::App* list =
       add_command(*group, "list", "Reports that wait, or are kept for somebody to look",
                   "kinship outbox list\n  kinship outbox list --outbox FOLDER --json");
@@ -137,19 +203,25 @@ void add_outbox(CLI::App& app, Session& session) {
   on_run(*list, session, [&session, list_folder] {
     return list_outbox(session, open_outbox(session, *list_folder));
   });
-  CLI::App* again = add_command(*group, "resend",
-                                "Offer reports that are set aside or rejected to the server again",
-                                "kinship outbox resend\n  kinship outbox resend --rejected\n"
-                                "  kinship outbox resend 11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77");
-  on_run(*again, session,
-         [&session, chosen = add_choice(*again)] { return resend(session, *chosen); });
-  CLI::App* away = add_command(*group, "drop", "Delete reports that are set aside or rejected",
-                               "kinship outbox drop --rejected --yes\n"
-                               "  kinship outbox drop 11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77 --yes");
+  CLI::App* again =
+      add_command(*group, "resend",
+                  "Offer reports that are set aside, rejected or acknowledged to the server again",
+                  "kinship outbox resend\n  kinship outbox resend --rejected\n"
+                  "  kinship outbox resend --all          to a store that lost them\n"
+                  "  kinship outbox resend 11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77");
+  const auto again_chosen = add_choice(
+      *again, "Also all that were acknowledged and are kept, by this store or an older one");
+  on_run(*again, session, [&session, again_chosen] { return resend(session, *again_chosen); });
+  CLI::App* away =
+      add_command(*group, "drop", "Delete reports that are set aside, rejected or of older stores",
+                  "kinship outbox drop --rejected --yes\n"
+                  "  kinship outbox drop --all --yes\n"
+                  "  kinship outbox drop 11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77 --yes");
   const auto is_confirmed = std::make_shared<bool>(false);
   away->add_flag("--yes", *is_confirmed, "Delete them; without it only said");
-  on_run(*away, session, [&session, chosen = add_choice(*away), is_confirmed] {
-    return drop(session, *chosen, *is_confirmed);
+  const auto away_chosen = add_choice(*away, "Also all that are kept of older stores");
+  on_run(*away, session, [&session, away_chosen, is_confirmed] {
+    return drop(session, *away_chosen, *is_confirmed);
   });
 }
 

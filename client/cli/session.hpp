@@ -98,6 +98,9 @@ void add_plot(CLI::App& group, Session& session, const OneText& text, Plot plot)
 /// \return gives the options of the wait, once the command line is parsed.
 std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session);
 
+/// Writes on `err` what the outbox of the server keeps for stores that it had before.
+void tell_of_older_reports(const Session& session, link::Client& server);
+
 // The command line of each noun.
 void add_server_commands(CLI::App& app,
                          Session& session);  ///< status, backup, watch, audit, console

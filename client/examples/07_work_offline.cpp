@@ -25,6 +25,7 @@ int main(int count, char** words) try {
   kinship::FetchRequest request;
   request.task = "sweep";
   request.robot = robot;
+  request.T_task_base = Eigen::Isometry3d::Identity();  // where it stands
   request.deadline = std::chrono::seconds(1);
   const auto answer = client.fetch(request);
   const bool is_guided = answer && answer->status == kinship::FetchStatus::Ready;

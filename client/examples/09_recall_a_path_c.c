@@ -37,6 +37,7 @@ int main(int count, char** words) {
   kinship_robot robot;
   char folder[4096];
   kinship_robot_file arm = {.size = sizeof arm, .source = folder};
+  static const double at_the_station[7] = {0, 0, 0, 0, 0, 0, 1};
   kinship_surroundings around = {.size = sizeof around, .objects = &post, .object_count = 1};
   kinship_request request = {.size = sizeof request, .robot = &robot, .task = "sweep"};
   kinship_recall_query query = {sizeof query, NULL, 6,       start,        goal, 1, NULL,
@@ -44,6 +45,7 @@ int main(int count, char** words) {
   kinship_recalled recalled = {.size = sizeof recalled};
   if (count != 2 || strlen(words[1]) + sizeof "/ur10e" > sizeof folder)
     return fprintf(stderr, "usage: 09_recall_a_path_c MODELS\n"), 2;
+  request.T_task_base = query.T_task_base = around.T_task_base = at_the_station;
   snprintf(folder, sizeof folder, "%s/ur10e", words[1]);
   if (kinship_client_open(NULL, &client) || kinship_world_create(&arm, &around, &world, NULL) ||
       kinship_register_file(client, &arm, &robot, NULL))

@@ -219,8 +219,11 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                          validate(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known.ways && !known.recall)
     return without_guidance(*reply, wanted);
-  return answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known),
-                     reply->rehearsal ? &*reply->rehearsal : nullptr, wanted);
+  GuidanceAnswer answer = answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known),
+                                      reply->rehearsal ? &*reply->rehearsal : nullptr, wanted);
+  if (needs_experience(answer.guidance->guide))
+    answer.guidance->T_task_base = T_task_base.value_or(Eigen::Isometry3d::Identity());
+  return answer;
 }
 
 GuidanceCache::Key GuidanceCache::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {

@@ -411,9 +411,11 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& given,
   planned.result.guidance_reason = why_unguided(query);
   const Result<PlannerChoice> planner =
       planner_for(settings.planner, problem.constraint.has_value());
-  const std::optional<Mismatch> mismatch =
+  std::optional<Mismatch> mismatch =
       planner ? find_mismatch(robot.chain, problem)
               : Mismatch{NotPlanned::UnfitPlanner, planner.error().message};
+  if (!mismatch && query.guidance != nullptr && query.guidance->T_task_base)
+    mismatch = find_other_placement(problem, *query.guidance->T_task_base);
   if (mismatch) {
     planned.result.not_planned = mismatch->kind;
     planned.result.reason = mismatch->text;

@@ -53,7 +53,8 @@ struct PlannedProblem {
 /// guidance and settings give an equal path and equal checks, as long as the time limit does not
 /// end it.
 /// \param query  one that is not guided is planned exactly as if there were no guidance. The result
-///               of a guided one names the source of its samples (make_query_sampler).
+///               of a guided one names the source of its samples (make_query_sampler). Guidance of
+///               another placement than the problem's is a mismatch, whose reason names both.
 /// \param stop   called before every check; true ends planning.
 /// \param recorder  records how the trees grow, except those of other libraries; null: no
 ///                  recording.

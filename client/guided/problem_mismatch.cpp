@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "proto/types/number_text.hpp"
+#include "proto/types/pose.hpp"
 
 namespace kinship::guided {
 namespace {
@@ -90,6 +91,26 @@ std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Prob
       return Mismatch{NotPlanned::GoalBeyondLimits,
                       "goal " + std::to_string(i + 1) + ": " + *outside};
   return std::nullopt;
+}
+
+std::optional<Mismatch> find_other_placement(const Problem& problem,
+                                             const Eigen::Isometry3d& T_task_base) {
+  constexpr double kSame_m = 2e-3, kSame_rad = 2e-3;
+  const Eigen::Isometry3d asked = problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  const Eigen::Isometry3d apart = T_task_base.inverse() * asked;
+  if (apart.translation().norm() <= kSame_m &&
+      Eigen::AngleAxisd(apart.linear()).angle() <= kSame_rad)
+    return std::nullopt;
+  const auto text = [](const Eigen::Isometry3d& pose) {
+    std::string numbers;
+    for (const double number : to_pose_array(pose))
+      numbers += (numbers.empty() ? "" : " ") + number_text(number);
+    return numbers;
+  };
+  return Mismatch{NotPlanned::Error,
+                  "T_task_base is " +
+                      (problem.T_task_base ? text(asked) : "not given, so identity") +
+                      ", the guidance was made for " + text(T_task_base)};
 }
 
 }  // namespace kinship::guided

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,5 +37,10 @@ class WithinLimits {
 
 /// The first mismatch: another number of joints, or a start or goal beyond a limit.
 std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Problem& problem);
+
+/// A problem's placement that is another one than that of its guidance, by more than what requests
+/// are snapped to.
+std::optional<Mismatch> find_other_placement(const Problem& problem,
+                                             const Eigen::Isometry3d& T_task_base);
 
 }  // namespace kinship::guided

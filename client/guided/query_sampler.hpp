@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,6 +28,8 @@ struct Guidance {
   std::shared_ptr<const recall::RecallGuide> recall;            ///< null: none
   double guided_fraction = 0;  ///< of the samples of a guided query
   Guide guide = Guide::All;    ///< the parts that a guided query uses
+  /// The placement that it was made for, and that its queries have; missing: not checked.
+  std::optional<Eigen::Isometry3d> T_task_base = {};
 };
 
 /// The guidance of a query, and whether the query uses it.

@@ -64,6 +64,12 @@ std::optional<milliseconds> pause_after(const Result<FetchReply>& reply) {
   return std::nullopt;
 }
 
+/// A robot that reports may be of.
+struct Reported {
+  std::string label;
+  Eigen::Index joints = 0;
+};
+
 }  // namespace
 
 /// The parts of a client; its header does not show their types.
@@ -83,7 +89,8 @@ struct Client::Line {
     if (!options.has_outbox)
       return;
     outbox.emplace(options.outbox.empty() ? default_outbox_folder(options.domain, options.server)
-                                          : options.outbox);
+                                          : options.outbox,
+                   options.resend);
     sender.emplace(
         *outbox,
         [this](const ReportRequest& batch) {
@@ -99,7 +106,9 @@ struct Client::Line {
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
 
+  Result<RegisterReply> send(const kinematics::Chain& chain, const RobotDescription& description);
   Result<RegisterReply> send(const RobotDescription& description);
+  void require_fit(const Attempt& attempt);
   Result<RegisterReply> register_robot(const RobotDescription& description,
                                        const RegisterOnce& register_once);
 
@@ -108,6 +117,8 @@ struct Client::Line {
   const std::filesystem::path token;  // empty: none
   const Uuid client_id = Uuid::random();
   std::optional<Outbox> outbox;
+  std::mutex robots_mutex;                                    // guards the next one
+  std::map<Digest, Reported> robots;                          // that reports may be of
   const std::shared_ptr<const dds::Participant> participant;  // with followers and watchers
   dds::Requester<codec::RegisterConversation> registering;
   dds::Requester<codec::ReportConversation> reporting;
@@ -143,14 +154,52 @@ Result<RegisterReply> Client::register_robot(const RobotDescription& description
   if (line_->outbox)
     // An unreadable robot has no reports; the server names its fault.
     if (const auto chain = kinematics::read_chain(description))
-      line_->outbox->keep_robot(chain->digest(), description);
+      return line_->send(*chain, description);
   return line_->send(description);
 }
 
 Result<RegisterReply> Client::register_robot(const kinematics::RobotModel& robot) {
+  return line_->send(robot.chain, robot.description);
+}
+
+void Client::forget_meshes(const Digest& robot) {
   if (line_->outbox)
-    line_->outbox->keep_robot(robot.chain.digest(), robot.description);
-  return line_->send(robot.description);
+    line_->outbox->forget_meshes(robot);
+}
+
+Result<RegisterReply> Client::Line::send(const kinematics::Chain& chain,
+                                         const RobotDescription& description) {
+  if (outbox) {
+    outbox->keep_robot(chain.digest(), description);
+    const std::lock_guard lock(robots_mutex);
+    robots[chain.digest()] = {description.label, chain.dof()};
+  }
+  return send(description);
+}
+
+/// \throws Failure if the outbox does not know the robot, or knows that it has other joints. A
+///         description that is damaged tells neither.
+void Client::Line::require_fit(const Attempt& attempt) {
+  const std::lock_guard lock(robots_mutex);
+  auto known = robots.find(attempt.robot);
+  if (known == robots.end()) {
+    const Result<RobotDescription> description = outbox->robot(attempt.robot);
+    if (!description && description.error().code == ErrorCode::NotFound)
+      throw Failure(ErrorCode::NotFound,
+                    "robot " + attempt.robot.short_hex() +
+                        " is known neither to this client nor to its outbox '" +
+                        outbox->folder().string() + "': register it before its first report");
+    const auto chain = description ? kinematics::read_chain(*description) : description.error();
+    if (!chain)
+      return;
+    known = robots.emplace(attempt.robot, Reported{description->label, chain->dof()}).first;
+  }
+  const Reported& robot = known->second;
+  if (attempt.path && attempt.path->dof() != robot.joints)
+    throw Failure(ErrorCode::InvalidInput,
+                  "robot '" + robot.label + "' (" + attempt.robot.short_hex() + ") has " +
+                      std::to_string(robot.joints) + " joints, the report's path has " +
+                      std::to_string(attempt.path->dof()));
 }
 
 /// With the contents of its meshes, of the description or of the outbox, which lets them go once
@@ -189,6 +238,7 @@ void Client::report(const Attempt& attempt) {
     throw std::logic_error("Client: report() without an outbox");
   if (const auto error = validate(attempt))
     throw Failure(*error);
+  line_->require_fit(attempt);
   line_->outbox->add(attempt);
   line_->sender->wake();
 }
@@ -197,8 +247,13 @@ Client::OutboxState Client::outbox() const {
   if (!line_->outbox)
     return {};
   ReportSender::Counts counts = line_->sender->counts();
-  return {line_->outbox->pending_count(), counts.accepted,  counts.refused,
-          std::move(counts.problem),      counts.set_aside, std::move(counts.last_refusal)};
+  return {.pending = line_->outbox->pending_count(),
+          .accepted = counts.accepted,
+          .refused = counts.refused,
+          .problem = std::move(counts.problem),
+          .set_aside = counts.set_aside,
+          .last_refusal = std::move(counts.last_refusal),
+          .kept = line_->outbox->kept_of_older_stores()};
 }
 
 Client::OutboxState Client::flush(milliseconds deadline) {

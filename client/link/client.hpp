@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/link/follower.hpp"
+#include "client/link/kept_reports.hpp"
 #include "client/link/watcher.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
@@ -30,8 +31,9 @@ struct ClientOptions {
   /// File with a copy of the server's token, for changes of a server that serves other hosts
   /// without security (kinshipd --token-file); empty: that of KINSHIP_TOKEN, or none.
   std::filesystem::path token = {};
-  std::filesystem::path outbox;  ///< folder; empty: default_outbox_folder()
-  bool has_outbox = true;        ///< false: delivers nothing, report() is not allowed
+  std::filesystem::path outbox;            ///< folder; empty: default_outbox_folder()
+  bool has_outbox = true;                  ///< false: delivers nothing, report() is not allowed
+  Resend resend = Resend::Unacknowledged;  ///< what a store that the outbox never saw is sent
   /// Of register (per message, see mesh_upload.hpp), deliver (per batch, without the pauses that
   /// the server asks for) and admin.
   std::chrono::milliseconds timeout{5000};
@@ -62,9 +64,14 @@ class Client {
   Result<RegisterReply> register_robot(const RobotDescription& description);
   Result<RegisterReply> register_robot(const kinematics::RobotModel& robot);  ///< read before
 
+  /// Forgets meshes of a robot that registrations left in the outbox: they are not to be sent.
+  void forget_meshes(const Digest& robot);
+
   /// Puts the attempt into the outbox (durable on return) and wakes the sender.
-  /// \throws Failure(InvalidInput) if the server would refuse it anyway; Failure(Storage) if the
-  ///         outbox cannot be written; std::logic_error without an outbox.
+  /// \throws Failure(InvalidInput) if the server would refuse it anyway, as a path of more joints
+  ///         than its robot has; Failure(NotFound) if no client registered its robot with this
+  ///         outbox; Failure(Storage) if the outbox cannot be written; std::logic_error without
+  ///         one.
   void report(const Attempt& attempt);
 
   struct OutboxState {
@@ -74,6 +81,7 @@ class Client {
     std::string problem;            ///< why sending fails; empty: no known problem
     std::size_t set_aside = 0;      ///< since this client started; see 'kinship outbox'
     std::string last_refusal = {};  ///< why the last of the refused is; empty: none is
+    std::vector<KeptReports> kept = {};  ///< of stores that the server had before; see describe()
   };
   OutboxState outbox() const;  ///< zeros without an outbox
 

@@ -14,22 +14,19 @@
 #include "proto/types/failure.hpp"
 #include "proto/types/hex.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/store_epoch.hpp"
 
 namespace kinship::link {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPending = "pending";
 constexpr std::string_view kRejected = "rejected";
 constexpr std::string_view kSetAside = "set_aside";
 constexpr std::string_view kRobots = "robots";
 constexpr std::string_view kMeshes = "meshes";
-constexpr std::string_view kEpoch = "store_epoch";
-constexpr std::string_view kToken = "consistency_token";
 constexpr std::string_view kSuffix = ".json";
 constexpr std::size_t kMaxFileBytes = 16'000'000;
-constexpr std::size_t kUuidTextBytes = 36;
 constexpr std::chrono::hours kKeepTemporary{24};
 
 void remove_older_than(const fs::directory_entry& entry, std::chrono::hours age) {
@@ -80,7 +77,12 @@ bool is_missing(const fs::path& path) {
 
 }  // namespace
 
-Outbox::Outbox(fs::path folder) : folder_(std::move(folder)), sent_(folder_) {
+Outbox::Outbox(fs::path folder, Resend resend)
+    : folder_(std::move(folder)),
+      resend_(resend),
+      opened_(fs::file_time_type::clock::now()),
+      sent_(folder_),
+      others_(folder_) {
   for (const std::string_view part : {kPending, kRejected, kRobots})
     make_folder_durably(folder_ / part);
 }
@@ -216,6 +218,9 @@ std::vector<OutboxEntry> Outbox::entries() const {
       entries.push_back({fs::path(part) / report_file_name(uuid), state,
                          why ? why->substr(0, why->find('\n')) : why.error().message});
     }
+  for (const KeptReports& kept : others_.kept())
+    entries.push_back({fs::path(OtherStores::kFolder) / kept.store, "kept",
+                       std::to_string(kept.reports) + " reports of this older store"});
   return entries;
 }
 
@@ -238,6 +243,17 @@ void Outbox::keep_robot(const Digest& robot, const RobotDescription& description
                 json::to_json(kept) + "\n");
 }
 
+void Outbox::forget_meshes(const Digest& robot) {
+  const Result<RobotDescription> known = this->robot(robot);
+  if (!known || known->meshes.empty())
+    return;
+  drop_contents(*known);
+  RobotDescription kept = *known;
+  kept.meshes.clear();
+  write_durably(folder_ / kRobots / (robot.hex() + std::string(kSuffix)),
+                json::to_json(kept) + "\n");
+}
+
 std::optional<MeshContent> Outbox::content(const Digest& content) const {
   const fs::path path = folder_ / kMeshes / content.hex();
   std::error_code error;
@@ -247,7 +263,7 @@ std::optional<MeshContent> Outbox::content(const Digest& content) const {
   return text ? content_of(*text, content) : std::nullopt;
 }
 
-void Outbox::drop_contents(const RobotDescription& description) {
+void Outbox::drop_contents(const RobotDescription& description) const {
   std::error_code error;  // what stays is offered again
   for (const LinkMesh& mesh : description.meshes)
     fs::remove(folder_ / kMeshes / mesh.content.hex(), error);
@@ -286,18 +302,51 @@ Result<RobotDescription> Outbox::robot(const Digest& robot) const {
   return description;
 }
 
+/// \return the epoch in which `to` was known; empty: never. Ended before the epoch is written, it
+/// all happens again.
+std::optional<Uuid> Outbox::change_store(const Uuid& from, const Uuid& to) const {
+  others_.put_away(from);
+  const std::optional<Uuid> known = others_.known_epoch(to);
+  if (!known && resend_ == Resend::None)
+    others_.hold_back(from, opened_);
+  if (!known)
+    drop_contents_without_reports();
+  write_durably(folder_ / kEpoch, known.value_or(to).text() + "\n");
+  return known;
+}
+
+/// Of robots that a store never seen is not to get: sending contents registers them.
+void Outbox::drop_contents_without_reports() const {
+  const std::vector<Digest> robots = robots_with_contents();
+  if (robots.empty())
+    return;
+  std::set<Digest> reported;
+  for (const Uuid& uuid : pending())
+    if (const Result<Attempt> attempt = read(uuid))
+      reported.insert(attempt->robot);
+  for (const Digest& each : robots)
+    if (const auto description = robot(each); description && !reported.contains(each))
+      drop_contents(*description);
+}
+
+std::size_t Outbox::resend_sent() const {
+  std::size_t offered = 0;
+  sent_.for_each([&](const fs::path& report) {
+    offered += move_file(report, folder_ / kPending / report.filename()) ? 1U : 0U;
+  });
+  return offered;
+}
+
 bool Outbox::note_store(const Uuid& epoch, const ConsistencyToken& token) {
-  const fs::path path = folder_ / kEpoch;
-  std::optional<Uuid> known;
-  if (has_receipts())
-    known = Uuid::parse(read_file(path, 1024).substr(0, kUuidTextBytes));
-  bool is_any_offered = false;
+  std::optional<Uuid> known = noted_epoch(folder_);
+  if (known && !is_same_store(*known, epoch))
+    known = change_store(*known, epoch).value_or(epoch);
+  others_.bring_back(epoch);
+  bool is_any_offered = resend_ == Resend::All && others_.offer_again() > 0;
   if (known != epoch) {
     if (known)  // else this outbox has never had a receipt
-      sent_.for_each([&](const fs::path& report) {
-        is_any_offered |= move_file(report, folder_ / kPending / report.filename());
-      });
-    write_durably(path, epoch.text() + "\n");  // last: if we die before, it all happens again
+      is_any_offered |= resend_sent() > 0;
+    write_durably(folder_ / kEpoch, epoch.text() + "\n");  // last, as above
   }
   if (!token.empty() && token != known_token()) {
     try {
@@ -308,6 +357,21 @@ bool Outbox::note_store(const Uuid& epoch, const ConsistencyToken& token) {
     }
   }
   return is_any_offered;
+}
+
+std::size_t Outbox::resend_acknowledged() { return others_.offer_again() + resend_sent(); }
+
+std::vector<KeptReports> Outbox::kept_beside(const Uuid& epoch) const {
+  std::vector<KeptReports> kept = others_.kept();
+  std::erase_if(kept, [&](const KeptReports& each) { return each.store == store_name(epoch); });
+  const std::optional<Uuid> known = noted_epoch(folder_);
+  if (!known || is_same_store(*known, epoch))
+    return kept;
+  KeptReports acknowledged{store_name(*known)};
+  sent_.for_each([&](const fs::path&) { ++acknowledged.reports; });
+  if (acknowledged.reports > 0)
+    kept.push_back(std::move(acknowledged));
+  return kept;
 }
 
 bool Outbox::has_receipts() const {
@@ -329,6 +393,7 @@ ConsistencyToken Outbox::known_token() const {
 void Outbox::age(std::chrono::milliseconds sending) {
   sent_.make_folders();  // a rotating process may have been killed in between
   sent_.age(sending);
+  others_.age(sending);
   for (const fs::path& folder : {folder_ / kPending, folder_ / kRejected, folder_ / kSetAside,
                                  folder_ / kRobots, folder_ / kMeshes, folder_})
     if (!is_missing(folder))

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "client/link/kept_reports.hpp"
+#include "client/link/other_stores.hpp"
 #include "client/link/sent_reports.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
@@ -23,7 +25,8 @@ namespace kinship::link {
 
 /// Reports of a client on disk, one file each, named by report UUID: `pending/` until the server's
 /// receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good. `set_aside/`: those that the
-/// server neither takes nor refuses, until resend(). Beside them `robots/`: the descriptions that
+/// server neither takes nor refuses, until resend(). `other_stores/`: what stores acknowledged that
+/// the server had before (other_stores.hpp). Beside them `robots/`: the descriptions that
 /// register their robots; `meshes/`: contents of their meshes, by digest, until a server has them.
 ///
 /// Processes may share one: each may add, only the holder of the sender lock (ReportSender) moves.
@@ -31,7 +34,7 @@ namespace kinship::link {
 class Outbox {
  public:
   /// Makes the folders if they are missing, durably; `set_aside/` only once it is needed.
-  explicit Outbox(std::filesystem::path folder);
+  explicit Outbox(std::filesystem::path folder, Resend resend = Resend::Unacknowledged);
 
   const std::filesystem::path& folder() const noexcept { return folder_; }
 
@@ -60,13 +63,24 @@ class Outbox {
   /// Reports that wait or are kept apart, by folder and file. Reads all pending ones.
   std::vector<OutboxEntry> entries() const;
 
-  /// Durably, with the contents of its meshes that come with it.
+  /// Makes all acknowledged reports that are kept pending again, also those of older stores.
+  /// \return how many.
+  std::size_t resend_acknowledged();
+  std::vector<KeptReports> kept_of_older_stores() const { return others_.kept(); }
+  /// What would be kept of older stores if the server had the store of an epoch.
+  std::vector<KeptReports> kept_beside(const Uuid& epoch) const;
+  std::size_t drop_of_older_stores() { return others_.drop(); }  ///< for good; \return how many
+
+  /// Durably, with the contents of its meshes that come with it. Without meshes those that are
+  /// known stay.
   void keep_robot(const Digest& robot, const RobotDescription& description);
+  /// Forgets the meshes of a robot, which are to stay here, and their contents.
+  void forget_meshes(const Digest& robot);
 
   /// Nothing also if its file is damaged.
   std::optional<MeshContent> content(const Digest& content) const;
   /// Drops the contents of a robot's meshes: a server has them.
-  void drop_contents(const RobotDescription& description);
+  void drop_contents(const RobotDescription& description) const;
   /// Robots that name contents which are kept.
   std::vector<Digest> robots_with_contents() const;
 
@@ -75,13 +89,15 @@ class Outbox {
   Result<RobotDescription> robot(const Digest& robot) const;
 
   /// Takes the state of the server's store from a reply; to be called before its receipts are
-  /// applied. If the epoch differs from the one remembered, the store was restored, replaced or
-  /// rolled back, and the sent reports are pending again.
+  /// applied. If it is another epoch of a store that is known, that was restored or rolled back:
+  /// its sent reports are pending again. Those of other stores are kept, or as `Resend` says.
   /// \param token  empty: the reply has none, the one remembered stays.
   /// \return whether reports are pending again.
   bool note_store(const Uuid& epoch, const ConsistencyToken& token);
 
-  bool has_receipts() const;             ///< whether an epoch was ever noted
+  bool has_receipts() const;  ///< whether an epoch was ever noted
+  /// Whether nothing may be sent before the server's store is noted.
+  bool holds_back() const { return resend_ == Resend::None && has_receipts(); }
   ConsistencyToken known_token() const;  ///< the newest; empty if there is none
 
   /// Adds `sending` to the age of the sent reports and deletes old ones (sent_reports.hpp), as well
@@ -93,9 +109,15 @@ class Outbox {
   std::filesystem::path reason_file(std::string_view part, const Uuid& report_uuid) const;
   void put_away(std::string_view part, const Uuid& report_uuid, std::string_view reason);
   std::vector<Uuid> reports_in(std::string_view part) const;
+  std::optional<Uuid> change_store(const Uuid& from, const Uuid& to) const;
+  std::size_t resend_sent() const;
+  void drop_contents_without_reports() const;
 
-  std::filesystem::path folder_;
+  const std::filesystem::path folder_;
+  const Resend resend_;
+  const std::filesystem::file_time_type opened_;
   SentReports sent_;
+  OtherStores others_;
 };
 
 /// The outbox for one server: $XDG_STATE_HOME/kinship/outbox/domain-<domain>@<server>, by default

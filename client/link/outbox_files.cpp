@@ -2,6 +2,7 @@
 
 #include <system_error>
 
+#include "client/link/durable_file.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::link {
@@ -17,6 +18,14 @@ void require_done(const std::error_code& error, const fs::path& path, const char
 }
 
 }  // namespace
+
+std::optional<Uuid> noted_epoch(const fs::path& folder) {
+  constexpr std::size_t kUuidTextBytes = 36;
+  std::error_code error;
+  if (!fs::exists(folder / kEpoch, error))
+    return std::nullopt;
+  return Uuid::parse(read_file(folder / kEpoch, 1024).substr(0, kUuidTextBytes));
+}
 
 std::string report_file_name(const Uuid& report_uuid) {
   return report_uuid.text().append(kReportSuffix);

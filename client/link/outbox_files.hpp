@@ -11,6 +11,13 @@
 /// The files of an outbox, one report each. For the sources of this folder only.
 namespace kinship::link {
 
+inline constexpr std::string_view kPending = "pending";
+inline constexpr std::string_view kEpoch = "store_epoch";
+inline constexpr std::string_view kToken = "consistency_token";
+
+/// The epoch in a folder; empty: none is noted there.
+std::optional<Uuid> noted_epoch(const std::filesystem::path& folder);
+
 std::string report_file_name(const Uuid& report_uuid);
 
 /// The UUID in the name of a report's file; empty for any other name.

@@ -20,8 +20,9 @@ constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
 constexpr std::chrono::hours kAgeing{1};
 constexpr std::chrono::minutes kBetweenProbes{10};
-constexpr std::chrono::minutes kPassBy{1};         // a file that cannot be read
-constexpr std::chrono::milliseconds kPoll = 50ms;  // for reports that another process sends
+constexpr std::chrono::minutes kPassBy{1};           // a file that cannot be read
+constexpr std::chrono::minutes kBetweenContents{1};  // that a server did not get
+constexpr std::chrono::milliseconds kPoll = 50ms;    // for reports that another process sends
 
 bool is_taken(ReceiptStatus status) {
   return status == ReceiptStatus::Stored || status == ReceiptStatus::Duplicate ||
@@ -141,7 +142,7 @@ std::chrono::milliseconds ReportSender::work(std::optional<files::LockFile>& loc
   age_now_and_then(false);
   is_resending_ = false;
   retry_after_ = 0ms;
-  const bool gets_on = send_all_pending() && probe_epoch();
+  const bool gets_on = notes_store_first() && send_all_pending() && probe_epoch();
   if (gets_on)
     send_contents();
   if (!gets_on)  // a server that is busy says when it will not be
@@ -216,6 +217,15 @@ bool ReportSender::send_all_pending() {
   return deliver(batch) && unknown_.empty();
 }
 
+/// Where a store that is new to the outbox shall not get what waits there.
+/// \return false if it should be tried again.
+bool ReportSender::notes_store_first() {
+  if (probed_ || !outbox_.holds_back())
+    return true;
+  ReportRequest probe;
+  return exchange(probe) && probed_;
+}
+
 /// Tells a server that came, and every server now and then, how far its store is known here, for
 /// the case that it was rolled back: a client without reports would never hear of it.
 /// \return false if it should be tried again.
@@ -228,16 +238,24 @@ bool ReportSender::probe_epoch() {
   return exchange(probe).has_value();
 }
 
-/// Registers the robots with contents of meshes in the outbox again, once a server that came: an
-/// earlier registration ended before it had them.
+/// Registers the robots with contents of meshes in the outbox again: an earlier
+/// registration ended before the server had them.
 void ReportSender::send_contents() {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
-  if (servers == servers_with_contents_ || !register_robot_)
+  const bool is_due = servers != servers_with_contents_ ||
+                      (contents_left_ && now_() - *contents_left_ >= kBetweenContents);
+  if (!is_due || !register_robot_)
     return;
   servers_with_contents_ = servers;
-  for (const Digest& robot : outbox_.robots_with_contents())
-    if (const Result<RobotDescription> description = outbox_.robot(robot))
-      static_cast<void>(register_robot_(*description));
+  contents_left_.reset();
+  for (const Digest& robot : outbox_.robots_with_contents()) {
+    const Result<RobotDescription> description = outbox_.robot(robot);
+    if (!description)
+      continue;
+    const Result<RegisterReply> reply = register_robot_(*description);
+    if (!reply || !reply->wanted.empty())
+      contents_left_ = now_();
+  }
 }
 
 /// Sends a batch with the known token of the store, and notes the epoch and token in the reply.

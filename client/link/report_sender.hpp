@@ -49,8 +49,9 @@ class ReportSender {
 
   /// \param outbox          must outlive the sender.
   /// \param register_robot  called on the sender's thread for robots that the server does not know
-  ///                        and the outbox has a description of, and when a server comes for those
-  ///                        with contents of meshes in the outbox; empty: they wait.
+  ///                        and the outbox has a description of, and for those with contents of
+  ///                        meshes in the outbox when a server comes, and each minute until it has
+  ///                        them; empty: they wait.
   /// \param now             the time by which `sent/` grows older.
   /// \param count_servers   a new server is probed if nothing is pending, and every server now and
   ///                        then: its reply shows whether its store has lost sent reports. Empty:
@@ -76,6 +77,7 @@ class ReportSender {
   std::chrono::milliseconds work(std::optional<files::LockFile>& lock);
   void age_now_and_then(bool is_end);
   bool send_all_pending();
+  bool notes_store_first();
   bool probe_epoch();
   void send_contents();
   Result<ReportReply> exchange(ReportRequest& batch);
@@ -102,10 +104,11 @@ class ReportSender {
   std::optional<std::chrono::steady_clock::time_point> probed_;  // the last reply, also a receipt's
   std::uint64_t servers_probed_ = 0;
   std::uint64_t servers_with_contents_ = 0;  ///< that came before contents were sent last
-  bool is_resending_ = false;                // sent reports are pending again
-  RetryAfter retry_after_{0};                // requested by the server in this round
-  std::set<Digest> unknown_;                 // robots whose reports wait for the next round
-  std::map<Digest, std::string> refused_;    // robots that the server will not have, and why
+  std::optional<std::chrono::steady_clock::time_point> contents_left_;  // the last did not get all
+  bool is_resending_ = false;              // sent reports are pending again
+  RetryAfter retry_after_{0};              // requested by the server in this round
+  std::set<Digest> unknown_;               // robots whose reports wait for the next round
+  std::map<Digest, std::string> refused_;  // robots that the server will not have, and why
   PutOffTries tries_;
   std::uint64_t round_ = 0;
   // Reports that the server put off when they were sent last, and the round of that: the others go

@@ -205,6 +205,14 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
       ->capture_default_str();
   app.add_option("--outbox", options.outbox, "folder of reports not yet acknowledged")
       ->type_name("FOLDER");
+  app.add_option_function<std::string>(
+         "--resend",
+         [&options](const std::string& word) {
+           options.resend = link::parse_resend(word).value_or_throw();
+         },
+         "what a store that the outbox never saw is sent of older reports: all that are kept, or "
+         "none (default: those that no store has acknowledged)")
+      ->check(CLI::IsMember({"all", "none"}));
 }
 
 /// Options that say which experience is wanted.
@@ -213,8 +221,8 @@ constexpr std::initializer_list<const char*> kOfExperience = {
 /// Options that say how guidance is used.
 constexpr std::initializer_list<const char*> kOfSampling = {"--guide", "--share",
                                                             "--control-share"};
-constexpr std::initializer_list<const char*> kOfReports = {"--machine", "--record-scenes",
-                                                           "--record-search", "--outbox"};
+constexpr std::initializer_list<const char*> kOfReports = {
+    "--machine", "--record-scenes", "--record-search", "--outbox", "--resend"};
 constexpr std::initializer_list<const char*> kOfServer = {"--server", "--domain", "--timeout"};
 
 std::chrono::milliseconds milliseconds_of(double seconds) {

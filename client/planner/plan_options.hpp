@@ -11,6 +11,7 @@
 
 #include "client/guided/plan_settings.hpp"
 #include "client/guided/sampling_mode_choice.hpp"
+#include "client/link/kept_reports.hpp"
 #include "proto/types/selection.hpp"
 #include "robots/models/robot_arguments.hpp"
 
@@ -48,7 +49,8 @@ struct PlanOptions {
   std::filesystem::path security;    ///< folder of credentials; empty: none
   std::chrono::milliseconds timeout{5000};
   std::chrono::milliseconds wait{30000};
-  std::filesystem::path outbox;  ///< empty: the client's default
+  std::filesystem::path outbox;                        ///< empty: the client's default
+  link::Resend resend = link::Resend::Unacknowledged;  ///< what a store new to the outbox is sent
 
   /// Whether guidance needs the experience of a server.
   bool needs_experience() const {

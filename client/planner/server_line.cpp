@@ -41,6 +41,7 @@ ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot,
   client.security = options_.security;
   client.has_outbox = options_.report;  // a client that only looks delivers nothing
   client.outbox = options_.outbox;
+  client.resend = options_.resend;
   client.timeout = options_.timeout;
   if (const std::string why = link::why_unknown(options_.server); !why.empty())
     messages_ << "--server '" << options_.server << "': " << why << '\n';  // it may be, later
@@ -105,6 +106,8 @@ bool ServerLine::add_meshes() {
 }
 
 void ServerLine::register_robot() {
+  if (options_.robot.without_meshes)
+    client_->forget_meshes(robot_.chain.digest());
   Result<RegisterReply> reply = send_description();
   // A server that does not tell has no use for them.
   const bool is_taken = reply && reply->status != RegisterStatus::Refused;
@@ -222,6 +225,8 @@ bool ServerLine::finish() {
   if (unreportable_ > 0)
     messages_ << "; " << unreportable_ << " attempts could not be kept";
   messages_ << std::endl;
+  if (!kept_.empty())
+    messages_ << "outbox: " << kept_ << std::endl;
   return unreportable_ == 0;
 }
 
@@ -234,6 +239,7 @@ void ServerLine::flush() {
     messages_ << ", " << state.set_aside << " set aside ('kinship outbox list')";
   if (state.refused > 0)
     messages_ << " ('kinship outbox list'), the last because " << state.last_refusal;
+  kept_ = link::describe(state.kept);
   if (state.pending > 0)
     messages_ << " (pending reports are sent when the outbox is next used)";
 }

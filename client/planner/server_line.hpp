@@ -83,6 +83,7 @@ class ServerLine {
   std::optional<Error> trouble_;  // why the robot is not registered
   bool is_robot_refused_ = false;
   std::string why_unguided_;  // of every query, while there is no guidance_
+  std::string kept_;          // of older stores, in the outbox
   std::size_t reported_ = 0;
   std::size_t unreportable_ = 0;
 };

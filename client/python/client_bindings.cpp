@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -139,10 +141,13 @@ std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Ro
 }
 
 RegisterReply register_robot(const ClientHandle& client, const Robot& robot) {
+  const std::shared_ptr<link::Client> line = client.line();
   std::optional<kinematics::RobotModel> model;
   {
     const py::gil_scoped_release unlocked;  // solids are fitted around meshes
     model = robot.model_for_server();
+    if (robot.keeps_meshes())
+      line->forget_meshes(robot.digest());
   }
   const RegisterReply reply =
       client
@@ -203,6 +208,16 @@ void bind_answers(py::module_& module) {
       .def_readonly("problem", &OutboxState::problem, "Why sending does not get on, or empty.")
       .def_readonly("set_aside", &OutboxState::set_aside,
                     "Since this client started; see 'kinship outbox'.")
+      .def_property_readonly(
+          "kept",
+          [](const OutboxState& self) {
+            std::map<std::string, std::size_t> kept;
+            for (const link::KeptReports& each : self.kept)
+              kept.emplace(each.store, each.reports);
+            return kept;
+          },
+          "How many reports are kept of stores that the server had before, by store; "
+          "Client(resend='all') sends them.")
       .def("__repr__", [](const OutboxState& self) {
         return "<kinship.OutboxState " + std::to_string(self.pending) + " pending, " +
                std::to_string(self.accepted) + " accepted, " + std::to_string(self.refused) +
@@ -267,13 +282,15 @@ void bind_life(ClientClass& client) {
           py::init([](std::optional<std::uint32_t> domain, const std::optional<std::string>& server,
                       const std::optional<std::filesystem::path>& outbox, bool has_outbox,
                       std::optional<double> timeout,
-                      const std::optional<std::filesystem::path>& security) {
+                      const std::optional<std::filesystem::path>& security,
+                      const std::optional<std::string>& resend) {
             link::ClientOptions options = link::options_from_environment();
             options.domain = domain.value_or(options.domain);
             options.server = server.value_or(options.server);
             options.security = security.value_or(options.security);
             options.outbox = outbox.value_or(options.outbox);
             options.has_outbox = has_outbox;
+            options.resend = link::parse_resend(resend.value_or("")).value_or_throw();
             if (timeout)
               options.timeout = to_milliseconds(*timeout, "timeout");
             auto handle = std::make_unique<ClientHandle>(options);
@@ -284,6 +301,7 @@ void bind_life(ClientClass& client) {
           py::kw_only(), py::arg("domain") = py::none(), py::arg("server") = py::none(),
           py::arg("outbox") = py::none(), py::arg("has_outbox") = true,
           py::arg("timeout") = py::none(), py::arg("security") = py::none(),
+          py::arg("resend") = py::none(),
           R"(Opens a line to a server; the server need not be there.
 
 domain      of DDS, as kinshipd's; by default what KINSHIP_DOMAIN says, or 0
@@ -292,6 +310,8 @@ outbox      folder where reports wait for their receipts; by default one for thi
 has_outbox  False: delivers nothing that waits there, and report() is not allowed
 timeout     of register, deliver and listings, s; by default what KINSHIP_TIMEOUT says, or 5
 security    folder of credentials; by default what KINSHIP_SECURITY says, or none
+resend      what a store that the outbox never saw is sent of older reports: 'all' that are kept, or 'none'; by
+            default those that no store has acknowledged. A store that was put back gets what it lost in any case
 
 Warns (CredentialsExpire) of credentials that are valid for less than 30 days.)")
       .def_property_readonly(
@@ -313,7 +333,8 @@ void bind_reports(ClientClass& client) {
       .def("report", report, py::arg("attempt"),
            R"(Puts an attempt into the outbox, durably, and sends it in the background.
 
-Waits for no server. Returns its UUID; raises InvalidInput if the server would refuse it.)")
+Waits for no server. Returns its UUID; raises InvalidInput if the server would refuse it, as a path with other joints
+than the robot's, and NotFound for a robot that was never registered with this outbox.)")
       .def("deliver", deliver, py::arg("attempts"),
            "Hands attempts over at once, past the outbox. Returns a Receipt each; raises NoServer.")
       .def_property_readonly(
@@ -330,7 +351,9 @@ Waits for no server. Returns its UUID; raises InvalidInput if the server would r
             return self.flush(to_milliseconds(deadline, "deadline"));
           },
           py::arg("deadline") = 30.0,
-          "Waits, deadline s at most, until the server has acknowledged every report.");
+          "Waits, deadline s at most, until the server has acknowledged every report. The result "
+          "tells how many "
+          "were refused, and why the last was.");
 }
 
 void bind_fetching(ClientClass& client) {

@@ -5,8 +5,6 @@
 #include "client/guided/problem_mismatch.hpp"
 #include "proto/evidence/machine_speed.hpp"
 #include "proto/types/enum_text.hpp"
-#include "proto/types/number_text.hpp"
-#include "proto/types/pose.hpp"
 #include "robots/planning/path_vertices.hpp"
 #include "robots/planning/planning_bounds.hpp"
 #include "robots/recall/recall.hpp"
@@ -57,7 +55,8 @@ std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
     reply.distribution = *distribution.value();
     return reply;
   };
-  guided::GuidanceAnswer answer = guided::fetch_guidance(fetch, wanted, std::nullopt);
+  guided::GuidanceAnswer answer =
+      guided::fetch_guidance(fetch, wanted, distribution.value()->T_task_base);
   if (!answer.guidance)
     throw Failure(ErrorCode::InvalidInput, answer.message);
   return std::make_shared<GuidanceHandle>(wanted.robot, std::move(answer), std::nullopt,
@@ -77,28 +76,6 @@ std::shared_ptr<GuidanceHandle> GuidanceHandle::of_robot(const Robot& robot, Gui
   wanted.sampling.control_fraction = 0;
   return std::make_shared<GuidanceHandle>(
       wanted.robot, guided::fetch_guidance({}, wanted, std::nullopt), robot.chain());
-}
-
-void GuidanceHandle::require_placement(const Problem& problem) const {
-  if (!needs_experience(guidance().guide))
-    return;
-  const auto identity = Eigen::Isometry3d::Identity();
-  const Eigen::Isometry3d asked = problem.T_task_base.value_or(identity);
-  const Eigen::Isometry3d made = T_task_base_.value_or(identity);
-  const Eigen::Isometry3d apart = made.inverse() * asked;
-  constexpr double kSame_m = 1e-3, kSame_rad = 1e-3;
-  if (apart.translation().norm() <= kSame_m &&
-      Eigen::AngleAxisd(apart.linear()).angle() <= kSame_rad)
-    return;
-  const auto text = [](const std::optional<Eigen::Isometry3d>& pose) {
-    std::string numbers;
-    for (const double number : pose ? to_pose_array(*pose) : PoseArray())
-      numbers += (numbers.empty() ? "" : " ") + number_text(number);
-    return pose ? numbers : "not given, so identity";
-  };
-  throw Failure(ErrorCode::InvalidInput, "problem '" + problem.name + "': T_task_base is " +
-                                             text(problem.T_task_base) +
-                                             ", the guidance was made for " + text(T_task_base_));
 }
 
 double GuidanceHandle::guided_part() const {

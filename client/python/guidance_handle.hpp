@@ -42,10 +42,6 @@ class GuidanceHandle {
   const guided::Guidance& guidance() const noexcept { return *answer_.guidance; }
   const std::string& message() const noexcept { return answer_.message; }
 
-  /// \throws Failure(InvalidInput) if a problem places the robot elsewhere, by more than 1 mm or
-  ///         1 mrad, than the experience was made for.
-  void require_placement(const Problem& problem) const;
-
   double guided_part() const;
   SamplingMode choose(const Problem& problem) const;
   double recall_trust() const;

@@ -120,8 +120,6 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
   if (seed)
     made.problem.seed = *seed;
   const SharedGuidance guidance = guidance_for(*robot, guided_by);
-  if (guidance)
-    guidance->require_placement(made.problem);
   const guided::QueryGuidance query = query_of(guidance, made.problem, sampling_mode);
   std::vector<std::string> doubts;
   {

@@ -56,6 +56,9 @@ class Robot {
   /// Its collision geometry; to be called after planned(), which checks that it is known.
   const geometry::RobotShapes& shapes() const { return shapes_.value(); }
 
+  /// Whether its meshes are to stay here.
+  bool keeps_meshes() const { return files_ && files_->without_meshes; }
+
   /// The robot with its known meshes and solids around them, if any, in its description.
   kinematics::RobotModel model_for_server() const;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/c/kinship.h"
+#include "client/c/kinship_planning.h"
 #include "proto/types/pose.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/configuration_sampler.hpp"
@@ -70,7 +71,7 @@ class CRecalls : public testing::Test {
         << kinship_error_text();
   }
   /// A uniform plan, with its scene.
-  void report(const PosedQuery& posed) {
+  void report(const PosedQuery& posed, const double* T_task_base = nullptr) {
     collision::CollisionWorld world(cell_.solids, posed.surroundings);
     std::mt19937_64 generator(1);
     const auto plan =
@@ -82,6 +83,7 @@ class CRecalls : public testing::Test {
     attempt.size = sizeof attempt;
     attempt.robot = &robot_;
     attempt.task = "reach";
+    attempt.T_task_base = T_task_base;
     attempt.solved = 1;
     attempt.waypoints = plan.waypoints->data();
     attempt.waypoint_count = static_cast<size_t>(plan.waypoints->cols());
@@ -136,6 +138,45 @@ class CRecalls : public testing::Test {
   kinship_request request_{};
   kinship_recall* recall_ = nullptr;
 };
+
+TEST_F(CRecalls, ARobotStandsWhereItLastReportedTheTask) {
+  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain_.number()});
+  ASSERT_NO_FATAL_FAILURE(register_robot());
+  const double here[7] = {0.5, 0, 0, 0, 0, 0, 1};
+  const std::vector<PosedQuery> queries = cell_.queries(0, 6);
+  for (const PosedQuery& posed : queries)
+    ASSERT_NO_FATAL_FAILURE(report(posed, here));
+  ASSERT_EQ(kinship_flush(client_, kEnough_ms, nullptr), KINSHIP_OK) << kinship_error_text();
+  kinship_distribution* fetched = nullptr;
+  request_.T_task_base = nullptr;
+  ASSERT_EQ(kinship_fetch(client_, &request_, &fetched), KINSHIP_OK) << kinship_error_text();
+
+  const std::string folder = test::source_dir() + "/robots/models/panda";
+  kinship_robot_file file{};
+  file.size = sizeof file;
+  file.source = folder.c_str();
+  kinship_planner* planner = nullptr;
+  ASSERT_EQ(kinship_planner_create(&file, &planner, nullptr), KINSHIP_OK) << kinship_error_text();
+  kinship_surroundings around{};
+  around.size = sizeof around;
+  kinship_query query{};
+  query.size = sizeof query;
+  query.surroundings = &around;
+  query.dof = kDof;
+  query.start = queries[0].start.data();
+  query.goals = queries[0].goals.data();
+  query.goal_count = 1;
+  query.distribution = fetched;
+  kinship_plan* plan = nullptr;
+  EXPECT_EQ(kinship_plan_find(planner, &query, &plan), KINSHIP_INVALID_INPUT);
+  EXPECT_STREQ(kinship_error_text(),
+               "T_task_base is not given, so identity, the guidance was made for 0.5 0 0 0 0 0 1");
+  around.T_task_base = here;
+  EXPECT_EQ(kinship_plan_find(planner, &query, &plan), KINSHIP_OK) << kinship_error_text();
+  kinship_plan_free(plan);
+  kinship_planner_free(planner);
+  kinship_distribution_free(fetched);
+}
 
 TEST_F(CRecalls, WhatTheServerMadeOfReportsAnswersQueries) {
   const test::ServerProcess::Options here{.store = directory_ / "fleet.db",

@@ -3,12 +3,13 @@
     import kinship
 
     robot = kinship.Robot("robots/models/ur10e")
+    T_task_base = [0.2, -0.1, 0, 0, 0, 0, 1]       # where it stands in the task's frame
     with kinship.Client() as client:
         client.register(robot)
-        distribution = client.fetch("box_to_shelf", robot, deadline=60)
-        guidance = client.guidance("box_to_shelf", robot)
+        distribution = client.fetch("box_to_shelf", robot, T_task_base=T_task_base, deadline=60)
+        guidance = client.guidance("box_to_shelf", robot, T_task_base=T_task_base)
     q = distribution.sample(1000, seed=1)          # (1000, dof)
-    problem = kinship.Problem("mine", q[0], q[1], T_task_base=guidance.T_task_base)
+    problem = kinship.Problem("mine", q[0], q[1], T_task_base=T_task_base)
     path = kinship.plan(robot, problem, guidance).waypoints
 
 Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as

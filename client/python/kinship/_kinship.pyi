@@ -351,6 +351,8 @@ class OutboxState:
     def problem(self) -> str: ...
     @property
     def set_aside(self) -> int: ...
+    @property
+    def kept(self) -> Dict[str, int]: ...
 
 class Receipt:
     @property
@@ -397,6 +399,7 @@ class Client:
         has_outbox: bool = True,
         timeout: Optional[float] = None,
         security: Optional[_Path] = None,
+        resend: Optional[str] = None,
     ) -> None: ...
     @property
     def expiry_warning(self) -> str: ...

@@ -20,7 +20,6 @@ double seconds_since(Clock::time_point begin) {
 }
 
 constexpr std::string_view kMovingEpoch = "moving_epoch";  // target: of the source, when it began
-constexpr std::string_view kMovedFrom = "moved_from";      // target: once it is done
 constexpr std::string_view kMovedToStore = "moved_to_store";  // source: which one, beside its name
 
 bool is_database(const std::string& name) {
@@ -187,10 +186,10 @@ class Move {
     entry.outcome = AuditOutcome::Done;
     entry.before = "'" + source_.name() + "', epoch " + origin();
     target_.in_last_transaction([&] {
+      target_.put_setting(kMovedFrom, origin());
       target_.complete();
       target_.add_audit(entry);
       target_.put_setting(kMovingEpoch, std::nullopt);
-      target_.put_setting(kMovedFrom, origin());
       target_.put_setting(kMovingFrom, std::nullopt);
     });
   }

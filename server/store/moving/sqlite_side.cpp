@@ -18,6 +18,7 @@
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/rows/damage_search.hpp"
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
+#include "server/store/values/move_marks.hpp"
 
 namespace kinship::store::moving {
 namespace {
@@ -266,7 +267,7 @@ class SqliteSide : public Side {
   }
 
   void complete() override {
-    static_cast<void>(write_new_epoch(*database_, file_));
+    write_new_epoch(*database_, file_, Uuid::parse(setting(kMovedFrom)).value_or(Uuid{}));
     database_->execute(
         "DELETE FROM setting WHERE key LIKE '" + std::string(kPairRecord) +
         "%';"

@@ -12,6 +12,8 @@ namespace kinship::store {
 inline constexpr std::string_view kMovingFrom = "moving_from";
 /// In the source: the target's name.
 inline constexpr std::string_view kMovedTo = "moved_to";
+/// In the target, once it is done: the source's epoch.
+inline constexpr std::string_view kMovedFrom = "moved_from";
 
 /// Keeps a server from opening a store with these settings.
 /// \param name  of the store. \param moving_from, moved_to  empty: not set.

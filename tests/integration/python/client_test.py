@@ -149,7 +149,7 @@ class Planning(WithServer):
         plan = kinship.plan(self.ur10e, kinship.Problem("post", self.START, self.GOAL, scene=scene), guidance)
         self.assertTrue(plan.solved, plan.reason)
         self.assertEqual((plan.sampling_mode, plan.guide), ("guided", guidance.guide))
-        with self.assertRaisesRegex(kinship.InvalidInput, "T_task_base is 1 0 0 0 0 0 1, the guidance was made for not given"):
+        with self.assertRaisesRegex(kinship.InvalidInput, "T_task_base is 1 0 0 0 0 0 1, the guidance was made for 0 0 0 0 0 0 1"):
             kinship.plan(self.ur10e, kinship.Problem("off", self.START, self.GOAL, T_task_base=[1, 0, 0, 0, 0, 0, 1]), guidance)
         self.client.report(plan.attempt("planned"))
         state = self.client.flush(60)
@@ -292,6 +292,15 @@ class Errors(WithServer):
         wrong.task = "no such name"
         with self.assertRaisesRegex(kinship.InvalidInput, "task"):
             self.client.report(wrong)
+        self.client.register(self.panda)
+        wrong = kinship.Attempt(TASK, self.panda, np.zeros((2, 6)))
+        with self.assertRaisesRegex(ValueError, r"robot 'panda' \(.*\) has 7 joints, the report's path has 6"):
+            self.client.report(wrong)
+        iiwa = kinship.Robot(MODELS / "iiwa7")
+        with self.assertRaisesRegex(LookupError, f"robot {iiwa.digest[:12]}.* register it before its first report"):
+            self.client.report(kinship.Attempt(TASK, iiwa, np.zeros((2, 7))))
+        with self.assertRaisesRegex(ValueError, "resend 'some' is neither 'all' nor 'none'"):
+            self.open_client(resend="some")
         with self.assertRaisesRegex(ValueError, "weighting: 'robots' is not one of sources, paths"):
             self.client.fetch(TASK, self.panda, weighting="robots")
         with self.assertRaisesRegex(ValueError, "deadline: -1 s"):
@@ -397,6 +406,9 @@ class WithoutServer(unittest.TestCase):
         self.assertEqual(len(errors), 1)
 
     def test_reports_wait_for_the_server(self):
+        with kinship.Client(domain=self.server.domain, outbox=self.server.folder / "outbox", timeout=0.2) as first:
+            with self.assertRaises(kinship.NoServer):
+                first.register(self.panda)
         self.client.report(attempt(self.panda, TASK, 1))
         self.assertEqual(self.client.flush(0.1).pending, 1)
         with self.assertRaises(kinship.NoServer):
@@ -405,6 +417,15 @@ class WithoutServer(unittest.TestCase):
         self.client.register(self.panda)
         state = self.client.flush(60)
         self.assertEqual((state.pending, state.accepted), (0, 1), state.problem)
+
+    def test_a_refused_report_is_told_with_its_reason(self):
+        self.server.start()
+        self.client.register(self.panda)
+        beyond = kinship.Attempt(TASK, self.panda, np.full((2, 7), 3.5))
+        self.client.report(beyond)
+        state = self.client.flush(60)
+        self.assertEqual((state.pending, state.refused, state.kept), (0, 1, {}))
+        self.assertRegex(state.last_refusal, "robot 'panda': joint .* exceeds")
 
 
 if __name__ == "__main__":

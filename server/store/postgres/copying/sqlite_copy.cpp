@@ -13,6 +13,7 @@
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -185,7 +186,8 @@ bool fill(Connection& source, Database& target, const std::filesystem::path& fil
   store::Transaction all(target, store::Transaction::Kind::Write);
   if (!RowCopy(source, target, progress).copy_all())
     return false;
-  write_new_epoch(target, file);
+  const Rows epoch = source.query("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");
+  write_new_epoch(target, file, epoch.empty() ? Uuid{} : id_of<Uuid>(epoch.front().column_blob(0)));
   all.commit();
   return true;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "proto/types/store_epoch.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/primary.hpp"
@@ -10,6 +11,7 @@
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/consistency_token.hpp"
+#include "server/store/values/move_marks.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -58,8 +60,10 @@ void skip_lost_ids(Connection& connection) {
 
 /// With the lock of lock_epochs().
 Uuid begin_epoch(Connection& connection, std::string_view reason) {
-  const NewestEpoch before = newest_epoch(connection);
-  const Uuid epoch = Uuid::random();
+  NewestEpoch before = newest_epoch(connection);
+  if (before.number == 0)
+    before.epoch = Uuid::parse(read_setting(connection, kMovedFrom)).value_or(Uuid{});
+  const Uuid epoch = next_epoch(before.epoch);
   connection.query("INSERT INTO epoch VALUES ($1, $2, $3, $4)", before.number + 1,
                    Bytes(epoch.bytes), now_ms(), reason);
   if (before.number > 0) {

@@ -13,10 +13,6 @@
 namespace kinship::store {
 namespace {
 
-std::string name_of(const std::filesystem::path& store_file) {
-  return store_file.string() + ".high-water-mark";
-}
-
 std::string checksum_of(const std::string& text) {
   std::array<char, 16> checksum{};
   std::snprintf(checksum.data(), checksum.size(), "%08x",
@@ -35,6 +31,10 @@ std::string text_of(const HighWaterMarkFile::Mark& mark) {
 }
 
 }  // namespace
+
+std::string HighWaterMarkFile::name_of(const std::filesystem::path& store_file) {
+  return store_file.string() + ".high-water-mark";
+}
 
 HighWaterMarkFile::HighWaterMarkFile(const std::filesystem::path& store_file) {
   try {

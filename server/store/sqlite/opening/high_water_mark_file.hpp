@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "proto/files/file.hpp"
 #include "server/store/sqlite/opening/timeline_history.hpp"
@@ -19,7 +20,9 @@ class HighWaterMarkFile {
     LogPosition point;
   };
 
+  /// Makes the file if it is missing.
   explicit HighWaterMarkFile(const std::filesystem::path& store_file);
+  static std::string name_of(const std::filesystem::path& store_file);
 
   std::optional<Mark> read() const;  ///< empty if it is missing or damaged
   void write(const Mark& mark) const;

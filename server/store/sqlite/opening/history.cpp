@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "proto/types/store_epoch.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/file_system.hpp"
 #include "server/store/tables/settings.hpp"
@@ -43,8 +44,8 @@ void note_release(Database& database) {
 
 std::string release_of(Database& database) { return read_setting(database, kRelease); }
 
-Uuid write_new_epoch(Database& database, const std::filesystem::path& file) {
-  const Uuid epoch = Uuid::random();
+Uuid write_new_epoch(Database& database, const std::filesystem::path& file, const Uuid& before) {
+  const Uuid epoch = next_epoch(Uuid::parse(read_setting(database, kEpoch)).value_or(before));
   write_setting(database, kEpoch, epoch.text());
   write_setting(database, kIdentity, identity_of(file));
   write_setting(database, kRuns, TimelineHistory(epoch).text());

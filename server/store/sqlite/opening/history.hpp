@@ -18,7 +18,9 @@ namespace kinship::store {
 
 /// Writes a new epoch, without a run, and the identity of the file into a store, in the caller's
 /// transaction.
-Uuid write_new_epoch(Database& database, const std::filesystem::path& file);
+/// \param before  an epoch of the same store, if none is written there; zeros: it is a new one.
+Uuid write_new_epoch(Database& database, const std::filesystem::path& file,
+                     const Uuid& before = {});
 
 /// The version of Kinship that last began an epoch or wrote a report; empty: none that says so.
 std::string release_of(Database& database);

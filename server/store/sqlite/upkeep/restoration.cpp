@@ -17,6 +17,7 @@
 #include "server/store/sqlite/files/leftovers.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
+#include "server/store/sqlite/opening/high_water_mark_file.hpp"
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/upkeep/schema_recovery.hpp"
@@ -56,6 +57,14 @@ std::vector<fs::path> replaced_stores(const fs::path& file) {
       found.push_back(entry.path());
   std::ranges::sort(found);
   return found;
+}
+
+/// The epoch of the store that was served at a place, for one that has lost its own; zeros: none is
+/// known.
+Uuid epoch_at(const fs::path& file) {
+  const fs::path mark = HighWaterMarkFile::name_of(file);
+  const auto known = fs::exists(mark) ? HighWaterMarkFile(file).read() : std::nullopt;
+  return known ? known->epoch : Uuid{};
 }
 
 /// The file that a restore replaces need not be a store.
@@ -113,7 +122,7 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
       const std::unique_ptr<Database> opened =
           open_migrated(copy_, embedded_migrations(), Keep::Nothing);
       Database& database = *opened;
-      epoch_ = write_new_epoch(database, copy_);
+      epoch_ = write_new_epoch(database, copy_, epoch_at(file_));
       const StoreCheck check = check_database(
           database, backup_, [&](double done) { progress(kCopyShare + (1 - kCopyShare) * done); });
       if (check.problems > 0)
@@ -161,7 +170,7 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     repaired.damaged_places = salvaged.damaged_places;
     repaired.lost = std::move(salvaged.lost);
     repaired.tables = std::move(salvaged.tables);
-    epoch_ = write_new_epoch(*target, copy_);
+    epoch_ = write_new_epoch(*target, copy_, epoch_at(file_));
     insert_audit(*target, entry_of_maintenance("repair", file_.string(), "",
                                                "epoch " + epoch_.text() + ", " +
                                                    std::to_string(repaired.damaged_places) +

@@ -54,6 +54,11 @@ class CLibraryOffline : public testing::Test {
   }
   void TearDown() override { kinship_client_close(client_); }
 
+  /// So that it may be reported of.
+  void register_panda() {
+    EXPECT_EQ(kinship_register(client_, &description_, &robot_, nullptr), KINSHIP_UNAVAILABLE);
+  }
+
   static void expect_refused(kinship_code code, const std::string& text) {
     EXPECT_EQ(code, KINSHIP_INVALID_INPUT);
     EXPECT_NE(std::string(kinship_error_text()).find(text), std::string::npos)
@@ -306,7 +311,36 @@ struct TableAndCup {
   }
 };
 
+TEST_F(CLibraryOffline, AReportThatItsRobotCannotHaveMadeFailsInTheCall) {
+  EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_NOT_FOUND);
+  EXPECT_NE(std::string(kinship_error_text()).find("register it"), std::string::npos)
+      << kinship_error_text();
+  register_panda();
+  attempt_.dof = 6;
+  expect_refused(kinship_report(client_, &attempt_), "robot 'panda' (");
+  expect_refused(kinship_report(client_, &attempt_), "has 7 joints, the report's path has 6");
+  kinship_outbox outbox{};
+  outbox.size = sizeof outbox;
+  EXPECT_EQ(kinship_flush(client_, 0, &outbox), KINSHIP_OK);
+  EXPECT_EQ(outbox.refused, 0U);
+  EXPECT_STREQ(outbox.last_refusal, "");
+  // The outbox knows it, also of another program.
+  kinship_client_close(client_);
+  kinship_client_options options{};
+  options.size = sizeof options;
+  options.domain = domain_.number();
+  options.outbox = outbox_.c_str();
+  options.resend = "some";
+  expect_refused(kinship_client_open(&options, &client_), "'some' is neither 'all' nor 'none'");
+  options.resend = "none";
+  ASSERT_EQ(kinship_client_open(&options, &client_), KINSHIP_OK) << kinship_error_text();
+  expect_refused(kinship_report(client_, &attempt_), "has 7 joints");
+  attempt_.dof = 7;
+  EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
+}
+
 TEST_F(CLibraryOffline, AnAttemptTellsItsScene) {
+  register_panda();
   TableAndCup scene(attempt_);
   EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
   scene.objects[1].shape = static_cast<kinship_shape>(6);
@@ -326,6 +360,7 @@ TEST_F(CLibraryOffline, AnAttemptTellsItsScene) {
 }
 
 TEST_F(CLibraryOffline, ASceneWithoutObjectsIsToldAndNoneIsNot) {
+  register_panda();
   TableAndCup scene(attempt_);
   attempt_.object_count = 0;
   expect_refused(kinship_report(client_, &attempt_), "'table'");
@@ -349,6 +384,7 @@ TEST_F(CLibraryOffline, ObjectsOfANewerCallerAreSteppedOverByTheirSize) {
     each.object = {sizeof(Newer), "box", KINSHIP_BOX, 0, {1, 1, 1}, {0, 0, 0, 0, 0, 0, 1}};
     each.something_new = std::numeric_limits<double>::quiet_NaN();
   }
+  register_panda();
   objects[1].object.name = "other";
   attempt_.objects = &objects[0].object;
   attempt_.object_count = 2;
@@ -368,8 +404,10 @@ std::string line_of_the_header(const std::string& digest) {
 
 TEST_F(CLibraryOffline, TheLineInTheHeaderIsOne) {
   EXPECT_EQ(kinship_report_line(client_, line_of_the_header(std::string(64, 'a')).c_str()),
-            KINSHIP_OK)
+            KINSHIP_NOT_FOUND)
       << kinship_error_text();
+  EXPECT_NE(std::string(kinship_error_text()).find("robot aaaa"), std::string::npos)
+      << "all else is well: " << kinship_error_text();
   expect_refused(kinship_report_line(client_, line_of_the_header("panda").c_str()), "'panda'");
 }
 
@@ -378,6 +416,7 @@ TEST_F(CLibraryOffline, TheLineInTheHeaderIsOne) {
 TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_client_options, timeout_ms), 36U);
   EXPECT_EQ(offsetof(kinship_client_options, security), 40U);
+  EXPECT_EQ(offsetof(kinship_client_options, resend), 48U);
   EXPECT_EQ(offsetof(kinship_robot_description, never_colliding_pairs), 56U);
   EXPECT_EQ(offsetof(kinship_robot_description, held_joint_count), 80U);
   EXPECT_EQ(offsetof(kinship_robot_file, package_count), 88U);
@@ -392,6 +431,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_attempt, allowed_collision_pairs), 144U);
   EXPECT_EQ(offsetof(kinship_attempt, processor_time_s), 152U);
   EXPECT_EQ(offsetof(kinship_outbox, refused), 24U);
+  EXPECT_EQ(offsetof(kinship_outbox, kept), 40U);
   EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
   EXPECT_EQ(offsetof(kinship_request, with_recall), 64U);
   EXPECT_EQ(offsetof(kinship_request, to_configuration), 80U);
@@ -404,6 +444,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
 }
 
 TEST_F(CLibraryOffline, AShorterStructureOfAnOlderCallerIsRead) {
+  register_panda();
   attempt_.size = offsetof(kinship_attempt, sampling);
   attempt_.sampling = static_cast<kinship_sampling>(77);  // not looked at
   EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();

@@ -248,7 +248,14 @@ TEST_F(CPlanning, AReportTellsTheSceneAndAStoppedPlanHasNone) {
   options.size = sizeof options;
   options.outbox = outbox.c_str();
   kinship_client* client = nullptr;
+  options.timeout_ms = 200;
   ASSERT_EQ(kinship_client_open(&options, &client), KINSHIP_OK) << kinship_error_text();
+  kinship_robot robot{};
+  kinship_robot_file file{};
+  file.size = sizeof file;
+  const std::string folder = test::source_dir() + "/robots/models/panda";
+  file.source = folder.c_str();
+  EXPECT_EQ(kinship_register_file(client, &file, &robot, nullptr), KINSHIP_UNAVAILABLE);
   const std::vector<double> triangles = post_triangles();
   post_.shape = KINSHIP_MESH;
   post_.points = triangles.data();

@@ -9,6 +9,7 @@
 
 #include "proto/dds/replier.hpp"
 #include "proto/types/failure.hpp"
+#include "tests/support/panda_experience.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -161,13 +162,43 @@ TEST_F(ClientTest, ClientWithoutOutboxTouchesNoneAndCannotReport) {
 }
 
 TEST_F(ClientTest, TwoClientsMayShareAnOutbox) {
-  test::RandomValues values(kSeed);
   Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
-  Client one(options());
+  Client one(options(100ms));
   Client other(options());
-  for (int i = 0; i < 10; ++i)
-    (i % 2 == 0 ? one : other).report(values.attempt());
+  one.register_robot(test::model_description("panda"));
+  for (std::uint64_t i = 0; i < 10; ++i)
+    (i % 2 == 0 ? one : other)
+        .report(test::panda_attempt(test::model_chain("panda").digest(), "sweep", i));
   EXPECT_EQ(other.flush(15s).pending, 0U);
+}
+
+TEST_F(ClientTest, ReportsThatTheirRobotCannotHaveMadeAreNotWritten) {
+  const Attempt attempt = test::panda_attempt(test::model_chain("panda").digest(), "sweep", 1);
+  const auto refusal_of = [](Client& client, const Attempt& given) {
+    try {
+      client.report(given);
+      return Error{ErrorCode::Internal, "it was taken"};
+    } catch (const Failure& failure) {
+      return failure.error();
+    }
+  };
+  Client client(options(100ms));
+  const Error unknown = refusal_of(client, attempt);
+  EXPECT_EQ(unknown.code, ErrorCode::NotFound);
+  EXPECT_NE(unknown.message.find(attempt.robot.short_hex()), std::string::npos) << unknown.message;
+  EXPECT_FALSE(client.register_robot(test::model_description("panda")));
+  Attempt other = attempt;
+  other.path.emplace(Eigen::MatrixXd::Zero(6, 2));
+  Client later(options(100ms));
+  for (Client* const each : {&client, &later}) {
+    const Error wrong = refusal_of(*each, other);
+    EXPECT_EQ(wrong.code, ErrorCode::InvalidInput);
+    EXPECT_EQ(wrong.message, "robot 'panda' (" + attempt.robot.short_hex() +
+                                 ") has 7 joints, the report's path has 6");
+  }
+  EXPECT_EQ(client.outbox().pending, 0U);
+  client.report(attempt);
+  EXPECT_EQ(client.outbox().pending, 1U);
 }
 
 }  // namespace

@@ -6,10 +6,14 @@
 
 #include "client/link/outbox.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/store_epoch.hpp"
+#include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::link::mesh_upload_test {
 namespace {
+
+constexpr std::uint64_t kSeed = 37;
 
 TriangleMesh mesh_of(double size_m) {
   Eigen::Matrix3Xd corners(3, 3);
@@ -143,6 +147,42 @@ TEST(MeshOutbox, KeepsContentsUntilAServerHasThem) {
   outbox.drop_contents(kept);
   EXPECT_FALSE(outbox.content(mesh_of(1).digest()));
   EXPECT_TRUE(outbox.robots_with_contents().empty());
+}
+
+TEST(MeshOutbox, ForgetsMeshesThatAreToStayHere) {
+  const test::TemporaryDirectory directory;
+  Outbox outbox(directory.path());
+  Digest digest;
+  digest.bytes[0] = 1;
+  outbox.keep_robot(digest, robot());
+  outbox.forget_meshes(digest);
+  EXPECT_TRUE(outbox.robot(digest)->meshes.empty());
+  EXPECT_FALSE(outbox.content(mesh_of(1).digest()));
+  RobotDescription without = robot();
+  without.meshes.clear();
+  without.contents.clear();
+  outbox.keep_robot(digest, without);
+  EXPECT_TRUE(outbox.robot(digest)->meshes.empty());
+}
+
+TEST(MeshOutbox, AStoreNeverSeenGetsContentsOfRobotsWithReportsAlone) {
+  const test::TemporaryDirectory directory;
+  Outbox outbox(directory.path());
+  outbox.note_store(next_epoch({}), {});
+  test::RandomValues values(kSeed);
+  const Attempt attempt = values.attempt(5);
+  const auto keep = [&](const Digest& digest, double size_m) {
+    RobotDescription description = robot();
+    description.meshes.resize(1);
+    description.meshes.front().content = mesh_of(size_m).digest();
+    description.contents = {mesh_of(size_m).content()};
+    outbox.keep_robot(digest, description);
+  };
+  keep(attempt.robot, 1);
+  keep(values.digest(), 2);
+  outbox.add(attempt);
+  outbox.note_store(next_epoch({}), {});
+  EXPECT_EQ(outbox.robots_with_contents(), std::vector<Digest>{attempt.robot});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "client/link/durable_file.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/types/failure.hpp"
+#include "proto/types/store_epoch.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -183,7 +184,7 @@ TEST_F(OutboxTest, ChangedStoreEpochOffersSentReportsAgain) {
   }
   EXPECT_FALSE(outbox.note_store(epoch, {}));
   EXPECT_EQ(outbox.pending_count(), 0U);
-  EXPECT_TRUE(Outbox(folder.path()).note_store(Uuid::random(), {}));  // across processes
+  EXPECT_TRUE(Outbox(folder.path()).note_store(next_epoch(epoch), {}));  // across processes
   EXPECT_EQ(outbox.pending(), uuids);
 }
 

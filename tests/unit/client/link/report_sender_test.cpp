@@ -13,6 +13,7 @@
 
 #include "client/link/durable_file.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/store_epoch.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -265,7 +266,7 @@ class GreetingTest : public ReportSenderTest {
 TEST_F(GreetingTest, IdleSenderTellsANewServerWhatItKnowsAndOffersAgainWhatWasLost) {
   const auto sender = make_sender();
   send_one(*sender);
-  change([&] { epoch = Uuid::random(); });
+  change([&] { epoch = next_epoch(epoch); });
   ++servers;
   wait_for_batches(3);
   EXPECT_TRUE(batch(0).known_token.empty());

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "client/link/report_sender.hpp"
+#include "proto/types/store_epoch.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -43,7 +44,7 @@ class Store {
     const std::lock_guard lock(mutex_);
     robots_.clear();
     reports_.clear();
-    epoch_ = Uuid::random();
+    epoch_ = next_epoch(epoch_);
   }
   void wait_for_batches(int count) {
     std::unique_lock lock(mutex_);

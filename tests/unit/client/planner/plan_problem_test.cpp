@@ -75,6 +75,23 @@ TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
   EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
 }
 
+TEST(PlanProblem, GuidanceOfAnotherPlacementIsRefusedAndBothAreNamed) {
+  Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  guidance.T_task_base = Eigen::Isometry3d::Identity();
+  Problem problem = wall_problem();
+  EXPECT_TRUE(planned(problem, {}, {&guidance, SamplingMode::Guided}).attempted);
+  guidance.T_task_base->translation().x() = 0.001;  // as far as requests are snapped
+  EXPECT_TRUE(planned(problem, {}, {&guidance, SamplingMode::Guided}).attempted);
+  guidance.T_task_base->translation().x() = 0.5;
+  const PlannedProblem answer = planned(problem, {}, {&guidance, SamplingMode::Guided});
+  EXPECT_FALSE(answer.attempted);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_NE(answer.result.reason.find("the guidance was made for 0.5 0 0 0 0 0 1"),
+            std::string::npos)
+      << answer.result.reason;
+  EXPECT_EQ(answer.result.reason.find("T_task_base is "), 0U) << answer.result.reason;
+}
+
 TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
   const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
   const ProblemResult uniform = planned(wall_problem()).result;

@@ -88,6 +88,14 @@ class Loading(unittest.TestCase):
         self.assertEqual((robot.label, robot.dof), ("mine", 7))
         np.testing.assert_allclose(robot.T_tip_transfer, transfer)
 
+    def test_messages_name_arguments_of_python(self):
+        urdf = MODELS / "panda" / "robot.urdf"
+        for wrong, words in (({}, "needs base=LINK and tip=LINK"), ({"base": "panda_link0", "tip": "nose"}, "nose"),
+                             ({"axes": ["x", "loop"], "base": "panda_link0", "tip": "panda_link8"}, "^axes: ")):
+            with self.assertRaisesRegex(kinship.Error, words) as raised:
+                kinship.Robot(urdf, **wrong)
+            self.assertNotIn("--", str(raised.exception))
+
     def test_what_is_not_there_is_an_error(self):
         with self.assertRaisesRegex(kinship.NotFound, "no_such_folder"):
             kinship.Robot("no_such_folder")

@@ -1,0 +1,142 @@
+#include "client/link/other_stores.hpp"
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "client/link/durable_file.hpp"
+#include "client/link/outbox_files.hpp"
+#include "client/link/sent_reports.hpp"
+#include "proto/types/failure.hpp"
+#include "proto/types/store_epoch.hpp"
+
+namespace kinship::link {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kKeptIn[] = {"sent_before", "sent", kPending};
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+/// Calls `visit` with the file of each report that a folder of a store keeps.
+void for_each_kept(const fs::path& store, const std::function<void(const fs::path&)>& visit) {
+  for (const std::string_view part : kKeptIn)
+    if (is_there(store / part))
+      for_each_entry(store / part, [&](const fs::directory_entry& entry) {
+        if (report_uuid_of(entry.path()))
+          visit(entry.path());
+      });
+}
+
+std::size_t count_kept(const fs::path& store) {
+  std::size_t count = 0;
+  for_each_kept(store, [&](const fs::path&) { ++count; });
+  return count;
+}
+
+void remove_store(const fs::path& store) {
+  std::error_code error;
+  fs::remove_all(store, error);  // what stays is empty, and goes next time
+}
+
+}  // namespace
+
+OtherStores::OtherStores(fs::path outbox) : outbox_(std::move(outbox)) {}
+
+fs::path OtherStores::folder_of(const Uuid& epoch) const {
+  return outbox_ / kFolder / store_name(epoch);
+}
+
+std::vector<fs::path> OtherStores::folders() const {
+  std::vector<fs::path> folders;
+  if (is_there(outbox_ / kFolder))
+    for_each_entry(outbox_ / kFolder, [&](const fs::directory_entry& entry) {
+      if (is_there(entry.path() / kEpoch))
+        folders.push_back(entry.path());
+    });
+  return folders;
+}
+
+void OtherStores::put_away(const Uuid& epoch) const {
+  const fs::path folder = folder_of(epoch);
+  make_folder_durably(outbox_ / kFolder);
+  make_folder_durably(folder);
+  write_durably(folder / kEpoch, epoch.text() + "\n");
+  move_file(outbox_ / kToken, folder / kToken);
+  const SentReports there(folder);
+  SentReports(outbox_).for_each([&](const fs::path& report) {
+    move_file(report, there.file(report_uuid_of(report).value_or(Uuid{})));
+  });
+}
+
+void OtherStores::hold_back(const Uuid& epoch, fs::file_time_type before) const {
+  const fs::path held = folder_of(epoch) / kPending;
+  make_folder_durably(held);
+  for_each_entry(outbox_ / kPending, [&](const fs::directory_entry& entry) {
+    std::error_code error;
+    const fs::file_time_type written = entry.last_write_time(error);
+    if (!error && report_uuid_of(entry.path()) && written < before)
+      move_file(entry.path(), held / entry.path().filename());
+  });
+}
+
+std::optional<Uuid> OtherStores::known_epoch(const Uuid& epoch) const {
+  return noted_epoch(folder_of(epoch));
+}
+
+void OtherStores::bring_back(const Uuid& epoch) const {
+  const fs::path folder = folder_of(epoch);
+  if (!is_there(folder))
+    return;
+  move_file(folder / kToken, outbox_ / kToken);
+  for_each_kept(folder, [&](const fs::path& report) {
+    move_file(report, outbox_ / report.parent_path().filename() / report.filename());
+  });
+  remove_store(folder);
+}
+
+std::size_t OtherStores::offer_again() const {
+  std::size_t offered = 0;
+  for (const fs::path& folder : folders())
+    for_each_kept(folder, [&](const fs::path& report) {
+      offered += move_file(report, outbox_ / kPending / report.filename()) ? 1U : 0U;
+    });
+  return offered;
+}
+
+std::size_t OtherStores::drop() const {
+  std::size_t dropped = 0;
+  for (const fs::path& folder : folders()) {
+    dropped += count_kept(folder);
+    std::error_code error;
+    fs::remove_all(folder, error);
+    if (error)
+      throw Failure(ErrorCode::Storage,
+                    folder.string() + ": cannot be deleted: " + error.message());
+  }
+  return dropped;
+}
+
+std::vector<KeptReports> OtherStores::kept() const {
+  std::vector<KeptReports> kept;
+  for (const fs::path& folder : folders())
+    if (const std::size_t reports = count_kept(folder); reports > 0)
+      kept.push_back({folder.filename().string(), reports});
+  return kept;
+}
+
+void OtherStores::age(std::chrono::milliseconds sending) const {
+  for (const fs::path& folder : folders()) {
+    SentReports(folder).age(sending);
+    if (count_kept(folder) == 0)
+      remove_store(folder);
+  }
+}
+
+}  // namespace kinship::link
