@@ -173,15 +173,15 @@ TEST(GeometryDoubts, AnObstacleBeyondAllThatTheRobotCanTouchIsNamed) {
   Scene scene;
   scene.objects = {at("near", 1.2), at("far", 500)};
   const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
-  const auto said = find_unreachable(robot.chain, robot.shapes, origin, scene, {});
+  const auto said = find_scene_doubts(robot.chain, robot.shapes, origin, scene, {});
   ASSERT_EQ(said.size(), 1U);
   EXPECT_EQ(said[0].find("'far' is 500 m away"), 0U) << said[0];
   const Eigen::Isometry3d there(Eigen::Translation3d(500, 0, 0));
-  EXPECT_EQ(find_unreachable(robot.chain, robot.shapes, there, scene, {})[0].find("'near'"), 0U);
+  EXPECT_EQ(find_scene_doubts(robot.chain, robot.shapes, there, scene, {})[0].find("'near'"), 0U);
   AttachedObject rod;
   rod.link = "fore";
   rod.shape = BoxShape{{1000, 0.1, 0.1}};
-  EXPECT_TRUE(find_unreachable(robot.chain, robot.shapes, origin, scene, {rod}).empty())
+  EXPECT_TRUE(find_scene_doubts(robot.chain, robot.shapes, origin, scene, {rod}).empty())
       << "what the hand holds gets there";
 }
 
