@@ -23,8 +23,9 @@ namespace kinship::arguments {
 std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profile);
 
 /// Adds the options of a robot except its files: --base, --tip, --label, --transfer, --axes,
-/// --hold, --srdf, --package, --mesh-folder, --xacro-argument and those of drawn links. The program itself adds
-/// `source`. \param arguments  filled when the command line is parsed; must outlive that.
+/// --hold, --srdf, --package, --mesh-folder, --xacro-argument and those of drawn links. The program
+/// itself adds `source`. \param arguments  filled when the command line is parsed; must outlive
+/// that.
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
 
 /// --without-meshes, of programs that register the robot.

@@ -28,7 +28,7 @@ std::string doubts_of(const models::LoadedRobot& robot, const collision::RobotSo
   if (std::string touching = collision::describe_always_touching(solids); !touching.empty())
     add({std::move(touching)});
   add(geometry::find_scene_doubts(robot.chain, robot.shapes, surroundings.T_task_base,
-                                 surroundings.scene, surroundings.attached));
+                                  surroundings.scene, surroundings.attached));
   return lines;
 }
 

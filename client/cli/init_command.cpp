@@ -116,7 +116,8 @@ std::vector<fs::path> find_srdfs(const fs::path& urdf_folder) {
 /// A file or folder as it is written into a file of `folder`: relative to it, unless they have
 /// nothing but the root in common.
 fs::path relative_to(const fs::path& folder, const fs::path& file) {
-  const fs::path from = fs::weakly_canonical(folder), to = fs::weakly_canonical(file);
+  const fs::path from = fs::weakly_canonical(fs::absolute(folder));
+  const fs::path to = fs::weakly_canonical(fs::absolute(file));
   const auto second = [](const fs::path& path) {
     return path.begin() == path.end() ? fs::path() : *std::next(path.begin());
   };
@@ -164,8 +165,8 @@ class Chooser {
     arguments_.tip_link = tip;
     std::string possible;
     for (const kinematics::ChainEnds& ends : links.ends)
-      possible += (possible.empty() ? "" : "; or ") + listed(ends.bases) + " to " +
-                  listed(ends.tips);
+      possible +=
+          (possible.empty() ? "" : "; or ") + listed(ends.bases) + " to " + listed(ends.tips);
     if (!has_base || !has_tip)
       choices_.push_back({"", "", "possible: " + possible});
   }
@@ -186,9 +187,9 @@ class Chooser {
     std::string why = kGiven;
     if (arguments_.label.empty()) {
       const std::string of_file = models::label_of(arguments_.source);
-      const std::string of_folder = fs::weakly_canonical(folder).filename().string();
-      const bool takes_folder = (of_file == "robot" || check_label(of_file)) &&
-                                !check_label(of_folder);
+      const std::string of_folder = fs::weakly_canonical(fs::absolute(folder)).filename().string();
+      const bool takes_folder =
+          (of_file == "robot" || check_label(of_file)) && !check_label(of_folder);
       arguments_.label = takes_folder ? of_folder : check_label(of_file) ? "robot" : of_file;
       why = takes_folder ? "the folder's name" : "the URDF's name";
       const std::string label = dialogue_.ask("label", arguments_.label, [](const auto& name) {
@@ -206,8 +207,7 @@ class Chooser {
     models::PackageFolders known = models::parse_packages(arguments_.packages).value_or_throw();
     for (const auto& [name, folder] : known)
       add("packages", name + " = " + folder.string(), kGiven);
-    const std::string urdf =
-        models::describe_robot(arguments_).value_or_throw().description.urdf;
+    const std::string urdf = models::describe_robot(arguments_).value_or_throw().description.urdf;
     const fs::path beside = arguments_.source.parent_path();
     for (const std::string& name : named_packages(urdf)) {
       if (known.contains(name))
@@ -218,11 +218,12 @@ class Chooser {
         continue;
       }
       const std::string folder =
-          arguments_.mesh_folders.empty() ? dialogue_.ask(
-              "folder of package '" + name + "', which is not found", "none",
-              [&](const std::string& text) {
-                return fault_of(models::parse_packages({name + "=" + text}));
-              }) : "none";
+          arguments_.mesh_folders.empty()
+              ? dialogue_.ask("folder of package '" + name + "', which is not found", "none",
+                              [&](const std::string& text) {
+                                return fault_of(models::parse_packages({name + "=" + text}));
+                              })
+              : "none";
       if (folder != "none")
         add_package(name, folder, kAnswered);
       else
@@ -351,8 +352,8 @@ void write_chain_file(const models::ChainFile& chain, const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error)
-    throw Failure(ErrorCode::Storage, "'" + file.parent_path().string() +
-                                          "' cannot be made: " + error.message());
+    throw Failure(ErrorCode::Storage,
+                  "'" + file.parent_path().string() + "' cannot be made: " + error.message());
   std::ostringstream unused;
   files::OutputFile output(file, unused);
   output.stream() << models::chain_file_text(chain);

@@ -8,7 +8,7 @@
 namespace kinship::cli {
 
 struct InitOptions {
-  models::RobotArguments robot;  ///< of a URDF file; base and tip may be missing
+  models::RobotArguments robot;       ///< of a URDF file; base and tip may be missing
   std::filesystem::path folder = {};  ///< of the chain.toml; empty: the URDF's
   bool force = false;                 ///< replaces a chain.toml
 };

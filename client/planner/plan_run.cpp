@@ -241,9 +241,9 @@ RunSummary run_plan(const PlanOptions& given, const RunStreams& streams,
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());
   const kinematics::RobotModel& model = robot;
-  ServerLine server(options, model,
-                    [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
-                    streams.messages, stop);
+  ServerLine server(
+      options, model, [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
+      streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};

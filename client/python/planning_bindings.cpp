@@ -383,8 +383,7 @@ void bind_planning(py::module_& module) {
          const std::string& sampling_mode, const std::string& planner, std::uint64_t max_checks,
          std::optional<double> clearance, std::optional<double> resolution,
          std::uint64_t shortcut_checks, int max_goals, std::optional<double> limit_slack,
-         double overshoot,
-         double gate_distance, double retreat) {
+         double overshoot, double gate_distance, double retreat) {
         guided::PlanSettings settings;
         settings.max_checks = max_checks;
         read_proof(clearance, resolution, settings);
@@ -404,8 +403,7 @@ void bind_planning(py::module_& module) {
       py::arg("max_checks") = guided::PlanSettings{}.max_checks, py::arg("clearance") = py::none(),
       py::arg("resolution") = py::none(),
       py::arg("shortcut_checks") = guided::PlanSettings{}.shortcut_checks,
-      py::arg("max_goals") = guided::PlanSettings{}.max_goals,
-      py::arg("limit_slack") = py::none(),
+      py::arg("max_goals") = guided::PlanSettings{}.max_goals, py::arg("limit_slack") = py::none(),
       py::arg("overshoot") = guided::PlanSettings{}.overshoot,
       py::arg("gate_distance") = guided::PlanSettings{}.gate_distance,
       py::arg("retreat") = guided::PlanSettings{}.tracks.retreat_m,

@@ -123,12 +123,15 @@ std::vector<std::string> visual_only(const kinematics::Chain& chain, const Robot
 
 double scale_of(double reach_m) { return std::max(reach_m, kShortestReach_m); }
 
-/// "; these are probably millimetres (0.4 m)" of a length that is too large, if it would be at most
-/// `likely_m` as such; else "; lengths are m".
+/// "; these are probably millimetres (0.4 m)" of a length that is too large, if it would be likely
+/// as such; else "; lengths are m".
+/// \param likely_m  the largest that would be.
 std::string unit_text(double length_m, double likely_m) {
-  return kMillimetre_m * length_m > likely_m
+  constexpr double kSmallest = 0.005;  // of the largest
+  const double as_millimetres_m = kMillimetre_m * length_m;
+  return as_millimetres_m > likely_m || as_millimetres_m < kSmallest * likely_m
              ? "; lengths are m"
-             : "; these are probably millimetres (" + short_text(kMillimetre_m * length_m) + " m)";
+             : "; these are probably millimetres (" + short_text(as_millimetres_m) + " m)";
 }
 
 /// A link that is far too large.
@@ -300,15 +303,15 @@ std::optional<Error> find_impossible_lengths(const kinematics::Chain& chain) {
 std::optional<Error> find_impossible_solids(const kinematics::Chain& chain,
                                             const RobotShapes& shapes) {
   for (const LinkExtent& extent : link_extents(chain, shapes))
-    if (extent.moves &&
-        extent.farthest_m > kImpossibleMovingExtent * scale_of(reach_m(chain)))
+    if (extent.moves && extent.farthest_m > kImpossibleMovingExtent * scale_of(reach_m(chain)))
       return invalid_input(too_large_text(extent, reach_m(chain)) + "; more than " +
                            short_text(kImpossibleMovingExtent) +
                            " times the reach is taken for no link");
   return std::nullopt;
 }
 
-std::string describe_far_place(const kinematics::Chain& chain, const Eigen::Vector3d& p_base_place) {
+std::string describe_far_place(const kinematics::Chain& chain,
+                               const Eigen::Vector3d& p_base_place) {
   const double reach = reach_m(chain) + transfer_distance_m(chain);
   const double distance_m = p_base_place.norm();
   if (distance_m <= kFarPlace * scale_of(reach))
@@ -331,9 +334,10 @@ std::optional<Error> find_faults(const kinematics::Chain& chain, const RobotShap
   return error ? error : find_impossible_solids(chain, shapes);
 }
 
-std::vector<std::string> find_scene_doubts(
-    const kinematics::Chain& chain, const RobotShapes& shapes, const Eigen::Isometry3d& T_task_base,
-    const Scene& scene, const std::vector<AttachedObject>& attached) {
+std::vector<std::string> find_scene_doubts(const kinematics::Chain& chain,
+                                           const RobotShapes& shapes,
+                                           const Eigen::Isometry3d& T_task_base, const Scene& scene,
+                                           const std::vector<AttachedObject>& attached) {
   const double reach = reach_of_solids_m(chain, shapes, attached);
   const std::string robot = " the robot's base, which gets " + short_text(reach) + " m far";
   std::vector<std::string> sentences;

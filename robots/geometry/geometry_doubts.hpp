@@ -31,8 +31,8 @@ struct LinkExtent {
 /// One for each link, in the order of chain.links(). For a mesh its triangles count.
 std::vector<LinkExtent> link_extents(const kinematics::Chain& chain, const RobotShapes& shapes);
 
-/// Upper bound on the distance of the tip link's origin from the base link's, m: the chain stretched
-/// out.
+/// Upper bound on the distance of the tip link's origin from the base link's, m: the chain
+/// stretched out.
 double reach_m(const kinematics::Chain& chain);
 
 /// Distance of the transfer frame from the tip link's origin, m.
@@ -67,8 +67,9 @@ std::string describe_far_place(const kinematics::Chain& chain, const Eigen::Vect
 /// A sentence on each object of a scene that no solid of the robot, nor an attached object, can
 /// reach, or that is more than 100 times as long as the robot reaches.
 /// \param T_task_base  of the robot's base link.
-std::vector<std::string> find_scene_doubts(
-    const kinematics::Chain& chain, const RobotShapes& shapes, const Eigen::Isometry3d& T_task_base,
-    const Scene& scene, const std::vector<AttachedObject>& attached);
+std::vector<std::string> find_scene_doubts(const kinematics::Chain& chain,
+                                           const RobotShapes& shapes,
+                                           const Eigen::Isometry3d& T_task_base, const Scene& scene,
+                                           const std::vector<AttachedObject>& attached);
 
 }  // namespace kinship::geometry

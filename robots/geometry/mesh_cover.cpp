@@ -330,8 +330,8 @@ class Holders {
       solids_.push_back({grown(solid.shape, kCoverMargin_m), solid.T_points_shape.inverse()});
   }
 
-  /// Halves what no single solid holds: each is convex. A piece as short as the margin lies in every
-  /// solid that one of its points was in before that grew.
+  /// Halves what no single solid holds: each is convex. A piece as short as the margin lies in
+  /// every solid that one of its points was in before that grew.
   bool hold(const Eigen::Matrix3d& triangle) {
     std::vector<Eigen::Matrix3d> open = {triangle};
     while (!open.empty()) {
@@ -410,9 +410,7 @@ FittedShape fit_tightly(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
 Shape grown(const Shape& shape, double by_m) {
   struct Grown {
     double by_m;
-    Shape operator()(const BoxShape& box) const {
-      return BoxShape{box.size.array() + 2 * by_m};
-    }
+    Shape operator()(const BoxShape& box) const { return BoxShape{box.size.array() + 2 * by_m}; }
     Shape operator()(const CylinderShape& cylinder) const {
       return CylinderShape{cylinder.radius_m + by_m, cylinder.length_m + 2 * by_m};
     }

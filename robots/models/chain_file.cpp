@@ -271,7 +271,8 @@ std::string field_text(const char* comment, const std::string& name, const std::
 std::string tables_text(const ChainFile& chain) {
   std::string text;
   if (!chain.packages.empty())
-    text += "\n# Folders of the packages that meshes are named by, package://NAME/...\n[packages]\n";
+    text +=
+        "\n# Folders of the packages that meshes are named by, package://NAME/...\n[packages]\n";
   for (const auto& [name, folder] : chain.packages)
     text += quoted(name) + " = " + path_text(folder) + "\n";
   if (!chain.xacro.empty())
@@ -326,18 +327,20 @@ Result<ChainFile> read_chain_file(const std::filesystem::path& folder) {
 
 std::string chain_file_text(const ChainFile& chain) {
   const PoseArray transfer = to_pose_array(chain.T_tip_transfer);
-  std::string text = "# What Kinship has to know of this robot beside its URDF: give the folder of "
-                     "this file to any command.\n"
-                     "# Files and folders are relative to it.\n"
-                     "label = " + quoted(chain.label) + "\n";
+  std::string text =
+      "# What Kinship has to know of this robot beside its URDF: give the folder of "
+      "this file to any command.\n"
+      "# Files and folders are relative to it.\n"
+      "label = " +
+      quoted(chain.label) + "\n";
   if (chain.urdf != kUrdfFile)
     text += "urdf = " + path_text(chain.urdf) + "\n";
   text += field_text("The first and last link of the chain.", "base", quoted(chain.base_link));
   text += "tip = " + quoted(chain.tip_link) + "\n";
-  text += field_text("The transfer frame (TCP) in the tip link: x y z (m), qx qy qz qw; z out of "
-                     "the palm, y closes the fingers.",
-                     "transfer",
-                     listed(transfer, [](double value) { return number_text(value); }));
+  text += field_text(
+      "The transfer frame (TCP) in the tip link: x y z (m), qx qy qz qw; z out of "
+      "the palm, y closes the fingers.",
+      "transfer", listed(transfer, [](double value) { return number_text(value); }));
   if (!chain.task_axes.all())
     text += field_text("The coordinates of the transfer frame that matter.", "axes",
                        axes_text(chain.task_axes));
@@ -359,8 +362,9 @@ std::string chain_file_text(const ChainFile& chain) {
     text += field_text("Links that are drawn and need no solid.", "without_collision",
                        listed(chain.without_collision, quoted));
   if (chain.limit_slack)
-    text += field_text("A start or goal beyond a joint limit by less is moved onto it, joint units.",
-                       "limit_slack", number_text(*chain.limit_slack));
+    text +=
+        field_text("A start or goal beyond a joint limit by less is moved onto it, joint units.",
+                   "limit_slack", number_text(*chain.limit_slack));
   return text + tables_text(chain);
 }
 

@@ -64,8 +64,8 @@ Result<std::vector<std::string>> add_meshes(const RobotArguments& arguments,
   const auto files = files_of(resolved->arguments);
   if (!files)
     return files.error();
-  geometry::LinkMeshes read = geometry::read_link_meshes(
-      robot, [&](const std::string& uri) { return files->read(uri); });
+  geometry::LinkMeshes read =
+      geometry::read_link_meshes(robot, [&](const std::string& uri) { return files->read(uri); });
   robot.description.meshes = std::move(read.meshes);
   robot.description.contents = std::move(read.contents);
   return std::move(read.notes);

@@ -109,7 +109,8 @@ TEST(AttemptJson, BadConstraintIsRefusedByName) {
   EXPECT_EQ(message_of(with_constraint(replaced(kUpright, "[-0.5,0.5]", "[0.5,-0.5]"))),
             "scene.constraint: Bw of y: lower 0.5 exceeds upper -0.5");
   EXPECT_EQ(message_of(with_constraint(replaced(kUpright, "[0,0,0,", "[0,0,1001,"))),
-            "scene.constraint.T0_w: pose: coordinate 1001 m exceeds 1000 m");
+            "scene.constraint.T0_w: pose: coordinate 1001 m exceeds 1000 m; these are probably "
+            "millimetres");
 }
 
 TEST(AttemptJson, BadSceneIsRefusedByName) {
