@@ -86,7 +86,7 @@ TEST_F(RobotsFromFiles, AFolderMadeByInitIsAllThatProgramsNeed) {
   EXPECT_NE(made.out.find("found beside the URDF"), std::string::npos) << made.out;
   EXPECT_NE(made.out.find("found as ROS finds it"), std::string::npos) << made.out;
   const std::string text = test::read_text(folder + "/chain.toml");
-  EXPECT_NE(text.find("urdf = '../pointer.urdf'"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"(urdf = "../pointer.urdf")"), std::string::npos) << text;
   const Answer again = cell_.kinship("robots init " + urdf + " -o " + folder);
   EXPECT_EQ(again.code, 2);
   EXPECT_NE(again.err.find("--force replaces it"), std::string::npos) << again.err;

@@ -46,8 +46,8 @@ TEST_F(Init, WithoutATerminalTakesWhatIsLikelyAndSaysWhy) {
   EXPECT_NE(answer.out.find("the likeliest (--tip names another)"), std::string::npos);
   EXPECT_NE(answer.out.find("possible: base to flange, palm, last"), std::string::npos)
       << answer.out;
-  EXPECT_TRUE(has("base = 'base'\ntip = 'flange'\n")) << text();
-  EXPECT_TRUE(has("label = 'arm'")) << "the folder's, as the file is called robot";
+  EXPECT_TRUE(has("base = \"base\"\ntip = \"flange\"\n")) << text();
+  EXPECT_TRUE(has("label = \"arm\"")) << "the folder's, as the file is called robot";
   const auto read = models::describe_robot({.source = made_}).value_or_throw().description;
   EXPECT_EQ(read.urdf, models::read_text(kArm, 100'000));
 }
@@ -63,10 +63,10 @@ TEST_F(Init, TakesAllThatIsGiven) {
                               .without_collision = {"flange"},
                               .limit_slack = 0.01});
   ASSERT_EQ(answer.code, kDone) << answer.err;
-  for (const char* line :
-       {"base = 'shoulder'", "tip = 'palm'", "label = 'seven'",
-        "transfer = [0, 0, 0.1, 0, 0, 0, 1]", "axes = ['x', 'y']", "without_collision = ['flange']",
-        "limit_slack = 0.01", "[hold]\n'left_finger_joint' = 0.02"})
+  for (const char* line : {"base = \"shoulder\"", "tip = \"palm\"", "label = \"seven\"",
+                           "transfer = [0, 0, 0.1, 0, 0, 0, 1]", "axes = [\"x\", \"y\"]",
+                           "without_collision = [\"flange\"]", "limit_slack = 0.01",
+                           "[hold]\n\"left_finger_joint\" = 0.02"})
     EXPECT_TRUE(has(line)) << line << " in:\n" << text();
 }
 
@@ -77,8 +77,8 @@ TEST_F(Init, OnATerminalAsksAgainUntilTheAnswerFits) {
   EXPECT_NE(answer.err.find("tip link [flange]: "), std::string::npos) << answer.err;
   EXPECT_NE(answer.err.find("'nowhere'"), std::string::npos) << answer.err;
   EXPECT_NE(answer.err.find("these are probably millimetres (0.125 m)"), std::string::npos);
-  EXPECT_TRUE(has("base = 'base'\ntip = 'palm'")) << text();
-  EXPECT_TRUE(has("label = 'mine'")) << text();
+  EXPECT_TRUE(has("base = \"base\"\ntip = \"palm\"")) << text();
+  EXPECT_TRUE(has("label = \"mine\"")) << text();
   EXPECT_TRUE(has("transfer = [0, 0, 0.1, 0, 0, 0, 1]")) << text();
 }
 
@@ -90,7 +90,7 @@ TEST_F(Init, ReplacesAFileOnlyIfItIsSaidSo) {
   EXPECT_NE(refused.err.find("--force replaces it"), std::string::npos) << refused.err;
   EXPECT_EQ(text(), before);
   EXPECT_EQ(init({.source = kArm, .tip_link = "palm"}, nullptr, true).code, kDone);
-  EXPECT_TRUE(has("tip = 'palm'"));
+  EXPECT_TRUE(has("tip = \"palm\""));
 }
 
 TEST_F(Init, WritesNothingForARobotThatCannotBe) {
@@ -116,7 +116,7 @@ TEST_F(Init, NamesAPackageThatIsNotFoundAndAsksForItOnATerminal) {
   answer = init({.source = folder_ / "my.urdf"}, typed.c_str(), true);
   ASSERT_EQ(answer.code, kDone) << answer.err;
   EXPECT_NE(answer.err.find("no such folder"), std::string::npos) << answer.err;
-  EXPECT_TRUE(has("[packages]\n'hand_kit' = '../kit'")) << text();
+  EXPECT_TRUE(has("[packages]\n\"hand_kit\" = \"../kit\"")) << text();
 }
 
 TEST(RobotsCheck, TellsReachAndExtents) {
