@@ -3,6 +3,7 @@ import json
 import os
 import pathlib
 import signal
+import tempfile
 import threading
 import time
 import unittest
@@ -143,6 +144,24 @@ class Paths(OfAUr10e):
         for resolution in (0, -1, 2, float("nan")):
             with self.assertRaisesRegex(kinship.InvalidInput, "resolution is .*, must be from 1e-04 to 1"):
                 kinship.plan(self.robot, self.problem, resolution=resolution)
+
+
+class Folders(OfAUr10e):
+    def test_say_how_far_a_start_may_be_beyond_a_limit(self):
+        start = np.array(START)
+        start[0] = self.robot.upper[0] + 0.02
+        problem = kinship.Problem("beyond", start, [*(self.robot.upper[:1] - 0.1), *START[1:]])
+        with tempfile.TemporaryDirectory() as folder:
+            chain = (MODELS / "ur10e" / "chain.toml").read_text()
+            pathlib.Path(folder, "chain.toml").write_text(
+                f'urdf = "{MODELS / "ur10e" / "robot.urdf"}"\nlimit_slack = 0.05\n{chain}')
+            robot = kinship.Robot(folder)
+        self.assertEqual(robot.digest, self.robot.digest)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.assertTrue(kinship.plan(robot, problem).solved)
+            self.assertFalse(kinship.plan(robot, problem, limit_slack=0.01).solved)
+            self.assertFalse(kinship.plan(self.robot, problem).solved)
 
 
 class Scenes(unittest.TestCase):

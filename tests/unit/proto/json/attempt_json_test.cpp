@@ -120,7 +120,7 @@ TEST(AttemptJson, BadSceneIsRefusedByName) {
   EXPECT_EQ(message_of(with_scene(R"({"allowed_collisions":[["can","panda_hand"]]})")),
             "scene: allowed_collisions names 'can', which is neither an object nor held");
   EXPECT_EQ(message_of(with_scene(R"({"spheres":[{"name":"ball","center":[0,0,1],"radius":0}]})")),
-            "scene.spheres[0].radius: must be above 0");
+            "scene.spheres[0].radius: 0 m, must be above 0");
   EXPECT_EQ(
       message_of(with_scene(R"({"held":[{"name":"can","link":"hand","shape":{"sphere":1}}]})")),
       "scene.held[0]: has an unknown member 'link'");
