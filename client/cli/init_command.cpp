@@ -72,18 +72,9 @@ class Dialogue {
   std::ostream& err_;
 };
 
-std::string message_of(const Error& error) { return error.message; }
-
 template <typename T>
 std::string fault_of(const Result<T>& result) {
   return result ? std::string() : result.error().message;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// NAME of each package://NAME/ in a URDF.
@@ -194,7 +185,7 @@ class Chooser {
       why = takes_folder ? "the folder's name" : "the URDF's name";
       const std::string label = dialogue_.ask("label", arguments_.label, [](const auto& name) {
         const auto error = check_label(name);
-        return error ? message_of(*error) : std::string();
+        return error ? error->message : std::string();
       });
       if (label != arguments_.label)
         why = kAnswered;

@@ -174,7 +174,7 @@ class Fields {
     return words;
   }
 
-  bool yes(std::string_view field) const {
+  bool flag(std::string_view field) const {
     const toml::node* node = table_.get(field);
     if (node == nullptr)
       return false;
@@ -316,7 +316,7 @@ Result<ChainFile> read_chain_file(const std::filesystem::path& folder) {
     chain.packages = fields.packages();
     chain.mesh_folders = fields.mesh_folders();
     chain.xacro = fields.xacro();
-    chain.collision_from_visual = fields.yes("collision_from_visual");
+    chain.collision_from_visual = fields.flag("collision_from_visual");
     chain.without_collision = fields.texts("without_collision");
     chain.limit_slack = fields.slack();
     return chain;
