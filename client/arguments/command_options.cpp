@@ -59,6 +59,11 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
                  "NAME=DIR, where meshes named package://NAME/... are, before AMENT_PREFIX_PATH, "
                  "ROS_PACKAGE_PATH and a package.xml above the URDF; may be repeated")
       ->allow_extra_args(false);
+  app.add_option(
+         "--mesh-folder", arguments.mesh_folders,
+         "DIR where meshes are looked for that are not where the URDF says; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FOLDER");
   app.add_option("--xacro-argument", arguments.xacro,
                  "NAME:=VALUE for a URDF or SRDF that is xacro, which the program xacro expands; "
                  "may be repeated")

@@ -30,8 +30,9 @@ CLI::Option* add_numbers(CLI::App& app, const std::string& name, std::string& te
                          const std::string& description);
 
 /// Adds the options of a robot except its files: --base, --tip, --label, --transfer, --axes,
-/// --hold, --srdf, --package, --xacro-argument and those of drawn links. The program itself adds
-/// `source`. \param arguments  filled when the command line is parsed; must outlive that.
+/// --hold, --srdf, --package, --mesh-folder, --xacro-argument and those of drawn links. The program
+/// itself adds `source`. \param arguments  filled when the command line is parsed; must outlive
+/// that.
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
 
 /// --without-meshes, of programs that register the robot.

@@ -96,8 +96,9 @@ struct kinship_world {
 
 struct kinship_planner {
   explicit kinship_planner(const kinship::models::LoadedRobot& loaded)
-      : robot(loaded.chain, loaded.shapes) {}
+      : robot(loaded.chain, loaded.shapes), limit_slack(loaded.limit_slack) {}
   const kinship::guided::PlannedRobot robot;
+  const std::optional<double> limit_slack;  // of the robot's files
 };
 
 struct kinship_plan {

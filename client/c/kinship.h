@@ -124,7 +124,7 @@ KINSHIP_API kinship_code kinship_register(kinship_client* client,
 /** A robot in files, with all that `kinship robots register` takes. */
 typedef struct kinship_robot_file {
   size_t size;
-  const char* source;           /**< a URDF file, or a folder with robot.urdf and chain.toml */
+  const char* source;           /**< a folder with chain.toml, or a URDF file */
   const char* base_link;        /**< NULL: the folder's */
   const char* tip_link;         /**< NULL: the folder's */
   const char* label;            /**< NULL: the folder's, or the file's name without ending */

@@ -83,8 +83,9 @@ std::optional<guided::Guidance> read_guidance(const kinship_query& given,
   return guidance;
 }
 
-guided::PlanSettings read_settings(const kinship_query& given) {
+guided::PlanSettings read_settings(const kinship_planner& planner, const kinship_query& given) {
   guided::PlanSettings settings;
+  settings.limit_slack = planner.limit_slack.value_or(settings.limit_slack);
   if (given.algorithm != nullptr)
     settings.planner = guided::parse_planner(given.algorithm).value_or_throw();
   return settings;
@@ -119,7 +120,7 @@ kinship_code kinship_planner_create(const kinship_robot_file* file, kinship_plan
     require(planner, "planner");
     *planner = nullptr;
     const kinship::models::LoadedRobot robot = read_robot_file(read_structure(file, "file"));
-    if (const auto error = kinship::geometry::find_missing_solids(robot.chain, robot.shapes))
+    if (const auto error = kinship::geometry::find_faults(robot.chain, robot.shapes))
       return remember(*error);
     *planner = new kinship_planner(robot);
     if (dof != nullptr)
@@ -140,7 +141,7 @@ kinship_code kinship_plan_find(const kinship_planner* planner, const kinship_que
     const kinship::kinematics::Chain& chain = planner->robot.chain;
     kinship::Problem problem = read_problem(given, chain);
     const auto guidance = read_guidance(given, chain);
-    const auto settings = read_settings(given);
+    const auto settings = read_settings(*planner, given);
     auto planned = kinship::guided::plan_problem(
         planner->robot, problem, choose(guidance, given), settings,
         [&] { return given.stop != nullptr && given.stop(given.user) != 0; });

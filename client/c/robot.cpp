@@ -93,9 +93,7 @@ kinematics::RobotModel read_file(const kinship_robot_file& given) {
   kinematics::RobotModel& model = robot;
   model.description.mesh_solids =
       collision::fit_robot(robot.chain, robot.shapes).value_or_throw().mesh_solids;
-  auto meshes = models::load_meshes(read_file_arguments(given), model).value_or_throw();
-  model.description.meshes = std::move(meshes.meshes);
-  model.description.contents = std::move(meshes.contents);
+  static_cast<void>(models::add_meshes(read_file_arguments(given), model).value_or_throw());
   return model;
 }
 
@@ -124,9 +122,10 @@ models::LoadedRobot read_robot_file(const kinship_robot_file& given) {
   for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
     description.held_joints[joint] = value;
   std::vector<std::string> warnings = std::move(described.warnings);
+  const std::optional<double> limit_slack = described.limit_slack;
   kinematics::RobotModel model = models::read_model(std::move(described)).value_or_throw();
   geometry::RobotShapes shapes = models::load_shapes(arguments, model).value_or_throw();
-  return {std::move(model), std::move(shapes), std::move(warnings)};
+  return {std::move(model), std::move(shapes), std::move(warnings), limit_slack};
 }
 
 }  // namespace kinship::c_library

@@ -9,6 +9,8 @@
 #include "client/c/handles.hpp"
 #include "proto/types/number_text.hpp"
 #include "proto/types/recorded_scene.hpp"
+#include "proto/types/scene_names.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/geometry/mesh.hpp"
 #include "robots/geometry/point_cloud.hpp"
 
@@ -66,7 +68,10 @@ Shape read_shape(const GivenObject& object) {
   ShapeNumbers shape;
   shape.kind = static_cast<std::size_t>(object.given.shape);
   std::copy_n(std::begin(object.given.sizes), shape.sizes.size(), shape.sizes.begin());
-  return to_shape(shape);
+  Shape read = to_shape(shape);
+  if (const auto why = geometry::broken_rule(read))
+    throw Failure(invalid_input("object '" + object.name + "': " + *why));
+  return read;
 }
 
 void add_held(const GivenObject& object, GivenScene& scene) {
@@ -120,6 +125,9 @@ GivenScene read_scene(const SceneMembers& given, const std::string& name) {
                                   std::to_string(step)));
     add_object(object, objects, scene);
   }
+  if (const auto repeated = find_repeated_name(scene.scene))
+    throw Failure(invalid_input("object '" + *repeated + "': two in " + objects +
+                                " have this name; each needs one of its own"));
   scene.allowed_collisions = read_pairs(given.allowed_collisions, given.allowed_collision_pairs,
                                         (name + "->allowed_collisions").c_str());
   return scene;

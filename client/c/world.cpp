@@ -27,8 +27,8 @@ std::string doubts_of(const models::LoadedRobot& robot, const collision::RobotSo
   add(geometry::find_doubts(robot.chain, robot.shapes));
   if (std::string touching = collision::describe_always_touching(solids); !touching.empty())
     add({std::move(touching)});
-  add(geometry::find_unreachable(robot.chain, robot.shapes, surroundings.T_task_base,
-                                 surroundings.scene, surroundings.attached));
+  add(geometry::find_scene_doubts(robot.chain, robot.shapes, surroundings.T_task_base,
+                                  surroundings.scene, surroundings.attached));
   return lines;
 }
 
@@ -93,7 +93,7 @@ kinship_code kinship_world_create(const kinship_robot_file* file,
     require(world, "world");
     *world = nullptr;
     const kinship::models::LoadedRobot robot = read_robot_file(read_structure(file, "file"));
-    if (const auto error = kinship::geometry::find_missing_solids(robot.chain, robot.shapes))
+    if (const auto error = kinship::geometry::find_faults(robot.chain, robot.shapes))
       return remember(*error);
     const auto around =
         surroundings == nullptr

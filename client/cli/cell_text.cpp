@@ -50,6 +50,13 @@ std::string size_text(std::uint64_t bytes) {
 
 std::string percent_text(double part) { return number_text(100 * part, 0) + "%"; }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names)
+    text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 std::string kept_text(std::uint64_t kept, std::uint64_t dropped) {
   return std::to_string(kept) + (dropped > 0 ? " of " + std::to_string(kept + dropped) : "");
 }

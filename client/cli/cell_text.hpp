@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace kinship::cli {
 
@@ -20,6 +21,9 @@ std::string percent_text(double part);  ///< 0.25: "25%"
 
 /// "1 path", "6 paths", "0 paths".
 std::string count_text(std::uint64_t count, const std::string& noun);
+
+/// "a, b".
+std::string listed(const std::vector<std::string>& names);
 
 /// "20000 of 35012" where a cap left some out, else the number alone.
 std::string kept_text(std::uint64_t kept, std::uint64_t dropped);

@@ -16,6 +16,7 @@
 #include "proto/json/robot_answers_json.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/collision/edge_prover.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/mesh_files.hpp"
 
@@ -206,7 +207,12 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
   const Eigen::Isometry3d T_base_task =
       placement->value_or(Eigen::Isometry3d::Identity()).inverse();
   const auto answer_one = [&](const Eigen::Isometry3d& pose) -> std::optional<Error> {
-    InverseAnswer answer = solve(solver, T_base_task * pose * T_frame_tip, inverse_options);
+    const Eigen::Isometry3d T_base_tip = T_base_task * pose * T_frame_tip;
+    InverseAnswer answer = solve(solver, T_base_tip, inverse_options);
+    if (const std::string far = geometry::describe_far_place(
+            robot->chain, (T_base_tip * robot->description.T_tip_transfer).translation());
+        !far.empty())
+      err << kInverse << ": warning: " << far << '\n';
     if (world)
       leave_out_colliding(world->prover, options.clearance_m, answer);
     print_inverse(answer, options.json, out);

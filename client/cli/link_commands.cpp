@@ -182,13 +182,6 @@ void add_rows(const RobotLinks& links, const std::string& parent, std::size_t de
   }
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 /// One after the other below a heading, as many in a line as fit.
 void print_wrapped(const std::vector<std::string>& words, std::ostream& out) {
   constexpr std::size_t kColumns = 78;

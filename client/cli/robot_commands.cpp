@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <ostream>
 #include <random>
-#include <system_error>
 
 #include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
@@ -42,33 +40,31 @@ void warn_of_geometry(const char* command, const kinematics::Chain& chain,
 
 /// Adds the meshes that are here, or tells `err` why not.
 void add_meshes(const char* command, const models::RobotArguments& arguments,
-                const kinematics::RobotModel& robot, RobotDescription& description,
-                std::ostream& err) {
-  auto meshes = models::load_meshes(arguments, robot);
-  if (!meshes) {
-    err << command << ": no meshes: " << meshes.error().message << '\n';
-    return;
-  }
-  auto [named, contents, notes] = std::move(meshes).value();
-  for (const std::string& note : notes)
-    err << command << ": " << note << '\n';
-  description.meshes = std::move(named);
-  description.contents = std::move(contents);
+                kinematics::RobotModel& robot, std::ostream& err) {
+  const auto notes = models::add_meshes(arguments, robot);
+  if (!notes)
+    err << command << ": no meshes: " << notes.error().message << '\n';
+  else
+    for (const std::string& note : *notes)
+      err << command << ": " << note << '\n';
 }
 
-/// Tells the server of the meshes that are here, or `err` why not.
-void add_mesh_solids(const char* command, const models::RobotArguments& arguments,
-                     const kinematics::RobotModel& robot, RobotDescription& description,
-                     std::ostream& err) {
+/// Adds solids around the meshes that are here, or tells `err` why not.
+/// \return why the robot is not to be registered.
+std::optional<Error> add_mesh_solids(const char* command, const models::RobotArguments& arguments,
+                                     kinematics::RobotModel& robot, std::ostream& err) {
   const auto geometry = read_geometry(command, arguments, robot, err);
   if (!geometry)
-    return;
+    return std::nullopt;
+  if (auto error = geometry::find_impossible_solids(robot.chain, *geometry))
+    return error;
   warn_of_geometry(command, robot.chain, *geometry, err);
   auto fitted = collision::fit_robot(robot.chain, *geometry);
   if (fitted)
-    description.mesh_solids = std::move(fitted).value().mesh_solids;
+    robot.description.mesh_solids = std::move(fitted).value().mesh_solids;
   else
     err << command << ": no solids around its meshes: " << fitted.error().message << '\n';
+  return std::nullopt;
 }
 
 const char* type_text(kinematics::JointType type) {
@@ -178,7 +174,9 @@ void print_check(const RobotCheck& check, const kinematics::Chain& chain,
       << check.joints.size() << " joints\n";
   print_mimics(chain, out);
   print_transfer(description, out);
-  out << "geometry    " << geometry << '\n'
+  out << "reach       " << number_text(check.reach_m, 3) << " m to the tip link, stretched out; "
+      << number_text(check.transfer_distance_m, 3) << " m from there to the transfer frame\n"
+      << "geometry    " << geometry << '\n'
       << "structure   " << check.structure << '\n'
       << "solver      " << check.solver << '\n'
       << "inverse     " << number_text(check.solutions_per_pose, 2) << " solutions and "
@@ -198,8 +196,7 @@ void print_check(const RobotCheck& check, const kinematics::Chain& chain,
 /// Of a bare URDF: by default poses are of the tip link itself.
 void warn_without_transfer(const char* command, const models::RobotArguments& arguments,
                            const RobotDescription& description, std::ostream& err) {
-  std::error_code unreadable;
-  if (!arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable))
+  if (models::says_transfer(arguments))
     return;
   err << command << ": without --transfer goals mean the tip link '" << description.tip_link
       << "' itself; if it holds a tool, say where that is in the tip link: --transfer \"x y z qx "
@@ -254,6 +251,8 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   check.robot = chain.digest();
   check.base_link = chain.base_link();
   check.tip_link = chain.tip_link();
+  check.reach_m = geometry::reach_m(chain);
+  check.transfer_distance_m = geometry::transfer_distance_m(chain);
   check.structure = inverse::describe_structure(chain);
   const inverse::Solver solver(chain);
   check.solver = solver.name();
@@ -264,7 +263,11 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
     out << json::to_json(check) << '\n';
   else
     print_check(check, chain, robot->description, geometry_words, out);
-  if (options.json || !geometry)
+  if (!geometry)
+    return kDone;
+  if (const auto error = geometry::find_impossible_solids(chain, *geometry))
+    return refuse(kCommand, *error, err);
+  if (options.json)
     return kDone;
   const auto fitted = collision::fit_robot(chain, *geometry);
   if (fitted && !fitted->mesh_solids.solids.empty())
@@ -279,13 +282,15 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
   if (!described)
     return refuse(kCommand, described.error(), err);
   print_warnings(kCommand, described->warnings, err);
-  RobotDescription description = described->description;
+  auto read = models::read_model(*std::move(described));
+  if (!read)
+    return refuse(kCommand, read.error(), err);
+  kinematics::RobotModel robot = *std::move(read);
+  const RobotDescription& description = robot.description;
   warn_without_transfer(kCommand, arguments, description, err);
-  if (const auto robot =
-          models::read_model(*std::move(described))) {  // else the server says why not
-    add_mesh_solids(kCommand, arguments, *robot, description, err);
-    add_meshes(kCommand, arguments, *robot, description, err);
-  }
+  if (const auto error = add_mesh_solids(kCommand, arguments, robot, err))
+    return refuse(kCommand, *error, err);
+  add_meshes(kCommand, arguments, robot, err);
   const auto reply = server.register_robot(description);
   if (!reply)
     return refuse(kCommand, reply.error(), err);

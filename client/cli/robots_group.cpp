@@ -1,21 +1,29 @@
+#include <unistd.h>
+
+#include <iostream>
+
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
 #include "client/cli/compare_command.hpp"
+#include "client/cli/init_command.hpp"
 #include "client/cli/kinematics_commands.hpp"
 #include "client/cli/link_commands.hpp"
 #include "client/cli/robot_commands.hpp"
 #include "client/cli/session.hpp"
 #include "client/cli/show_commands.hpp"
 #include "client/cli/srdf_command.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/cli/upkeep_commands.hpp"
 #include "robots/collision/edge_prover.hpp"
+#include "robots/models/chain_file.hpp"
 
 namespace kinship::cli {
 namespace {
 
 void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
   command
-      .add_option("robot", robot.source, "URDF file, or a folder with chain.toml and robot.urdf")
+      .add_option("robot", robot.source,
+                  "Folder with a chain.toml ('kinship robots init' makes one), or URDF file")
       ->required()
       ->type_name("FILE");
   arguments::add_robot_options(command, robot);
@@ -31,6 +39,33 @@ void add_choice(CLI::App& command, int& max_solutions, double& min_distance) {
       .add_option("--min-distance", min_distance,
                   "Between the solutions of a pose, joint units (default 0.2)")
       ->check(arguments::between(0.0, 100.0));
+}
+
+void add_init(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<InitOptions>();
+  CLI::App* command = add_command(
+      group, "init", "Write the chain.toml of a URDF: then its folder is all that commands need",
+      "kinship robots init arm.urdf -o arm\n"
+      "  kinship robots init arm.urdf -o arm --base base_link --tip tool0 --transfer \"0 0 0.12 0 "
+      "0 0 1\" --package arm_description=src/arm_description --srdf arm.srdf\n"
+      "  kinship robots check arm");
+  command->add_option("urdf", options->robot.source, "URDF file, also xacro")
+      ->required()
+      ->type_name("FILE");
+  arguments::add_robot_options(*command, options->robot);
+  command
+      ->add_option("--limit-slack", options->robot.limit_slack,
+                   "A start or goal beyond a joint limit by less is moved onto it, joint units")
+      ->check(arguments::between(0.0, models::kMaxLimitSlack));
+  command
+      ->add_option("-o,--output", options->folder,
+                   "Folder of the chain.toml, made if it is not there (default: the URDF's)")
+      ->type_name("FOLDER");
+  command->add_flag("--force", options->force, "Replace a chain.toml that is there");
+  on_run(*command, session, [&session, options] {
+    const bool asks = isatty(STDIN_FILENO) == 1 && is_terminal(session.err);
+    return init_robot(*options, asks ? &std::cin : nullptr, session.out, session.err);
+  });
 }
 
 void add_check(CLI::App& group, Session& session) {
@@ -253,8 +288,7 @@ void add_remove(CLI::App& group, Session& session) {
       ->required()
       ->type_name("ROBOT");
   command->add_flag("--yes", options->yes,
-                    "Also if it has attempts; without, it is only said what would happen (exit "
-                    "code 2)");
+                    "Do it; without, it is only said what would happen (exit code 2)");
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     return remove_robot(server, options->robot, options->yes, session.json, session.out,
@@ -279,6 +313,7 @@ void add_robots(CLI::App& app, Session& session) {
   add_register(*robots, session);
   add_rename(*robots, session);
   add_remove(*robots, session);
+  add_init(*robots, session);
   add_check(*robots, session);
   add_links(*robots, session);
   add_frames(*robots, session);

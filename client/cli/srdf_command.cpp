@@ -12,6 +12,7 @@
 #include "proto/files/output_file.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "robots/collision/pair_sampling.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/kinematics/link_tree.hpp"
 #include "robots/models/suggested_ends.hpp"
@@ -127,6 +128,10 @@ int suggest_srdf(const SuggestSrdfOptions& options, std::ostream& out, std::ostr
   const auto geometry = read_geometry(kSuggestSrdf, arguments, *robot, err);
   if (!geometry)
     return kFailed;
+  if (const auto error = geometry::find_impossible_solids(robot->chain, *geometry))
+    return refuse(kSuggestSrdf, *error, err);
+  for (const std::string& doubt : geometry::find_doubts(robot->chain, *geometry))
+    err << kSuggestSrdf << ": warning: " << doubt << '\n';
   if (links->is_suggested)
     err << kSuggestSrdf << ": base and tip are suggested ones: --base " << robot->chain.base_link()
         << " --tip " << robot->chain.tip_link() << '\n';

@@ -44,6 +44,12 @@ int say_what_would_happen(link::Client& server, const RobotSummary& robot, std::
       link::rows_of(server, {.verb = AdminVerb::ListDistributions, .robot = robot.robot.hex()});
   if (!distributions)
     return refuse(kRemove, distributions.error(), err);
+  if (robot.attempts == 0) {
+    err << kRemove << ": this would delete '" << robot.label << "' (" << robot.robot.short_hex()
+        << "), which has no attempts, and " << count_text(distributions->size(), "distribution")
+        << " for it. To do it: kinship robots remove " << robot.label << " --yes\n";
+    return kWrongUsage;
+  }
   err << kRemove << ": this would retire " << count_text(robot.paths, "path") << " of '"
       << robot.label << "' (" << robot.robot.short_hex() << "): out of every fit. "
       << count_text(robot.attempts, "attempt") << " would stay on record, "
@@ -214,7 +220,7 @@ int remove_robot(link::Client& server, const std::string& robot, bool confirmed,
   const auto summary = link::find_robot(server, robot);
   if (!summary)
     return refuse(kRemove, summary.error(), err);
-  if (!confirmed && summary->attempts > 0)
+  if (!confirmed)
     return say_what_would_happen(server, *summary, err);
   // By its digest: the label may be another robot's by now.
   const auto removal = link::remove_robot(server, summary->robot.hex());

@@ -50,7 +50,7 @@ int rename_robot(link::Client& server, const std::string& robot, const std::stri
                  bool json, std::ostream& out, std::ostream& err);
 
 /// `robots remove`: deletes a robot without attempts; otherwise retires its paths.
-/// \param confirmed  false: for a robot with attempts, prints the effect and returns kWrongUsage.
+/// \param confirmed  false: prints the effect and returns kWrongUsage.
 int remove_robot(link::Client& server, const std::string& robot, bool confirmed, bool json,
                  std::ostream& out, std::ostream& err);
 

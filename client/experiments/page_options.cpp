@@ -65,7 +65,10 @@ void add_page_command(CLI::App& app, PageOptions& options) {
       "NAME=FILE: results over the same problems to show beside those, e.g. of one guide alone; "
       "may be repeated")
       ->expected(1, CLI::detail::expected_max_vector_size);
-  add("--teacher", "MODEL,PROBLEMS,RESULTS of a robot whose experience it is; may be repeated")
+  add("--teacher",
+      "MODEL,PROBLEMS,RESULTS of a robot whose experience it is, MODEL a folder as 'kinship robots "
+      "init' makes it; may be "
+      "repeated")
       ->expected(1, CLI::detail::expected_max_vector_size);
   page->add_option("--output", options.output, "file to write; standard output if missing");
   page->add_flag("--draws", options.draws, "draw the run that standard input describes")->group("");

@@ -13,7 +13,7 @@ std::vector<std::string> GeometryWarnings::find(const Problem& problem,
                                                 const PlannedProblem& planned) {
   const auto T_task_base = problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
   std::vector<std::string> doubts =
-      geometry::find_unreachable(chain_, shapes_, T_task_base, problem.scene, problem.attached);
+      geometry::find_scene_doubts(chain_, shapes_, T_task_base, problem.scene, problem.attached);
   for (const auto& [inner, mesh] : planned.enclosed)
     doubts.push_back("'" + inner + "' lies wholly within the mesh of '" + mesh +
                      "' at the start, and no check notices that: only the surface of a mesh is "

@@ -14,6 +14,7 @@
 #include "client/guided/query_outcome.hpp"
 #include "client/guided/search_notes.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/inverse/unreached.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/configuration_sampler.hpp"
@@ -349,7 +350,10 @@ class Planning {
     const kinematics::Chain& chain = robot_.chain;
     const Eigen::Isometry3d T_base_tip =
         T_task_base_.inverse() * T_task_wanted * chain.T_tip_transfer().inverse(Eigen::Isometry);
-    return describe(inverse::find_unreached(chain, T_base_tip), chain);
+    const std::string why = describe(inverse::find_unreached(chain, T_base_tip), chain);
+    const std::string far = geometry::describe_far_place(
+        chain, (T_base_tip * chain.T_tip_transfer()).translation());
+    return why.empty() || far.empty() ? why + far : why + "; " + far;
   }
 
   FindNear find_near() {

@@ -21,8 +21,8 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
-  kinship-plan --robot arm.urdf --base base_link --tip tool0 --problems problems.jsonl
-      plan with uniform samples; results on standard output
+  kinship-plan --robot arm --problems problems.jsonl
+      plan with uniform samples; results on standard output; 'kinship robots init arm.urdf -o arm' made the folder of the robot
   kinship-plan --robot arm.urdf --base base_link --tip tool0 --srdf arm.srdf --package arm_description=src/arm_description
       --task box_to_shelf --problems problems.jsonl --guidance auto --report yes --json > results.jsonl
       register the robot, ask kinshipd for guidance, plan uniformly if there is none, report every attempt
@@ -72,7 +72,7 @@ void add_inputs(CLI::App& app, PlanOptions& options) {
       ->required()
       ->type_name("FILE");
   app.add_option("--robot,--model,robot", options.robot.source,
-                 "URDF file of the robot, or its model folder (robot.urdf and chain.toml)")
+                 "model folder of the robot ('kinship robots init' makes one), or its URDF file")
       ->required()
       ->type_name("FILE");
   arguments::add_robot_options(app, options.robot);
@@ -122,8 +122,8 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       ->capture_default_str();
   app.add_option("--limit-slack", settings.limit_slack,
                  "a start or goal beyond a joint limit by less than this is moved onto it, joint "
-                 "units; 0: none is")
-      ->check(between(0.0, 0.1))
+                 "units; 0: none is (default: that of the model folder, or 0.0001)")
+      ->check(between(0.0, models::kMaxLimitSlack))
       ->capture_default_str();
   app.add_option("--seed,--seed-offset", options.seed_offset,
                  "added to the seed of every problem (of one without: 0)")
@@ -353,6 +353,8 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
       arguments::read_selection(raw.selection, std::chrono::system_clock::now()).value_or_throw();
   if (!raw.selection.sources.empty())
     options.sources = arguments::parse_robot_names(raw.selection.sources).value_or_throw();
+  if (app.count("--limit-slack") > 0)
+    options.robot.limit_slack = options.settings.limit_slack;
   if (app.count("--resolution") > 0) {
     options.settings.resolution = raw.resolution;
     options.settings.clearance_m = 0;

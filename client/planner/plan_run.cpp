@@ -229,9 +229,11 @@ class Run {
 
 }  // namespace
 
-RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
+RunSummary run_plan(const PlanOptions& given, const RunStreams& streams,
                     const std::function<bool()>& stop) {
-  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  const models::LoadedRobot robot = models::load_robot(given.robot).value_or_throw();
+  PlanOptions options = given;
+  options.settings.limit_slack = robot.limit_slack.value_or(options.settings.limit_slack);
   for (const std::string& doubt : geometry::find_doubts(robot.chain, robot.shapes))
     streams.messages << "warning: " << doubt << '\n';
   for (const std::string& warning : robot.warnings)
@@ -240,10 +242,9 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());
   const kinematics::RobotModel& model = robot;
-  ServerLine server(options, model,
-                    {[&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
-                     [&options, &model] { return models::load_meshes(options.robot, model); }},
-                    streams.messages, stop);
+  ServerLine server(
+      options, model, [&robot] { return collision::fit_robot(robot.chain, robot.shapes); },
+      streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};

@@ -7,6 +7,7 @@
 
 #include "client/link/host_name.hpp"
 #include "client/link/robot_names.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::planner {
 namespace {
@@ -24,11 +25,11 @@ guided::NoGuidance why_not(const Error& error) {
 
 }  // namespace
 
-ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot, Geometry geometry,
+ServerLine::ServerLine(const PlanOptions& options, kinematics::RobotModel robot, FitRobot fit,
                        std::ostream& messages, const std::function<bool()>& stop)
     : options_(options),
       robot_(std::move(robot)),
-      geometry_(std::move(geometry)),
+      fit_(std::move(fit)),
       messages_(messages),
       stop_(stop) {
   if (options_.guidance == GuidanceMode::Uniform)
@@ -78,7 +79,7 @@ Result<RegisterReply> ServerLine::send_description() {
 bool ServerLine::add_mesh_solids() {
   if (!robot_.description.mesh_solids.solids.empty())
     return false;
-  Result<collision::FittedRobot> fitted = geometry_.fit();
+  Result<collision::FittedRobot> fitted = fit_();
   if (!fitted)
     messages_ << "robot '" << robot_.description.label
               << "': no solids around its meshes: " << fitted.error().message << '\n';
@@ -89,19 +90,15 @@ bool ServerLine::add_mesh_solids() {
 
 /// \return whether there are any, which were not there before.
 bool ServerLine::add_meshes() {
-  if (options_.robot.without_meshes || !robot_.description.meshes.empty())
+  if (!robot_.description.meshes.empty())
     return false;
-  Result<geometry::LinkMeshes> meshes = geometry_.meshes();
-  if (!meshes) {
-    messages_ << "robot '" << robot_.description.label << "': no meshes: " << meshes.error().message
+  const auto notes = models::add_meshes(options_.robot, robot_);
+  if (!notes)
+    messages_ << "robot '" << robot_.description.label << "': no meshes: " << notes.error().message
               << '\n';
-    return false;
-  }
-  auto [named, contents, notes] = std::move(meshes).value();
-  for (const std::string& note : notes)
-    messages_ << "robot '" << robot_.description.label << "': " << note << '\n';
-  robot_.description.meshes = std::move(named);
-  robot_.description.contents = std::move(contents);
+  else
+    for (const std::string& note : *notes)
+      messages_ << "robot '" << robot_.description.label << "': " << note << '\n';
   return !robot_.description.meshes.empty();
 }
 

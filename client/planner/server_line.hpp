@@ -13,7 +13,6 @@
 #include "client/planner/problem_lines.hpp"
 #include "proto/types/attempt.hpp"
 #include "robots/collision/fitted_links.hpp"
-#include "robots/geometry/link_meshes.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::planner {
@@ -23,19 +22,14 @@ namespace kinship::planner {
 class ServerLine {
  public:
   using FitRobot = std::function<Result<collision::FittedRobot>()>;
-  using LoadMeshes = std::function<Result<geometry::LinkMeshes>()>;
-  /// What a server may be told of the robot's meshes, each when it has use for it.
-  struct Geometry {
-    FitRobot fit;       ///< solids around them
-    LoadMeshes meshes;  ///< themselves
-  };
 
   /// Registers the robot if the options need the server. A failed connection or a refused
   /// registration is written to `messages` and means no guidance.
-  /// \param geometry  called if the server has no better geometry of the robot. Borrowed.
+  /// \param fit       makes solids around the robot's meshes; called if the server has no better
+  ///                  geometry of the robot. Borrowed.
   /// \param messages  for people; borrowed.
   /// \param stop      called during waits for a server; true ends the wait. Borrowed.
-  ServerLine(const PlanOptions& options, kinematics::RobotModel robot, Geometry geometry,
+  ServerLine(const PlanOptions& options, kinematics::RobotModel robot, FitRobot fit,
              std::ostream& messages, const std::function<bool()>& stop);
 
   /// Fetches guidance for every placement of the problems and writes the answers to `messages`.
@@ -75,7 +69,7 @@ class ServerLine {
 
   const PlanOptions options_;
   kinematics::RobotModel robot_;
-  const Geometry geometry_;
+  const FitRobot fit_;
   std::ostream& messages_;
   const std::function<bool()>& stop_;
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had

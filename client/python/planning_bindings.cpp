@@ -381,14 +381,15 @@ void bind_planning(py::module_& module) {
          const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
          const std::string& sampling_mode, const std::string& planner, std::uint64_t max_checks,
          std::optional<double> clearance, std::optional<double> resolution,
-         std::uint64_t shortcut_checks, int max_goals, double limit_slack, double overshoot,
-         double gate_distance, double retreat) {
+         std::uint64_t shortcut_checks, int max_goals, std::optional<double> limit_slack,
+         double overshoot, double gate_distance, double retreat) {
         guided::PlanSettings settings;
         settings.max_checks = max_checks;
         read_proof(clearance, resolution, settings);
         settings.shortcut_checks = shortcut_checks;
         settings.max_goals = max_goals;
-        settings.limit_slack = limit_slack;
+        settings.limit_slack =
+            limit_slack.value_or(robot->limit_slack().value_or(settings.limit_slack));
         settings.overshoot = overshoot;
         settings.gate_distance = gate_distance;
         settings.tracks.retreat_m = retreat;
@@ -401,8 +402,7 @@ void bind_planning(py::module_& module) {
       py::arg("max_checks") = guided::PlanSettings{}.max_checks, py::arg("clearance") = py::none(),
       py::arg("resolution") = py::none(),
       py::arg("shortcut_checks") = guided::PlanSettings{}.shortcut_checks,
-      py::arg("max_goals") = guided::PlanSettings{}.max_goals,
-      py::arg("limit_slack") = guided::PlanSettings{}.limit_slack,
+      py::arg("max_goals") = guided::PlanSettings{}.max_goals, py::arg("limit_slack") = py::none(),
       py::arg("overshoot") = guided::PlanSettings{}.overshoot,
       py::arg("gate_distance") = guided::PlanSettings{}.gate_distance,
       py::arg("retreat") = guided::PlanSettings{}.tracks.retreat_m,
@@ -418,7 +418,8 @@ clearance        what comes nearer to an obstacle counts as touching, m, by defa
 resolution       instead of a proof: between checked configurations, joint units
 shortcut_checks  spent on shortening the path
 max_goals        goal configurations found for a goal pose
-limit_slack      a start or goal beyond a limit by less is moved onto it, joint units
+limit_slack      a start or goal beyond a limit by less is moved onto it, joint units; by default
+                 what the robot's chain.toml says, or 0.0001
 overshoot        trees grow this much farther than the sample, 1 or more
 gate_distance    of a query to what the mixture knows: beyond it the mixture gives fewer samples
 retreat          the hand backs out of its goal so far, m

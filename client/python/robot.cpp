@@ -32,9 +32,12 @@ std::shared_ptr<Robot> Robot::load(const models::RobotArguments& arguments,
                                    std::vector<std::string>& warnings) {
   models::DescribedRobot described = models::describe_robot(arguments).value_or_throw();
   warnings = std::move(described.warnings);
+  const std::optional<double> limit_slack = described.limit_slack;
   kinematics::RobotModel model = models::read_model(std::move(described)).value_or_throw();
   auto shapes = models::load_shapes(arguments, model);
-  return std::make_shared<Robot>(std::move(model), std::move(shapes), arguments);
+  models::RobotArguments files = arguments;
+  files.limit_slack = limit_slack;
+  return std::make_shared<Robot>(std::move(model), std::move(shapes), std::move(files));
 }
 
 std::shared_ptr<Robot> Robot::of_description(RobotDescription description) {
@@ -78,7 +81,7 @@ Eigen::MatrixXd Robot::inverse(const Eigen::Isometry3d& T_base_frame, const std:
 std::shared_ptr<const guided::PlannedRobot> Robot::planned() const {
   if (!shapes_)
     throw Failure(shapes_.error());
-  if (const auto error = geometry::find_missing_solids(chain(), *shapes_))
+  if (const auto error = geometry::find_faults(chain(), *shapes_))
     throw Failure(*error);
   const std::scoped_lock lock(mutex_);
   if (!planned_)
@@ -92,13 +95,8 @@ kinematics::RobotModel Robot::model_for_server() const {
     return model;
   if (auto fitted = collision::fit_robot(model.chain, *shapes_))
     model.description.mesh_solids = std::move(fitted).value().mesh_solids;
-  if (!files_)
-    return model;
-  if (auto meshes = models::load_meshes(*files_, model)) {
-    auto [named, contents, notes] = std::move(meshes).value();
-    model.description.meshes = std::move(named);
-    model.description.contents = std::move(contents);
-  }
+  if (files_)  // else there are none; and a server needs none
+    static_cast<void>(models::add_meshes(*files_, model));
   return model;
 }
 

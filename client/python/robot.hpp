@@ -58,6 +58,8 @@ class Robot {
 
   /// Whether its meshes are to stay here.
   bool keeps_meshes() const { return files_ && files_->without_meshes; }
+  /// How far a start or goal may be beyond a limit, joint units, if the robot's files say so.
+  std::optional<double> limit_slack() const { return files_ ? files_->limit_slack : std::nullopt; }
 
   /// The robot with its known meshes and solids around them, if any, in its description.
   kinematics::RobotModel model_for_server() const;

@@ -13,6 +13,8 @@
 #include "proto/json/problem_json.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/problem.hpp"
+#include "proto/types/scene_names.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/models/mesh_files.hpp"
 
 namespace kinship::python {
@@ -33,7 +35,19 @@ std::string obstacles_text(const Scene& scene) {
   return std::to_string(obstacle_count(scene)) + " obstacles";
 }
 
+/// \throws Failure(InvalidInput) for a name that is empty or another object's.
+void require_new_name(const Scene& scene, const std::string& name) {
+  if (name.empty())
+    throw Failure(invalid_input("object: its name is empty"));
+  if (has_object(scene, name))
+    throw Failure(invalid_input("object '" + name +
+                                "': the scene has one of this name; each needs a name of its own"));
+}
+
 void add_solid(Scene& scene, const std::string& name, const Array& pose, const Shape& shape) {
+  require_new_name(scene, name);
+  if (const auto why = geometry::broken_rule(shape))
+    throw Failure(invalid_input("object '" + name + "': " + *why));
   scene.objects.push_back({.name = name, .shape = shape, .T_task_object = read_pose(pose, name)});
 }
 
@@ -46,9 +60,13 @@ Eigen::Vector3d read_triple(const Array& values, const char* name) {
 /// Reads the files that a scene names at once, so that the caller gets their faults.
 void add_mesh(Scene& scene, const std::string& name, const std::string& file, const Array& pose,
               const Array& scale, const Packages& packages) {
+  require_new_name(scene, name);
+  const Eigen::Vector3d factors = read_triple(scale, "scale");
+  if (!factors.allFinite() || (factors.array() == 0).any())
+    throw Failure(invalid_input("object '" + name + "': scale must be three numbers other than 0"));
   Scene mesh{.objects = {}};
   mesh.meshes.push_back({.name = name,
-                         .mesh = {.file = file, .scale = read_triple(scale, "scale")},
+                         .mesh = {.file = file, .scale = factors},
                          .T_task_mesh = read_pose(pose, name)});
   std::vector<AttachedObject> none;
   const py::gil_scoped_release unlocked;
@@ -186,6 +204,9 @@ void bind_scenes(py::module_& module) {
   const std::vector<double> ones = {1, 1, 1};
   py::class_<Scene>(module, "Scene",
                     R"(Obstacles in the task's frame. Poses are those of centres: (4, 4), or (7,).
+
+Each has a name of its own. Adding one raises InvalidInput with its name for a name that is there
+already, and for a size that is not above 0 or above 1000 m.
 
 >>> scene = kinship.Scene()
 >>> scene.add_box("table", [0.6, 0, -0.05, 0, 0, 0, 1], [0.8, 1.2, 0.1])

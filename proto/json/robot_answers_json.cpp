@@ -61,6 +61,8 @@ std::string to_json(const RobotCheck& check) {
   document["poses_without_solution"] = check.poses_without_solution;
   document["solutions_per_pose"] = check.solutions_per_pose;
   document["time_per_pose_us"] = check.time_per_pose_us;
+  document["reach_m"] = check.reach_m;
+  document["transfer_distance_m"] = check.transfer_distance_m;
   document["links"] = json_of(check.links);
   return write(kRobotCheckFormat, document);
 }

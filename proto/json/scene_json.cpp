@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/number_text.hpp"
+#include "proto/types/scene_names.hpp"
 
 namespace kinship::json {
 namespace {
@@ -20,9 +22,12 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 /// m
 double read_extent(const Reader& reader) {
-  const double extent = reader.number(std::numeric_limits<double>::lowest(), kMaxPlacement_m);
+  const double extent = reader.number();
   if (extent < std::numeric_limits<double>::min())
-    reader.refuse("must be above 0");
+    reader.refuse(number_text(extent) + " m, must be above 0");
+  if (extent > kMaxPlacement_m)
+    reader.refuse(number_text(extent) + " m exceeds " + number_text(kMaxPlacement_m) +
+                  " m; these are probably millimetres");
   return extent;
 }
 
@@ -202,6 +207,8 @@ Scene read_scene(const Reader& reader) {
         object.cloud.voxel_m = voxel->number(kMinVoxel_m, kMaxVoxel_m);
       scene.clouds.push_back(std::move(object));
     }
+  if (const auto name = find_repeated_name(scene))
+    reader.refuse("two objects are named '" + *name + "': each needs a name of its own");
   return scene;
 }
 

@@ -39,7 +39,7 @@ Result<Eigen::Isometry3d> from_pose_array(const PoseArray& pose) {
     if (std::abs(pose[i]) > kMaxPlacement_m)
       return Error{ErrorCode::InvalidInput, "pose: coordinate " + number_text(pose[i]) +
                                                 " m exceeds " + number_text(kMaxPlacement_m) +
-                                                " m"};
+                                                " m; these are probably millimetres"};
   Eigen::Quaterniond q(pose[6], pose[3], pose[4], pose[5]);
   constexpr double kNormTolerance = 1e-3;
   if (std::abs(q.norm() - 1) > kNormTolerance)

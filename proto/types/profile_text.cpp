@@ -42,6 +42,9 @@ std::optional<T> value_of(const Field<Of, T>& option, std::string_view text) {
     const Result<T> word = parse_word<T>(text);
     return word ? std::optional(*word) : std::nullopt;
   } else {
+    if constexpr (std::is_same_v<T, bool>)
+      if (text == "yes" || text == "no")
+        return text == "yes";
     if (text == "auto" && option.name == "components")
       return T{0};
     if constexpr (std::is_same_v<T, double>)
@@ -65,6 +68,8 @@ std::string fault_of(const Field<Of, T>& option) {
     for (const std::string_view word : Words<T>::kWords)
       words += (words.empty() ? "" : " or ") + std::string(word);
     return "is not " + words;
+  } else if constexpr (std::is_same_v<T, bool>) {
+    return "is not yes or no, nor 1 or 0";
   } else {
     return std::string("is not a") + (std::is_integral_v<T> ? " whole" : "") + " number from " +
            number_text(option.rules.min) + " to " + number_text(option.rules.max);

@@ -51,6 +51,8 @@ struct RobotCheck {
   std::uint64_t poses_without_solution = 0;
   double solutions_per_pose = 0;
   double time_per_pose_us = 0;          ///< CPU time
+  double reach_m = 0;                   ///< of the tip link from the base link, stretched out
+  double transfer_distance_m = 0;       ///< of the transfer frame from the tip link
   std::vector<CheckedLink> links = {};  ///< empty if the geometry is not known here
 };
 

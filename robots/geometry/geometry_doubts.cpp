@@ -15,11 +15,24 @@ namespace {
 // A link that moves and sticks out farther than the whole chain reaches is drawn in another unit: a
 // mesh in mm that is read as m is a thousand times too large. Three, because a tool may be long.
 constexpr double kMaxMovingExtent = 3;
+// With so many times the reach it cannot be meant: a finger of 50 mm in mm has as much.
+constexpr double kImpossibleMovingExtent = 50;
 // A link that stands still may be a table, a cell's floor or its walls, so it gets more room; a
 // base of a tenth of the reach in mm has a hundred times the reach.
 constexpr double kMaxStandingExtent = 50;
 // The other way round: a link of an arm that reaches 1 m is not smaller than 1 mm.
 constexpr double kMinExtent = 1e-3;
+// A tool is seldom longer than the arm.
+constexpr double kMaxTool = 2;
+constexpr double kImpossibleTool = 10;
+// A gantry may be as long, m; more without the strokes of its rails is no arm.
+constexpr double kLargestReach_m = 50;
+constexpr double kImpossibleReach_m = 200;
+// A hall's floor may be as large, of the reach.
+constexpr double kMaxObstacle = 100;
+// A place so far away, of the reach, is no mistake of a few metres.
+constexpr double kFarPlace = 10;
+constexpr double kMillimetre_m = 1e-3;
 // For the bounds an arm reaches at least this far: the tip of a chain of one joint may lie on its
 // axis.
 constexpr double kShortestReach_m = 0.5;
@@ -56,7 +69,8 @@ double farthest_m(const Extents& box) {
 }
 
 /// How far the moving frame of each moving joint can get from the base link's origin.
-std::vector<double> joint_reaches_m(const kinematics::Chain& chain) {
+/// \param stroke  of the sliding joints that counts, 1 or 0.
+std::vector<double> joint_reaches_m(const kinematics::Chain& chain, double stroke = 1) {
   std::vector<double> reaches_m;
   for (int j = 0; j < chain.moving_joints(); ++j) {
     const kinematics::Joint& joint = chain.moving_joint(j);
@@ -64,7 +78,7 @@ std::vector<double> joint_reaches_m(const kinematics::Chain& chain) {
     double reach = before < 0 ? 0 : reaches_m[static_cast<std::size_t>(before)];
     reach += joint.T_previous_joint.translation().norm();
     if (joint.type == kinematics::JointType::Prismatic)
-      reach += std::max(std::abs(joint.lower), std::abs(joint.upper));
+      reach += stroke * std::max(std::abs(joint.lower), std::abs(joint.upper));
     reaches_m.push_back(reach);
   }
   return reaches_m;
@@ -107,21 +121,54 @@ std::vector<std::string> visual_only(const kinematics::Chain& chain, const Robot
   return names;
 }
 
+double scale_of(double reach_m) { return std::max(reach_m, kShortestReach_m); }
+
+/// "; these are probably millimetres (0.4 m)" of a length that is too large, if it would be likely
+/// as such; else "; lengths are m".
+/// \param likely_m  the largest that would be.
+std::string unit_text(double length_m, double likely_m) {
+  constexpr double kSmallest = 0.005;  // of the largest
+  const double as_millimetres_m = kMillimetre_m * length_m;
+  return as_millimetres_m > likely_m || as_millimetres_m < kSmallest * likely_m
+             ? "; lengths are m"
+             : "; these are probably millimetres (" + short_text(as_millimetres_m) + " m)";
+}
+
+/// A link that is far too large.
+std::string too_large_text(const LinkExtent& extent, double reach_m) {
+  return "link '" + extent.link + "' of an arm that reaches " + short_text(reach_m) + " m is " +
+         short_text(extent.size_m.maxCoeff()) + " m long and sticks out " +
+         short_text(extent.farthest_m) + " m from its origin" +
+         unit_text(extent.farthest_m, kMaxMovingExtent * scale_of(reach_m)) +
+         ": a mesh in mm needs scale=\"0.001 0.001 0.001\" in the URDF";
+}
+
 /// The doubt about a link's size; empty if it may be meant.
 std::string size_doubt(const LinkExtent& extent, double reach_m) {
   const double length_m = extent.size_m.maxCoeff();
-  const double scale_m = std::max(reach_m, kShortestReach_m);
+  const double scale_m = scale_of(reach_m);
   const double limit_m = (extent.moves ? kMaxMovingExtent : kMaxStandingExtent) * scale_m;
   const std::string link = "link '" + extent.link + "'";
   const std::string reach = " of an arm that reaches " + short_text(reach_m) + " m";
   if (extent.farthest_m > limit_m)
-    return link + reach + " is " + short_text(length_m) + " m long and sticks out " +
-           short_text(extent.farthest_m) +
-           " m from its origin: a mesh in mm needs scale=\"0.001 0.001 0.001\" in the URDF";
+    return too_large_text(extent, reach_m);
   if (length_m < kMinExtent * scale_m)
     return link + reach + " is only " + short_text(1000 * length_m) +
            " mm long: lengths in a URDF are m; is its mesh scaled twice?";
   return "";
+}
+
+std::string reach_doubt(double reach_m) {
+  return "the arm reaches " + short_text(reach_m) + " m from its base, stretched out" +
+         unit_text(reach_m, kLargestReach_m);
+}
+
+/// The transfer frame's distance from the tip link where that is too far.
+std::string tool_doubt(const kinematics::Chain& chain) {
+  const double tool_m = transfer_distance_m(chain), arm_m = reach_m(chain);
+  return "the transfer frame is " + short_text(tool_m) + " m away from its tip link '" +
+         chain.tip_link() + "', of an arm that reaches " + short_text(arm_m) + " m" +
+         unit_text(tool_m, kMaxTool * scale_of(arm_m));
 }
 
 /// An object of a scene or of a hand, to be looked at.
@@ -148,7 +195,7 @@ std::vector<Placed> placed_in(const Scene& scene) {
 double reach_of_solids_m(const kinematics::Chain& chain, const RobotShapes& shapes,
                          const std::vector<AttachedObject>& attached) {
   const std::vector<double> joints_m = joint_reaches_m(chain);
-  double reach = reach_m(chain);
+  double reach = reach_m(chain) + transfer_distance_m(chain);
   for (const LinkShape& shape : shapes.shapes) {
     const auto& link = chain.links()[static_cast<std::size_t>(shape.link)];
     reach = std::max(reach, reach_of_link_m(link, joints_m) + farthest_m(box_of(shape)));
@@ -208,7 +255,11 @@ std::vector<LinkExtent> link_extents(const kinematics::Chain& chain, const Robot
 
 double reach_m(const kinematics::Chain& chain) {
   return joint_reaches_m(chain)[chain.joints().size() - 1] +
-         (chain.T_last_tip() * chain.T_tip_transfer()).translation().norm();
+         chain.T_last_tip().translation().norm();
+}
+
+double transfer_distance_m(const kinematics::Chain& chain) {
+  return chain.T_tip_transfer().translation().norm();
 }
 
 std::vector<std::string> find_doubts(const kinematics::Chain& chain, const RobotShapes& shapes) {
@@ -225,11 +276,48 @@ std::vector<std::string> find_doubts(const kinematics::Chain& chain, const Robot
     doubts.push_back(
         "no link has a solid: the robot passes through everything; give its links <collision> "
         "elements in the URDF");
+  if (reach_m(chain) > kLargestReach_m)
+    doubts.push_back(reach_doubt(reach_m(chain)));
+  if (transfer_distance_m(chain) > kMaxTool * scale_of(reach_m(chain)))
+    doubts.push_back(tool_doubt(chain));
   for (const LinkExtent& extent : link_extents(chain, shapes))
     if (extent.solids > 0)
       if (std::string doubt = size_doubt(extent, reach_m(chain)); !doubt.empty())
         doubts.push_back(std::move(doubt));
   return doubts;
+}
+
+std::optional<Error> find_impossible_lengths(const kinematics::Chain& chain) {
+  const double arm_m = joint_reaches_m(chain, 0)[chain.joints().size() - 1] +
+                       chain.T_last_tip().translation().norm();
+  if (arm_m > kImpossibleReach_m)
+    return invalid_input(reach_doubt(arm_m) + ": more than " + short_text(kImpossibleReach_m) +
+                         " m, rails not counted, is taken for no arm");
+  if (transfer_distance_m(chain) > kImpossibleTool * scale_of(reach_m(chain)))
+    return invalid_input(tool_doubt(chain) + ": at most " + short_text(kImpossibleTool) +
+                         " times the reach is taken for a tool, and at least " +
+                         short_text(kImpossibleTool * kShortestReach_m) + " m");
+  return std::nullopt;
+}
+
+std::optional<Error> find_impossible_solids(const kinematics::Chain& chain,
+                                            const RobotShapes& shapes) {
+  for (const LinkExtent& extent : link_extents(chain, shapes))
+    if (extent.moves && extent.farthest_m > kImpossibleMovingExtent * scale_of(reach_m(chain)))
+      return invalid_input(too_large_text(extent, reach_m(chain)) + "; more than " +
+                           short_text(kImpossibleMovingExtent) +
+                           " times the reach is taken for no link");
+  return std::nullopt;
+}
+
+std::string describe_far_place(const kinematics::Chain& chain,
+                               const Eigen::Vector3d& p_base_place) {
+  const double reach = reach_m(chain) + transfer_distance_m(chain);
+  const double distance_m = p_base_place.norm();
+  if (distance_m <= kFarPlace * scale_of(reach))
+    return "";
+  return "it is " + short_text(distance_m) + " m away from the robot's base, which gets " +
+         short_text(reach) + " m far" + unit_text(distance_m, scale_of(reach));
 }
 
 std::optional<Error> find_missing_solids(const kinematics::Chain& chain,
@@ -241,20 +329,30 @@ std::optional<Error> find_missing_solids(const kinematics::Chain& chain,
                        kWhatToDo);
 }
 
-std::vector<std::string> find_unreachable(const kinematics::Chain& chain, const RobotShapes& shapes,
-                                          const Eigen::Isometry3d& T_task_base, const Scene& scene,
-                                          const std::vector<AttachedObject>& attached) {
+std::optional<Error> find_faults(const kinematics::Chain& chain, const RobotShapes& shapes) {
+  auto error = find_missing_solids(chain, shapes);
+  return error ? error : find_impossible_solids(chain, shapes);
+}
+
+std::vector<std::string> find_scene_doubts(const kinematics::Chain& chain,
+                                           const RobotShapes& shapes,
+                                           const Eigen::Isometry3d& T_task_base, const Scene& scene,
+                                           const std::vector<AttachedObject>& attached) {
   const double reach = reach_of_solids_m(chain, shapes, attached);
+  const std::string robot = " the robot's base, which gets " + short_text(reach) + " m far";
   std::vector<std::string> sentences;
   for (const Placed& placed : placed_in(scene)) {
     const Eigen::Vector3d p_box_base =
         placed.T_task_box.inverse(Eigen::Isometry) * T_task_base.translation();
     const double distance_m = placed.box.exteriorDistance(p_box_base);
+    const double length_m = placed.box.sizes().maxCoeff();
     if (distance_m > reach)
-      sentences.push_back("'" + placed.name + "' is " + short_text(distance_m) +
-                          " m away from the robot's base, which gets " + short_text(reach) +
-                          " m far: it is never touched; lengths are m, and poses are in the task "
-                          "frame");
+      sentences.push_back("'" + placed.name + "' is " + short_text(distance_m) + " m away from" +
+                          robot + ": it is never touched" + unit_text(distance_m, reach) +
+                          "; poses are in the task frame");
+    else if (length_m > kMaxObstacle * scale_of(reach))
+      sentences.push_back("'" + placed.name + "' is " + short_text(length_m) + " m long, around" +
+                          robot + unit_text(length_m, kMaxMovingExtent * scale_of(reach)));
   }
   return sentences;
 }

@@ -116,13 +116,32 @@ bool add_meshes(const kinematics::RobotModel& robot, const FindMesh& find, Known
   return true;
 }
 
-/// \param shapes  without what the solids stand for.
+/// Whether the solids of each link hold its meshes: they are what a client says they are.
+/// \param known  with the triangles.
+bool hold_meshes(const RobotShapes& covers, const RobotShapes& known) {
+  std::map<int, std::vector<FittedShape>> solids;
+  for (const LinkShape& shape : covers.shapes)
+    if (shape.approximate)
+      solids[shape.link].push_back({shape.shape, shape.T_link_shape});
+  return std::ranges::all_of(known.shapes, [&](const LinkShape& shape) {
+    return !shape.triangles ||
+           hold(solids[shape.link], Eigen::Matrix3Xd(shape.T_link_shape * *shape.triangles));
+  });
+}
+
+/// The solids, each as much larger as hold() has them: what is apart for them is apart.
+/// \param shapes  without what the solids stand for. \param known  with the triangles.
+/// \return null if they do not hold the meshes.
 std::shared_ptr<const RobotShapes> covers_of(const kinematics::RobotModel& robot,
-                                             RobotShapes shapes) {
+                                             RobotShapes shapes, const RobotShapes& known) {
   std::set<int> covered;
   if (add_solids(robot.description.mesh_solids, robot.chain, shapes, covered) ||
-      !std::ranges::all_of(shapes.left_out, [&](int link) { return covered.contains(link); }))
+      !std::ranges::all_of(shapes.left_out, [&](int link) { return covered.contains(link); }) ||
+      !hold_meshes(shapes, known))
     return nullptr;
+  for (LinkShape& shape : shapes.shapes)
+    if (shape.approximate)
+      shape.shape = grown(shape.shape, kCoverMargin_m);
   return std::make_shared<const RobotShapes>(std::move(shapes));
 }
 
@@ -153,7 +172,7 @@ Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot, const
   known.shapes = *std::move(shapes);
   const RobotShapes without_meshes = known.shapes;
   if (add_meshes(robot, find, known)) {
-    known.covers = covers_of(robot, without_meshes);
+    known.covers = covers_of(robot, without_meshes, known.shapes);
     std::set<int> links;
     for (const LinkShape& shape : known.shapes.shapes)
       links.insert(shape.link);

@@ -19,8 +19,8 @@ using FindMesh = std::function<std::optional<MeshContent>(const Digest& content)
 /// The shapes of a robot known from its description and the contents of its meshes.
 struct KnownShapes {
   RobotShapes shapes;  ///< never_colliding includes the pairs that the mesh solids exclude
-  /// With the mesh solids in place of the meshes, which they hold; null without `mesh_links`, and
-  /// if a mesh has none. Shared by copies; immutable.
+  /// With the mesh solids in place of the meshes, which they hold: that is tested. Null without
+  /// `mesh_links`, and if a mesh is not wholly in those of its link. Shared by copies; immutable.
   std::shared_ptr<const RobotShapes> covers = nullptr;
   int exact_links = 0;        ///< made of primitives only
   int mesh_links = 0;         ///< with the triangles of all their meshes

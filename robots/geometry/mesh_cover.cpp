@@ -305,6 +305,76 @@ double total_m3(const std::vector<Piece>& pieces) {
   return total;
 }
 
+/// Whether a point in the frame of a shape is in it.
+struct Inside {
+  Eigen::Vector3d p;
+
+  bool operator()(const BoxShape& box) const {
+    return (2 * p.cwiseAbs().array() <= box.size.array()).all();
+  }
+  bool operator()(const SphereShape& sphere) const { return p.norm() <= sphere.radius_m; }
+  bool operator()(const CylinderShape& cylinder) const {
+    return p.head<2>().norm() <= cylinder.radius_m && 2 * std::abs(p.z()) <= cylinder.length_m;
+  }
+  bool operator()(const CapsuleShape& capsule) const {
+    const double beyond = std::max(std::abs(p.z()) - capsule.length_m / 2, 0.0);
+    return std::hypot(p.head<2>().norm(), beyond) <= capsule.radius_m;
+  }
+};
+
+/// Solids that are asked for the triangles of one mesh.
+class Holders {
+ public:
+  explicit Holders(const std::vector<FittedShape>& solids) {
+    for (const FittedShape& solid : solids)
+      solids_.push_back({grown(solid.shape, kCoverMargin_m), solid.T_points_shape.inverse()});
+  }
+
+  /// Halves what no single solid holds: each is convex. A piece as short as the margin lies in
+  /// every solid that one of its points was in before that grew.
+  bool hold(const Eigen::Matrix3d& triangle) {
+    std::vector<Eigen::Matrix3d> open = {triangle};
+    while (!open.empty()) {
+      const Eigen::Matrix3d piece = open.back();
+      open.pop_back();
+      if (is_in_one(piece))
+        continue;
+      Eigen::Index longest = 0;
+      const Eigen::Vector3d edges((piece.col(1) - piece.col(0)).norm(),
+                                  (piece.col(2) - piece.col(1)).norm(),
+                                  (piece.col(0) - piece.col(2)).norm());
+      if (edges.maxCoeff(&longest) <= kCoverMargin_m || steps_left_-- == 0)
+        return false;
+      const Eigen::Index next = (longest + 1) % 3;
+      const Eigen::Vector3d middle = (piece.col(longest) + piece.col(next)) / 2;
+      open.insert(open.end(), 2, piece);
+      open[open.size() - 2].col(longest) = middle;
+      open.back().col(next) = middle;
+    }
+    return true;
+  }
+
+ private:
+  /// Neighbours of a triangle are likely in the same solid: that is asked first.
+  bool is_in_one(const Eigen::Matrix3d& piece) {
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+      const std::size_t at = (last_ + i) % solids_.size();
+      const auto& [shape, T_shape_points] = solids_[at];
+      bool is_inside = true;
+      for (Eigen::Index corner = 0; is_inside && corner < 3; ++corner)
+        is_inside = std::visit(Inside{T_shape_points * piece.col(corner)}, shape);
+      if (is_inside) {
+        last_ = at;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  std::vector<std::pair<Shape, Eigen::Isometry3d>> solids_;
+  std::size_t last_ = 0, steps_left_ = 2'000'000;
+};
+
 }  // namespace
 
 double volume_m3(const Shape& shape) {
@@ -335,6 +405,31 @@ FittedShape fit_tightly(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
   for (Choice& choice : choices)
     turn(extreme, choice);
   return smallest(points, choices);
+}
+
+Shape grown(const Shape& shape, double by_m) {
+  struct Grown {
+    double by_m;
+    Shape operator()(const BoxShape& box) const { return BoxShape{box.size.array() + 2 * by_m}; }
+    Shape operator()(const CylinderShape& cylinder) const {
+      return CylinderShape{cylinder.radius_m + by_m, cylinder.length_m + 2 * by_m};
+    }
+    Shape operator()(const SphereShape& sphere) const {
+      return SphereShape{sphere.radius_m + by_m};
+    }
+    Shape operator()(const CapsuleShape& capsule) const {
+      return CapsuleShape{capsule.radius_m + by_m, capsule.length_m};
+    }
+  };
+  return std::visit(Grown{by_m}, shape);
+}
+
+bool hold(const std::vector<FittedShape>& solids, const Eigen::Matrix3Xd& corners) {
+  Holders holders(solids);
+  for (Eigen::Index i = 0; i < corners.cols(); i += 3)
+    if (!holders.hold(corners.middleCols<3>(i)))
+      return false;
+  return true;
 }
 
 std::vector<FittedShape> cover_mesh(const Eigen::Matrix3Xd& corners, const CoverOptions& options) {

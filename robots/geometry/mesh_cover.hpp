@@ -31,4 +31,17 @@ struct CoverOptions {
 std::vector<FittedShape> cover_mesh(const Eigen::Matrix3Xd& corners,
                                     const CoverOptions& options = {});
 
+/// Solids that are farther away than this from a mesh that they hold, m: more than rounding moves a
+/// vertex.
+inline constexpr double kCoverMargin_m = 5e-4;
+
+/// The shape, larger on every side.
+Shape grown(const Shape& shape, double by_m);
+
+/// Whether solids, each grown by kCoverMargin_m, together hold every point of triangles. Solids of
+/// cover_mesh() do. A mesh that takes more than two million steps to tell is not held.
+/// \param solids   in the frame of the corners.
+/// \param corners  3 x 3 n, m, finite, three columns per triangle.
+bool hold(const std::vector<FittedShape>& solids, const Eigen::Matrix3Xd& corners);
+
 }  // namespace kinship::geometry

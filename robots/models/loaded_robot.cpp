@@ -1,8 +1,6 @@
 #include "robots/models/loaded_robot.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "robots/geometry/geometry_doubts.hpp"
@@ -27,22 +25,23 @@ std::optional<Error> excuse(const std::vector<std::string>& links, const kinemat
   return std::nullopt;
 }
 
-/// The files that the robot's URDF names.
+/// The files that a robot's URDF names.
+/// \param arguments  resolved.
 Result<MeshFiles> files_of(const RobotArguments& arguments) {
   auto packages = parse_packages(arguments.packages);
   if (!packages)
     return packages.error();
-  std::error_code unreadable;
-  const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
-  return MeshFiles(is_folder ? arguments.source : arguments.source.parent_path(),
-                   *std::move(packages));
+  return MeshFiles(arguments.source.parent_path(), *std::move(packages), arguments.mesh_folders);
 }
 
 }  // namespace
 
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const kinematics::RobotModel& robot) {
-  const auto files = files_of(arguments);
+  const auto resolved = resolve(arguments);
+  if (!resolved)
+    return resolved.error();
+  const auto files = files_of(resolved->arguments);
   if (!files)
     return files.error();
   auto read =
@@ -50,20 +49,26 @@ Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
   if (!read)
     return read.error();
   geometry::RobotShapes shapes = *std::move(read);
-  if (const auto error = excuse(arguments.without_collision, robot.chain, shapes))
+  if (const auto error = excuse(resolved->arguments.without_collision, robot.chain, shapes))
     return *error;
   return shapes;
 }
 
-Result<geometry::LinkMeshes> load_meshes(const RobotArguments& arguments,
-                                         const kinematics::RobotModel& robot) {
+Result<std::vector<std::string>> add_meshes(const RobotArguments& arguments,
+                                            kinematics::RobotModel& robot) {
   if (arguments.without_meshes)
-    return geometry::LinkMeshes();
-  const auto files = files_of(arguments);
+    return std::vector<std::string>();
+  const auto resolved = resolve(arguments);
+  if (!resolved)
+    return resolved.error();
+  const auto files = files_of(resolved->arguments);
   if (!files)
     return files.error();
-  return geometry::read_link_meshes(robot,
-                                    [&](const std::string& uri) { return files->read(uri); });
+  geometry::LinkMeshes read =
+      geometry::read_link_meshes(robot, [&](const std::string& uri) { return files->read(uri); });
+  robot.description.meshes = std::move(read.meshes);
+  robot.description.contents = std::move(read.contents);
+  return std::move(read.notes);
 }
 
 Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
@@ -71,15 +76,16 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
   if (!described)
     return described.error();
   std::vector<std::string> warnings = described->warnings;
+  const std::optional<double> limit_slack = described->limit_slack;
   auto robot = read_model(std::move(described).value());
   if (!robot)
     return robot.error();
   auto shapes = load_shapes(arguments, *robot);
   if (!shapes)
     return shapes.error();
-  if (const auto error = geometry::find_missing_solids(robot->chain, *shapes))
+  if (const auto error = geometry::find_faults(robot->chain, *shapes))
     return *error;
-  return LoadedRobot{*std::move(robot), *std::move(shapes), std::move(warnings)};
+  return LoadedRobot{*std::move(robot), *std::move(shapes), std::move(warnings), limit_slack};
 }
 
 }  // namespace kinship::models

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,13 @@ namespace kinship::models {
 /// A robot as described to a server, with the data that planning needs.
 struct LoadedRobot : kinematics::RobotModel {
   geometry::RobotShapes shapes;
-  std::vector<std::string> warnings = {};  ///< of describe_robot
+  std::vector<std::string> warnings = {};            ///< of describe_robot
+  std::optional<double> limit_slack = std::nullopt;  ///< see RobotArguments
 };
 
 /// A robot as a command line names it, with its collision meshes, to plan for.
 /// \return also the errors of describe_robot, kinematics::read_model, geometry::read_shapes,
-///         MeshFiles and geometry::find_missing_solids.
+///         MeshFiles and geometry::find_faults.
 Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 
 /// The shapes of a robot. Links named as needing no solid are not among its
@@ -29,11 +31,12 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const kinematics::RobotModel& robot);
 
-/// The meshes of a robot's links, for its description.
+/// Adds the meshes of a robot's links to its description, for a server; none if the arguments say
+/// so.
 /// \param robot  made of the arguments.
-/// \return none if the arguments say so; the error of parse_packages; a mesh that cannot be read is
-///         a note.
-Result<geometry::LinkMeshes> load_meshes(const RobotArguments& arguments,
-                                         const kinematics::RobotModel& robot);
+/// \return a sentence on each mesh that stays here or was simplified; or the error of
+///         parse_packages, and nothing changes.
+Result<std::vector<std::string>> add_meshes(const RobotArguments& arguments,
+                                            kinematics::RobotModel& robot);
 
 }  // namespace kinship::models

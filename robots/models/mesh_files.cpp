@@ -15,6 +15,21 @@ namespace {
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
+/// The file that a folder has with as much of the end of a name as possible; empty: none.
+std::filesystem::path find_in(const std::vector<std::filesystem::path>& folders,
+                              const std::filesystem::path& name) {
+  std::error_code unreadable;
+  for (auto first = name.begin(); first != name.end(); ++first) {
+    std::filesystem::path end;
+    for (auto part = first; part != name.end(); ++part)
+      end /= *part;
+    for (const std::filesystem::path& folder : folders)
+      if (std::filesystem::is_regular_file(folder / end, unreadable))
+        return folder / end;
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments) {
@@ -51,23 +66,34 @@ Result<std::filesystem::path> MeshFiles::find(const std::string& uri) const {
     if (folder == packages_.end()) {
       PackageSearch search = find_ros_package(name, urdf_folder_);
       if (!search.folder)
+        if (std::filesystem::path file = find_in(folders_, rest.substr(slash + 1)); !file.empty())
+          return file;
+      if (!search.folder)
         return wrong_uri("the folder of package '" + name + "' is not known; give --package " +
                          name + "=DIR. Searched: " + search.places);
       folder = packages_.emplace(name, *std::move(search.folder)).first;
     }
-    return folder->second / rest.substr(slash + 1);
+    return or_in_folders(folder->second / rest.substr(slash + 1));
   }
   if (text.starts_with(kFile)) {
     const std::string_view file = text.substr(kFile.size());
     if (!file.starts_with('/'))
       return wrong_uri("must be file:///FILE with a path from the root");
-    return std::filesystem::path(file);
+    return or_in_folders(file);
   }
   if (text.find("://") != std::string_view::npos)
     return wrong_uri("is not package://, file:// or a file name");
   if (text.empty())
     return wrong_uri("names no file");
-  return urdf_folder_ / uri;
+  return or_in_folders(urdf_folder_ / uri);
+}
+
+std::filesystem::path MeshFiles::or_in_folders(std::filesystem::path file) const {
+  std::error_code unreadable;
+  if (folders_.empty() || std::filesystem::is_regular_file(file, unreadable))
+    return file;
+  std::filesystem::path found = find_in(folders_, file.relative_path());
+  return found.empty() ? file : found;
 }
 
 template <typename Content>

@@ -32,8 +32,13 @@ class MeshFiles {
  public:
   /// \param urdf_folder  of the URDF file, for relative names and the packages above it.
   /// \param packages     count before those that find_ros_package() finds.
-  MeshFiles(std::filesystem::path urdf_folder, PackageFolders packages)
-      : urdf_folder_(std::move(urdf_folder)), packages_(std::move(packages)) {}
+  /// \param folders      where a file is looked for that is not there, or in no known package: by
+  ///                     as much of the end of its name as a folder has.
+  MeshFiles(std::filesystem::path urdf_folder, PackageFolders packages,
+            std::vector<std::filesystem::path> folders = {})
+      : urdf_folder_(std::move(urdf_folder)),
+        packages_(std::move(packages)),
+        folders_(std::move(folders)) {}
 
   /// The file of a mesh: package://NAME/FILE, file:///FILE, or a file name.
   /// \return InvalidInput with the URI; of a package that is not found with the searched places and
@@ -54,8 +59,12 @@ class MeshFiles {
   Result<Content> read_file(const std::string& what, const std::string& uri, std::size_t max_bytes,
                             Result<Content> (*parse)(std::string_view, std::string_view)) const;
 
+  /// A file as it is, or as the folders have it.
+  std::filesystem::path or_in_folders(std::filesystem::path file) const;
+
   std::filesystem::path urdf_folder_;
   mutable PackageFolders packages_;  // and those that were found
+  std::vector<std::filesystem::path> folders_;
 };
 
 /// Reads the meshes and point clouds that problems name. A file is read once for each scale or size

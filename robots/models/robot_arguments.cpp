@@ -1,16 +1,14 @@
 #include "robots/models/robot_arguments.hpp"
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/models/mesh_files.hpp"
@@ -18,119 +16,6 @@
 
 namespace kinship::models {
 namespace {
-
-constexpr std::size_t kMaxChainFileBytes = 262'144;
-
-/// The fields of one chain.toml. Every method throws Failure that names file and field.
-class ChainFile {
- public:
-  ChainFile(const std::filesystem::path& file, std::string_view text) : name_(file.string()) {
-    try {
-      table_ = toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      throw Failure(ErrorCode::InvalidInput, name_ + ": line " +
-                                                 std::to_string(error.source().begin.line) + ": " +
-                                                 std::string(error.description()));
-    }
-    for (const auto& [key, value] : table_)
-      if (std::find(kFields.begin(), kFields.end(), key.str()) == kFields.end())
-        refuse(key.str(), "is not a field of this file");
-  }
-
-  std::string text(std::string_view field) const {
-    const auto value = table_[field].value<std::string>();
-    if (!value)
-      refuse(field, "must be there, as text");
-    return *value;
-  }
-
-  Eigen::Isometry3d transfer() const {
-    const toml::array* numbers = array("transfer");
-    if (numbers == nullptr)
-      refuse("transfer", "must be there: [x, y, z, qx, qy, qz, qw]");
-    PoseArray pose{};
-    if (numbers->size() != pose.size())
-      refuse("transfer", "has " + std::to_string(numbers->size()) + " numbers, must have 7");
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      pose[i] = number("transfer", (*numbers)[i]);
-    const auto T = from_pose_array(pose);
-    if (!T)
-      refuse("transfer", T.error().message);
-    return *T;
-  }
-
-  TaskAxes axes() const {
-    const toml::array* names = array("axes");
-    if (names == nullptr)
-      return {};
-    std::vector<std::string> words;
-    for (const toml::node& node : *names)
-      words.push_back(node.value<std::string>().value_or(""));
-    const auto axes = parse_task_axes({words.begin(), words.end()});
-    if (!axes)
-      refuse("axes", axes.error().message);
-    return *axes;
-  }
-
-  std::map<std::string, double> hold() const {
-    std::map<std::string, double> held;
-    const toml::node* node = table_.get("hold");
-    if (node == nullptr)
-      return held;
-    if (!node->is_table())
-      refuse("hold", "must be a table of joints and values");
-    for (const auto& [joint, value] : *node->as_table())
-      held.emplace(joint.str(), number("hold." + std::string(joint.str()), value));
-    if (held.size() > kMaxHeldJoints)
-      refuse("hold",
-             std::to_string(held.size()) + " joints exceed " + std::to_string(kMaxHeldJoints));
-    return held;
-  }
-
-  std::vector<std::pair<std::string, std::string>> never_colliding() const {
-    std::vector<std::pair<std::string, std::string>> pairs;
-    const toml::array* rows = array("never_colliding");
-    if (rows == nullptr)
-      return pairs;
-    if (rows->size() > kMaxCollisionPairs)
-      refuse("never_colliding",
-             std::to_string(rows->size()) + " pairs exceed " + std::to_string(kMaxCollisionPairs));
-    for (const toml::node& row : *rows) {
-      const toml::array* pair = row.as_array();
-      if (pair == nullptr || pair->size() != 2 || !(*pair)[0].is_string() ||
-          !(*pair)[1].is_string())
-        refuse("never_colliding",
-               "pair " + std::to_string(pairs.size() + 1) + " is not [link, link]");
-      pairs.emplace_back((*pair)[0].ref<std::string>(), (*pair)[1].ref<std::string>());
-    }
-    return pairs;
-  }
-
- private:
-  static constexpr std::array<std::string_view, 7> kFields = {
-      "label", "base", "tip", "transfer", "axes", "hold", "never_colliding"};
-
-  [[noreturn]] void refuse(std::string_view field, const std::string& problem) const {
-    throw Failure(ErrorCode::InvalidInput, name_ + ": " + std::string(field) + ": " + problem);
-  }
-
-  double number(std::string_view field, const toml::node& node) const {
-    if (!node.is_number())
-      refuse(field, "holds something that is not a number");
-    return node.value<double>().value_or(0);
-  }
-
-  /// Null if the field is missing.
-  const toml::array* array(std::string_view field) const {
-    const toml::node* node = table_.get(field);
-    if (node != nullptr && !node->is_array())
-      refuse(field, "must be a list");
-    return node == nullptr ? nullptr : node->as_array();
-  }
-
-  std::string name_;
-  toml::table table_;
-};
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> parts;
@@ -154,15 +39,40 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
-/// \throws Failure with the fault.
-RobotDescription read_urdf_file(const RobotArguments& arguments) {
-  RobotDescription description;
-  description.urdf = read_expanded(arguments.source, urdf_input(arguments));
-  std::filesystem::path name = arguments.source.filename();
-  if (name.extension() == ".xacro")
-    name.replace_extension();
-  description.label = name.stem().string();
-  return description;
+/// Appends what is named by the part before `sign` and not named yet.
+void add_named(const std::vector<std::string>& more, std::string_view sign,
+               std::vector<std::string>& all) {
+  for (const std::string& each : more) {
+    const std::string name = each.substr(0, each.find(sign) + sign.size());
+    if (std::ranges::none_of(all, [&](const std::string& one) { return one.starts_with(name); }))
+      all.push_back(each);
+  }
+}
+
+/// Fills in what the arguments do not say.
+void complete(const ChainFile& chain, RobotArguments& arguments) {
+  const auto fill = [](const auto& value, auto& argument) {
+    if (argument.empty())
+      argument = value;
+  };
+  arguments.source = chain.urdf;
+  fill(chain.base_link, arguments.base_link);
+  fill(chain.tip_link, arguments.tip_link);
+  fill(chain.label, arguments.label);
+  fill(chain.srdf, arguments.srdf);
+  std::vector<std::string> packages;
+  for (const auto& [name, folder] : chain.packages)
+    packages.push_back(name + "=" + folder.string());
+  add_named(packages, "=", arguments.packages);
+  add_named(chain.xacro, ":=", arguments.xacro);
+  arguments.mesh_folders.insert(arguments.mesh_folders.end(), chain.mesh_folders.begin(),
+                                chain.mesh_folders.end());
+  arguments.collision_from_visual = arguments.collision_from_visual || chain.collision_from_visual;
+  arguments.without_collision.insert(arguments.without_collision.end(),
+                                     chain.without_collision.begin(),
+                                     chain.without_collision.end());
+  if (!arguments.limit_slack)
+    arguments.limit_slack = chain.limit_slack;
 }
 
 /// \throws Failure with the fault.
@@ -229,29 +139,38 @@ void add_pairs(const RobotArguments& arguments, DescribedRobot& robot) {
                       " never-colliding pairs exceed " + std::to_string(kMaxCollisionPairs));
 }
 
+/// Why a robot's base and tip must be given.
+Error missing_ends(const std::string& file) {
+  return invalid_input("'" + file +
+                       "' is a URDF file: needs --base LINK and --tip LINK (or give a model "
+                       "folder: 'kinship robots init " +
+                       file + "' makes one); 'kinship robots links " + file +
+                       "' shows its links and which could be these");
+}
+
 /// \throws Failure with the fault.
-DescribedRobot put_together(const RobotArguments& arguments) {
-  std::error_code unreadable;  // is for read_urdf_file to tell
-  const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
-  DescribedRobot robot{is_folder ? read_model_folder(arguments.source).value_or_throw()
-                                 : read_urdf_file(arguments)};
+DescribedRobot put_together(const RobotArguments& given) {
+  const ResolvedArguments resolved = resolve(given).value_or_throw();
+  const RobotArguments& arguments = resolved.arguments;
+  DescribedRobot robot;
+  robot.limit_slack = arguments.limit_slack;
   RobotDescription& description = robot.description;
-  if (!is_folder && (arguments.base_link.empty() || arguments.tip_link.empty()))
-    throw Failure(
-        ErrorCode::InvalidInput,
-        "'" + arguments.source.string() +
-            "' is a URDF file: needs --base LINK and --tip LINK (or give a model folder); "
-            "'kinship robots links " +
-            arguments.source.string() + "' shows its links and which could be these");
-  if (!arguments.base_link.empty())
-    description.base_link = arguments.base_link;
-  if (!arguments.tip_link.empty())
-    description.tip_link = arguments.tip_link;
-  if (!arguments.label.empty())
-    description.label = arguments.label;
-  else if (const auto error = check_label(description.label))
-    throw Failure(error->code, "the robot's name is that of its file, and " + error->message +
-                                   "; give another one with --label");
+  description.urdf = read_expanded(arguments.source, urdf_input(arguments));
+  if (arguments.base_link.empty() || arguments.tip_link.empty())
+    throw Failure(missing_ends(arguments.source.string()));
+  description.base_link = arguments.base_link;
+  description.tip_link = arguments.tip_link;
+  description.label = arguments.label.empty() ? label_of(arguments.source) : arguments.label;
+  if (arguments.label.empty())
+    if (const auto error = check_label(description.label))
+      throw Failure(error->code, "the robot's name is that of its file, and " + error->message +
+                                     "; give another one with --label");
+  if (resolved.chain) {
+    description.T_tip_transfer = resolved.chain->T_tip_transfer;
+    description.task_axes = resolved.chain->task_axes;
+    description.held_joints = resolved.chain->held;
+    description.never_colliding = resolved.chain->never_colliding;
+  }
   parse_packages(arguments.packages).value_or_throw();
   if (arguments.collision_from_visual)
     description.urdf = geometry::with_visual_solids(description.urdf, arguments.without_collision)
@@ -266,29 +185,32 @@ DescribedRobot put_together(const RobotArguments& arguments) {
 
 }  // namespace
 
+std::string label_of(const std::filesystem::path& urdf) {
+  std::filesystem::path name = urdf.filename();
+  if (name.extension() == ".xacro")
+    name.replace_extension();
+  return name.stem().string();
+}
+
 XacroInput urdf_input(const RobotArguments& arguments) {
   return {.arguments = arguments.xacro, .max_bytes = kMaxUrdfBytes, .ending = ".urdf"};
 }
 
+Result<ResolvedArguments> resolve(RobotArguments arguments) {
+  if (!is_model_folder(arguments.source))
+    return ResolvedArguments{std::move(arguments), std::nullopt};
+  auto chain = read_chain_file(arguments.source);
+  if (!chain)
+    return chain.error();
+  complete(*chain, arguments);
+  return ResolvedArguments{std::move(arguments), *std::move(chain)};
+}
+
 Result<RobotDescription> read_model_folder(const std::filesystem::path& folder) {
-  try {
-    const std::filesystem::path file = folder / kChainFile;
-    const ChainFile chain(file, read_text(file, kMaxChainFileBytes));
-    RobotDescription description;
-    description.label = chain.text("label");
-    if (const auto error = check_label(description.label))
-      return Error{error->code, file.string() + ": " + error->message};
-    description.base_link = chain.text("base");
-    description.tip_link = chain.text("tip");
-    description.T_tip_transfer = chain.transfer();
-    description.task_axes = chain.axes();
-    description.held_joints = chain.hold();
-    description.never_colliding = chain.never_colliding();
-    description.urdf = read_text(folder / kUrdfFile, kMaxUrdfBytes);
-    return description;
-  } catch (const Failure& failure) {
-    return failure.error();
-  }
+  auto robot = describe_robot({.source = folder});
+  if (!robot)
+    return robot.error();
+  return std::move(robot)->description;
 }
 
 Result<std::vector<double>> parse_numbers(std::string_view text) {
@@ -318,8 +240,7 @@ Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
 }
 
 bool says_transfer(const RobotArguments& arguments) {
-  std::error_code unreadable;
-  return !arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable);
+  return !arguments.transfer.empty() || is_model_folder(arguments.source);
 }
 
 Result<DescribedRobot> describe_robot(const RobotArguments& arguments) {
@@ -331,7 +252,11 @@ Result<DescribedRobot> describe_robot(const RobotArguments& arguments) {
 }
 
 Result<kinematics::RobotModel> read_model(DescribedRobot robot) {
-  return kinematics::read_model(std::move(robot.description), std::move(robot.urdf));
+  auto model = kinematics::read_model(std::move(robot.description), std::move(robot.urdf));
+  if (model)
+    if (const auto error = geometry::find_impossible_lengths(model->chain))
+      return *error;
+  return model;
 }
 
 }  // namespace kinship::models

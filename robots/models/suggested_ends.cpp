@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "proto/types/limits.hpp"
@@ -50,10 +49,10 @@ void fill_in(const LinksOfFile& links, RobotArguments& arguments) {
 
 /// \throws Failure with the fault.
 LinksOfFile read_links(RobotArguments& arguments) {
-  std::error_code unreadable;
-  const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
-  const std::filesystem::path file = is_folder ? arguments.source / kUrdfFile : arguments.source;
-  const std::string urdf = read_expanded(file, urdf_input(arguments));
+  const bool is_folder = is_model_folder(arguments.source);
+  const RobotArguments resolved = resolve(arguments).value_or_throw().arguments;
+  const std::filesystem::path& file = resolved.source;
+  const std::string urdf = read_expanded(file, urdf_input(resolved));
   LinksOfFile links;
   links.tree = kinematics::read_link_tree(urdf).value_or_throw();
   links.ends = kinematics::suggest_ends(links.tree);

@@ -63,8 +63,9 @@ std::vector<RobotRecord> SqlStore::robots() const {
 
 MeshesPut SqlStore::put_meshes(const Digest& robot, const std::vector<MeshContent>& contents,
                                const MeshLimits& limits) {
+  const ReadMeshes read(contents);
   return write([&](Session& session, const RetireSome&) {
-    return insert_meshes(session, robot, contents, limits);
+    return insert_meshes(session, robot, read, limits);
   });
 }
 

@@ -141,6 +141,8 @@ RobotCheck every_robot_check() {
   check.solutions_per_pose = next.real();
   check.time_per_pose_us = next.real();
   check.links = {next.described<CheckedLink>()};
+  check.reach_m = next.real();
+  check.transfer_distance_m = next.real();
   return check;
 }
 

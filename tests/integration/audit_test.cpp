@@ -82,7 +82,9 @@ TEST_F(AdminCommands, ALabelIsFreedByARenameAndARobotTakenOutOnlyIfItIsSaidSo) {
   EXPECT_FALSE(removal.is_deleted);
   server_.ends(3, "robots remove old_panda");
 
-  expect_has(server_.ends(0, "robots remove ur10e").out, "deleted: it had no attempts");
+  expect_has(server_.ends(2, "robots remove ur10e").err, "this would delete 'ur10e'");
+  server_.ends(0, "robots show ur10e");
+  expect_has(server_.ends(0, "robots remove ur10e --yes").out, "deleted: it had no attempts");
 }
 
 TEST_F(AdminCommands, AClientOfARemovedRobotRegistersItAgainAndItsNewReportsCount) {

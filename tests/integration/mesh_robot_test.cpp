@@ -109,9 +109,7 @@ class MeshRobots : public testing::Test {
     arguments.axes = "x,y,yaw";
     arguments.label = "pupil";
     models::LoadedRobot robot = models::load_robot(arguments).value_or_throw();
-    auto meshes = models::load_meshes(arguments, robot).value_or_throw();
-    robot.description.meshes = std::move(meshes.meshes);
-    robot.description.contents = std::move(meshes.contents);
+    static_cast<void>(models::add_meshes(arguments, robot).value_or_throw());
     return robot;
   }
 

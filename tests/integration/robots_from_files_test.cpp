@@ -75,5 +75,50 @@ TEST_F(RobotsFromFiles, CollisionMeshesAreNotNeededToRegister) {
   EXPECT_EQ(with.err, "");
 }
 
+TEST_F(RobotsFromFiles, AFolderMadeByInitIsAllThatProgramsNeed) {
+  const std::string urdf = write_pointer(), folder = directory_ / "mine";
+  write("package.xml", "<package><name>pointer</name></package>");
+  write("pointer.srdf",
+        "<robot name='pointer'><disable_collisions link1='base' link2='arm'/></robot>");
+  const Answer made =
+      cell_.kinship("robots init " + urdf + " -o " + folder + " --transfer '0.5 0 0 0 0 0 1'");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.out.find("found beside the URDF"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("found as ROS finds it"), std::string::npos) << made.out;
+  const std::string text = test::read_text(folder + "/chain.toml");
+  EXPECT_NE(text.find(R"(urdf = "../pointer.urdf")"), std::string::npos) << text;
+  const Answer again = cell_.kinship("robots init " + urdf + " -o " + folder);
+  EXPECT_EQ(again.code, 2);
+  EXPECT_NE(again.err.find("--force replaces it"), std::string::npos) << again.err;
+  EXPECT_EQ(test::read_text(folder + "/chain.toml"), text);
+
+  const Answer registered = cell_.kinship("robots register " + folder);
+  EXPECT_EQ(registered.code, 0) << registered.err;
+  EXPECT_EQ(registered.err, "");
+  EXPECT_NE(registered.out.find("by the triangles of their meshes"), std::string::npos)
+      << registered.out;
+  const std::string problems = write(
+      "problems.jsonl", R"({"name": "p", "start": [0.0], "goal": {"configurations": [[1.0]]}})"
+                        "\n");
+  const Answer planned = cell_.run("kinship-plan", problems + " --robot " + folder + " --json");
+  EXPECT_EQ(planned.code, 0) << planned.err;
+  EXPECT_NE(planned.out.find(R"("solved":true)"), std::string::npos) << planned.out;
+}
+
+TEST_F(RobotsFromFiles, MeshesInMillimetresAreNotRegistered) {
+  std::string text = test::read_text(write_pointer());
+  const std::string scale = R"( scale="0.001 0.001 0.001")";
+  const std::string urdf = write("mm.urdf", text.erase(text.find(scale), scale.size()));
+  const std::string robot = urdf + " --base base --tip arm --transfer '0.5 0 0 0 0 0 1'" +
+                            " --package pointer=" + directory_.path().string();
+  for (const char* command : {"robots check ", "robots register ", "robots suggest-srdf "}) {
+    const Answer answer = cell_.kinship(command + robot);
+    EXPECT_EQ(answer.code, 2) << command;
+    EXPECT_NE(answer.err.find("these are probably millimetres (0.5"), std::string::npos)
+        << command << answer.err;
+  }
+  EXPECT_EQ(cell_.kinship("robots list --json").out, "");
+}
+
 }  // namespace
 }  // namespace kinship::robots_from_files_test

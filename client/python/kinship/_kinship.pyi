@@ -477,7 +477,7 @@ def plan(
     resolution: Optional[float] = None,
     shortcut_checks: int = 300,
     max_goals: int = 20,
-    limit_slack: float = 0.0001,
+    limit_slack: float | None = None,
     overshoot: float = 1.5,
     gate_distance: float = 60.0,
     retreat: float = 0.4,

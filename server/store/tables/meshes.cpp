@@ -71,34 +71,43 @@ MeshUse count_meshes(Session& session) {
   });
 }
 
-MeshesPut insert_meshes(Session& session, const Digest& robot,
-                        const std::vector<MeshContent>& contents, const MeshLimits& limits) {
+ReadMeshes::ReadMeshes(const std::vector<MeshContent>& contents) {
+  for (const MeshContent& content : contents) {
+    const Result<TriangleMesh> mesh = TriangleMesh::read(content);
+    if (mesh) {
+      meshes.push_back({mesh->digest(), &content});
+    } else {
+      ++refused;
+      why = mesh.error().message;
+    }
+  }
+}
+
+MeshesPut insert_meshes(Session& session, const Digest& robot, const ReadMeshes& contents,
+                        const MeshLimits& limits) {
   static_cast<void>(lock_robot(session, robot));
   const std::optional<RobotRecord> record = select_robot(session, robot);
   const std::set<Digest> named = record ? contents_of(record->description) : std::set<Digest>();
   bool has_new_collision = false;
   std::uint64_t used = count_meshes(session).bytes;
-  MeshesPut put;
-  for (const MeshContent& content : contents) {
-    const Result<TriangleMesh> mesh = TriangleMesh::read(content);
-    const Digest digest = mesh ? mesh->digest() : Digest();
-    if (!mesh || !named.contains(digest)) {
+  MeshesPut put{.refused = contents.refused, .why = contents.why};
+  for (const auto& [digest, content] : contents.meshes) {
+    if (!named.contains(digest)) {
       ++put.refused;
-      put.why = mesh ? "mesh " + digest.short_hex() + ": the robot names no such content"
-                     : mesh.error().message;
+      put.why = "mesh " + digest.short_hex() + ": the robot names no such content";
       continue;
     }
     if (select_mesh(session, digest))
       continue;
-    if (used + content.zlib.size() > limits.max_bytes) {
+    if (used + content->zlib.size() > limits.max_bytes) {
       ++put.over;
       continue;
     }
     // A damaged row of it goes.
     session.query("DELETE FROM mesh WHERE digest = $1", digest);
     session.query("INSERT INTO mesh (digest, bytes, crc32c, payload) VALUES ($1, $2, $3, $4)",
-                  digest, content.bytes, crc32c(content.zlib), content.zlib);
-    used += content.zlib.size();
+                  digest, content->bytes, crc32c(content->zlib), content->zlib);
+    used += content->zlib.size();
     ++put.stored;
     has_new_collision = has_new_collision ||
                         std::ranges::any_of(record->description.meshes, [&](const LinkMesh& each) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "proto/types/digest.hpp"
@@ -23,9 +25,25 @@ std::optional<MeshContent> select_mesh(Session& session, const Digest& content);
 
 MeshUse count_meshes(Session& session);
 
+/// A content that is a mesh. Borrowed.
+struct ReadMesh {
+  Digest digest;
+  const MeshContent* content = nullptr;
+};
+
+/// Contents as a client sent them. It takes as long as to decompress them: not for a transaction.
+struct ReadMeshes {
+  explicit ReadMeshes(const std::vector<MeshContent>& contents);
+  explicit ReadMeshes(std::vector<MeshContent>&&) = delete;  // would not outlive it
+
+  std::vector<ReadMesh> meshes;
+  std::size_t refused = 0;  ///< that are none
+  std::string why;          ///< the last of these
+};
+
 /// Adds contents that a registered robot names and that are not there, up to a size of all.
-MeshesPut insert_meshes(Session& session, const Digest& robot,
-                        const std::vector<MeshContent>& contents, const MeshLimits& limits);
+MeshesPut insert_meshes(Session& session, const Digest& robot, const ReadMeshes& contents,
+                        const MeshLimits& limits);
 
 /// Drops the contents that no registered robot names; none while a robot's row is damaged.
 void drop_unnamed_meshes(Session& session);

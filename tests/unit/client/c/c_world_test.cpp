@@ -220,7 +220,14 @@ TEST_F(CWorld, WhatIsNoWorldIsRefused) {
   EXPECT_EQ(world_, nullptr);
   surroundings_.allowed_collision_pairs = 0;
   objects_[1].sizes[1] = -1;
-  expect_refused(kinship_world_create(&file_, &surroundings_, &world_, nullptr), "'plate'");
+  expect_refused(kinship_world_create(&file_, &surroundings_, &world_, nullptr),
+                 "object 'plate': box extent of -1 m is not between 0 and 1000 m");
+  kinship_object twice[2] = {objects_[0], objects_[0]};
+  twice[0].is_held = twice[1].is_held = 0;
+  surroundings_.objects = twice;
+  expect_refused(kinship_world_create(&file_, &surroundings_, &world_, nullptr),
+                 "object 'rod': two in surroundings->objects have this name");
+  surroundings_.objects = objects_;
   objects_[1].name = nullptr;
   expect_refused(kinship_world_create(&file_, &surroundings_, &world_, nullptr),
                  "a name in surroundings->objects is NULL");

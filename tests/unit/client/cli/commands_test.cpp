@@ -222,6 +222,7 @@ TEST(Commands, EachHasHelpWithAnExample) {
                                                           {"robots", "register"},
                                                           {"robots", "rename"},
                                                           {"robots", "remove"},
+                                                          {"robots", "init"},
                                                           {"robots", "links"},
                                                           {"robots", "frames"},
                                                           {"robots", "suggest-srdf"},

@@ -3,6 +3,7 @@ import json
 import os
 import pathlib
 import signal
+import tempfile
 import threading
 import time
 import unittest
@@ -145,7 +146,47 @@ class Paths(OfAUr10e):
                 kinship.plan(self.robot, self.problem, resolution=resolution)
 
 
+class Folders(OfAUr10e):
+    def test_say_how_far_a_start_may_be_beyond_a_limit(self):
+        start = np.array(START)
+        start[0] = self.robot.upper[0] + 0.02
+        problem = kinship.Problem("beyond", start, [*(self.robot.upper[:1] - 0.1), *START[1:]])
+        with tempfile.TemporaryDirectory() as folder:
+            chain = (MODELS / "ur10e" / "chain.toml").read_text()
+            pathlib.Path(folder, "chain.toml").write_text(
+                f'urdf = "{MODELS / "ur10e" / "robot.urdf"}"\nlimit_slack = 0.05\n{chain}')
+            robot = kinship.Robot(folder)
+        self.assertEqual(robot.digest, self.robot.digest)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.assertTrue(kinship.plan(robot, problem).solved)
+            self.assertFalse(kinship.plan(robot, problem, limit_slack=0.01).solved)
+            self.assertFalse(kinship.plan(self.robot, problem).solved)
+
+
+class Scenes(unittest.TestCase):
+    def test_refuse_what_cannot_be_where_it_is_added(self):
+        scene = post()
+        name = "post"
+        with self.assertRaisesRegex(kinship.InvalidInput, "object 'post': the scene has one of this name"):
+            scene.add_sphere(name, [0, 0, 0], 1)
+        pose = [0, 0, 0, 0, 0, 0, 1]
+        with self.assertRaisesRegex(kinship.InvalidInput, "object 'b': box extent of -1 m is not between 0 and 1000 m"):
+            scene.add_box("b", pose, [1, -1, 1])
+        with self.assertRaisesRegex(kinship.InvalidInput, "object 'c': cylinder length of 2000 m is not"):
+            scene.add_cylinder("c", pose, 1, 2000)
+        with self.assertRaisesRegex(kinship.InvalidInput, "object 'm': scale must be"):
+            scene.add_mesh("m", "m.stl", pose, [1, 0, 1])
+        with self.assertRaisesRegex(kinship.InvalidInput, "its name is empty"):
+            scene.add_sphere("", [0, 0, 0], 1)
+        self.assertEqual(len(scene), 1)
+
+
 class Doubts(OfAUr10e):
+    def test_name_the_distance_of_a_goal_in_millimetres(self):
+        plan = kinship.plan(self.robot, kinship.Problem("mm", START, goal_pose=[420, -150, 190, 1, 0, 0, 0]))
+        self.assertRegex(plan.reason, "goal out of reach: .* it is 485 m away from the robot's base, .*probably millimetres")
+
     def test_are_warned_of_when_solids_cannot_be_meant(self):
         scene = kinship.Scene()
         scene.add_box("far", [900, 0, 0, 0, 0, 0, 1], [1, 1, 1])

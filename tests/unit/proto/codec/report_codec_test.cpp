@@ -83,7 +83,8 @@ TEST(ReportCodec, NamesTheRuleThatASceneBreaks) {
   EXPECT_EQ(complaint(bad), "scene: 'table': size nan m is not above 0 and at most 1000 m");
   bad = good;
   bad.scene->held[0].T_transfer_object.translation().x() = 2000;
-  EXPECT_EQ(complaint(bad), "scene: 'can': pose: coordinate 2000 m exceeds 1000 m");
+  EXPECT_EQ(complaint(bad),
+            "scene: 'can': pose: coordinate 2000 m exceeds 1000 m; these are probably millimetres");
   bad = good;
   bad.scene->held[0].name = "";
   EXPECT_EQ(complaint(bad), "scene: a name is empty");
@@ -147,7 +148,9 @@ TEST(ReportCodec, ABadConstraintIsRefusedByName) {
   EXPECT_EQ(complaint(), "scene: constraint: Bw of roll: is not a number");
   wire.bounds[6] = -0.1;
   wire.T_task_region[0] = -1001;
-  EXPECT_EQ(complaint(), "scene: constraint: T0_w: pose: coordinate -1001 m exceeds 1000 m");
+  EXPECT_EQ(complaint(),
+            "scene: constraint: T0_w: pose: coordinate -1001 m exceeds 1000 m; these are probably "
+            "millimetres");
   wire.T_task_region[0] = 0;
   wire.T_region_end[6] = 3;
   EXPECT_EQ(complaint().find("scene: constraint: Tw_e: pose: "), 0U);

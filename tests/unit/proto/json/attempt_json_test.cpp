@@ -109,7 +109,8 @@ TEST(AttemptJson, BadConstraintIsRefusedByName) {
   EXPECT_EQ(message_of(with_constraint(replaced(kUpright, "[-0.5,0.5]", "[0.5,-0.5]"))),
             "scene.constraint: Bw of y: lower 0.5 exceeds upper -0.5");
   EXPECT_EQ(message_of(with_constraint(replaced(kUpright, "[0,0,0,", "[0,0,1001,"))),
-            "scene.constraint.T0_w: pose: coordinate 1001 m exceeds 1000 m");
+            "scene.constraint.T0_w: pose: coordinate 1001 m exceeds 1000 m; these are probably "
+            "millimetres");
 }
 
 TEST(AttemptJson, BadSceneIsRefusedByName) {
@@ -119,7 +120,7 @@ TEST(AttemptJson, BadSceneIsRefusedByName) {
   EXPECT_EQ(message_of(with_scene(R"({"allowed_collisions":[["can","panda_hand"]]})")),
             "scene: allowed_collisions names 'can', which is neither an object nor held");
   EXPECT_EQ(message_of(with_scene(R"({"spheres":[{"name":"ball","center":[0,0,1],"radius":0}]})")),
-            "scene.spheres[0].radius: must be above 0");
+            "scene.spheres[0].radius: 0 m, must be above 0");
   EXPECT_EQ(
       message_of(with_scene(R"({"held":[{"name":"can","link":"hand","shape":{"sphere":1}}]})")),
       "scene.held[0]: has an unknown member 'link'");

@@ -189,14 +189,26 @@ TEST(ProblemJson, GoalIsEitherConfigurationsOrPose) {
 
 TEST(ProblemJson, SolidsNeedPositiveExtents) {
   EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2, 0]")),
-            "scene.boxes[0].size[2]: must be above 0");
+            "scene.boxes[0].size[2]: 0 m, must be above 0");
   EXPECT_FALSE(problem_from_json(changed("\"radius\": 0.2", "\"radius\": -0.2")));
   EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2]")),
             "scene.boxes[0].size: 2 extents, must be 3");
   EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2, 1e4]")),
-            "scene.boxes[0].size[2]: 10000 exceeds 1000");
+            "scene.boxes[0].size[2]: 10000 m exceeds 1000 m; these are probably millimetres");
   EXPECT_EQ(message_of(changed(R"({"box": [0.1, 0.2, 0.3]})", R"({"cone": 1})")),
             "attached[0].shape: must be one of box, cylinder, sphere, capsule");
+}
+
+TEST(ProblemJson, ObjectsOfOneSceneHaveNamesOfTheirOwn) {
+  const std::string document =
+      R"({"name": "p", "start": [0], "goal": {"configurations": [[1]]}, "scene": {"spheres": [{"name": "a",
+      "center": [1, 0, 0], "radius": 0.1}], "meshes": [{"name": "b", "file": "b.stl",
+      "pose": [0, 0, 0, 0, 0, 0, 1]}]}})";
+  EXPECT_TRUE(problem_from_json(document));
+  std::string repeated = document;
+  repeated.replace(repeated.find(R"("b")"), 3, R"("a")");
+  EXPECT_EQ(problem_from_json(repeated).error().message,
+            "scene: two objects are named 'a': each needs a name of its own");
 }
 
 TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {

@@ -54,6 +54,17 @@ TEST(ProfileText, EstimatorIsAWord) {
   EXPECT_FALSE(profile_from_text("default,estimator"));
 }
 
+TEST(ProfileText, YesAndNoAreOneAndZero) {
+  EXPECT_FALSE(profile_from_text("default,take_over=no")->transfer.take_over);
+  EXPECT_FALSE(profile_from_text("default,take_over=0")->transfer.take_over);
+  EXPECT_TRUE(profile_from_text("default,take_over=no,take_over=yes")->transfer.take_over);
+  EXPECT_TRUE(profile_from_text("default,take_over=1")->transfer.take_over);
+  EXPECT_EQ(profile_from_text("default,take_over=on").error().message,
+            "profile 'default,take_over=on': 'take_over=on' is not yes or no, nor 1 or 0");
+  EXPECT_FALSE(profile_from_text("default,take_over=2"));
+  EXPECT_FALSE(profile_from_text("default,tracks=yes")) << "a number is none";
+}
+
 TEST(ProfileText, RefusesWithOptionValueAndLimits) {
   const auto message = [](const char* text) { return profile_from_text(text).error().message; };
   EXPECT_EQ(message("best"), "profile 'best': it does not begin with default or paper");

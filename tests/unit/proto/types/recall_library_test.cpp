@@ -98,7 +98,8 @@ const std::vector<Case> kCases = {
     {[](auto& library) { library.queries[0].goal[0] = std::numeric_limits<double>::infinity(); },
      "recall: query 0: goal: not finite"},
     {[](auto& library) { library.queries[1].T_task_base.translation().x() = 1001; },
-     "recall: query 1: T_task_base: pose: coordinate 1001 m exceeds 1000 m"},
+     "recall: query 1: T_task_base: pose: coordinate 1001 m exceeds 1000 m; these are probably "
+     "millimetres"},
     {[](auto& library) { library.queries[1].T_task_anchors.pop_back(); },
      "recall: query 1: 1 poses of 2 anchors"},
     {[](auto& library) { library.queries[0].T_task_anchors[1].matrix()(0, 0) = kNan; },

@@ -127,7 +127,8 @@ TEST(RecordedScene, AConstraintThatCannotBeKeptIsNamed) {
   scene.constraint = level();
   scene.constraint->T_task_region.translation().x() = 2000;
   EXPECT_EQ(check_scene(scene)->message,
-            "scene: constraint: T0_w: pose: coordinate 2000 m exceeds 1000 m");
+            "scene: constraint: T0_w: pose: coordinate 2000 m exceeds 1000 m; these are probably "
+            "millimetres");
   scene.constraint = level();
   scene.constraint->T_region_end.linear() *= 2;
   EXPECT_EQ(check_scene(scene)->message, "scene: constraint: Tw_e is not a rigid transform");

@@ -103,6 +103,66 @@ TEST(GeometryDoubts, AMeshAThousandTimesTooLargeOrTooSmallIsNamedWithItsSize) {
       << small;
 }
 
+TEST(GeometryDoubts, AMovingLinkOfFiftyTimesTheReachIsRefusedAndAStandingOneIsNot) {
+  const auto box = [](const std::string& size) {
+    return "<collision><geometry><box size='" + size + "'/></geometry></collision>";
+  };
+  const auto fault = [&](const std::string& base, const std::string& upper) {
+    const Read robot = read(describe(box(base), box(upper), kSolid));
+    const auto error = find_faults(robot.chain, robot.shapes);
+    return error ? error->message : std::string();
+  };
+  EXPECT_EQ(fault("0.1 0.1 0.1", "98 0.1 0.1"), "");
+  EXPECT_EQ(fault("0.1 0.1 0.1", "102 0.1 0.1"),
+            "link 'upper' of an arm that reaches 1 m is 102 m long and sticks out 51 m from its "
+            "origin; these are probably millimetres (0.051 m): a mesh in mm needs scale=\"0.001 "
+            "0.001 0.001\" in the URDF; more than 50 times the reach is taken for no link");
+  EXPECT_EQ(fault("400 400 0.1", "0.1 0.1 0.1"), "");
+}
+
+TEST(GeometryDoubts, ATransferFrameBeyondTenTimesTheReachIsRefusedAndANearerOneIsNamed) {
+  const auto with_tool = [](double z_m) {
+    RobotDescription description = describe(kSolid, kSolid, kSolid);
+    description.T_tip_transfer.translation().z() = z_m;
+    return read(description);
+  };
+  EXPECT_EQ(doubts_of(with_tool(1.9)), "");
+  EXPECT_EQ(doubts_of(with_tool(2.5)),
+            "the transfer frame is 2.5 m away from its tip link 'fore', of an arm that reaches 1 "
+            "m; lengths are m\n")
+      << "and nothing is small beside such a tool";
+  EXPECT_FALSE(find_impossible_lengths(with_tool(9.9).chain));
+  const auto error = find_impossible_lengths(with_tool(125).chain);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->message.find("the transfer frame is 125 m away from its tip link 'fore', of an "
+                                "arm that reaches 1 m; these are probably millimetres (0.125 m)"),
+            0U)
+      << error->message;
+  EXPECT_NE(error->message.find("at most 10 times the reach"), std::string::npos);
+}
+
+TEST(GeometryDoubts, AChainInMillimetresIsRefused) {
+  RobotDescription description = describe(kSolid, kSolid, kSolid);
+  const std::string metre = "xyz='1 0 0'";
+  description.urdf.replace(description.urdf.find(metre), metre.size(), "xyz='1000 0 0'");
+  const auto error = find_impossible_lengths(read(description).chain);
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->message.find("reaches 1e+03 m from its base, stretched out; these are probably "
+                                "millimetres (1 m)"),
+            std::string::npos)
+      << error->message;
+}
+
+TEST(GeometryDoubts, AFarPlaceIsToldWithItsDistance) {
+  const Read robot = read(describe(kSolid, kSolid, kSolid));
+  EXPECT_EQ(describe_far_place(robot.chain, {0, 9, 0}), "") << "as a frame that is mistaken";
+  EXPECT_EQ(describe_far_place(robot.chain, {0, 420, 0}),
+            "it is 420 m away from the robot's base, which gets 1 m far; these are probably "
+            "millimetres (0.42 m)");
+  EXPECT_EQ(describe_far_place(robot.chain, {0, 0, 5000}),
+            "it is 5e+03 m away from the robot's base, which gets 1 m far; lengths are m");
+}
+
 TEST(GeometryDoubts, AFloorOfTheRobotsOwnMayBeLargeAndATableInMillimetresMayNot) {
   const auto box = [](const std::string& size) {
     return "<collision><geometry><box size='" + size + "'/></geometry></collision>";
@@ -173,16 +233,28 @@ TEST(GeometryDoubts, AnObstacleBeyondAllThatTheRobotCanTouchIsNamed) {
   Scene scene;
   scene.objects = {at("near", 1.2), at("far", 500)};
   const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
-  const auto said = find_unreachable(robot.chain, robot.shapes, origin, scene, {});
+  const auto said = find_scene_doubts(robot.chain, robot.shapes, origin, scene, {});
   ASSERT_EQ(said.size(), 1U);
   EXPECT_EQ(said[0].find("'far' is 500 m away"), 0U) << said[0];
+  EXPECT_NE(said[0].find("these are probably millimetres (0.5 m)"), std::string::npos) << said[0];
   const Eigen::Isometry3d there(Eigen::Translation3d(500, 0, 0));
-  EXPECT_EQ(find_unreachable(robot.chain, robot.shapes, there, scene, {})[0].find("'near'"), 0U);
+  EXPECT_EQ(find_scene_doubts(robot.chain, robot.shapes, there, scene, {})[0].find("'near'"), 0U);
   AttachedObject rod;
   rod.link = "fore";
   rod.shape = BoxShape{{1000, 0.1, 0.1}};
-  EXPECT_TRUE(find_unreachable(robot.chain, robot.shapes, origin, scene, {rod}).empty())
+  EXPECT_TRUE(find_scene_doubts(robot.chain, robot.shapes, origin, scene, {rod}).empty())
       << "what the hand holds gets there";
+}
+
+TEST(GeometryDoubts, AnObstacleAHundredTimesAsLongAsTheRobotReachesIsNamed) {
+  const Read robot = read(describe(kSolid, kSolid, kSolid));
+  Scene scene;
+  scene.objects = {{"hall", BoxShape{{90, 90, 0.1}}}, {"table", BoxShape{{800, 1200, 100}}}};
+  const auto said =
+      find_scene_doubts(robot.chain, robot.shapes, Eigen::Isometry3d::Identity(), scene, {});
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].find("'table' is 1.2e+03 m long"), 0U) << said[0];
+  EXPECT_NE(said[0].find("these are probably millimetres (1.2 m)"), std::string::npos) << said[0];
 }
 
 }  // namespace

@@ -111,6 +111,29 @@ TEST(KnownShapes, CoversWhatIsAMesh) {
     EXPECT_EQ(shape.triangles, nullptr);
 }
 
+TEST(KnownShapes, SolidsThatDoNotHoldTheMeshesAreNoCovers) {
+  const RobotDescription named = description(kBox, kMesh);
+  const TriangleMesh mesh =
+      TriangleMesh::from_corners(test::BoxMesh({0.1, 0.2, 0.3}).triangles()).value_or_throw();
+  const auto covers_of = [&](double size_m) {
+    RobotDescription robot = named;
+    robot.meshes = {{.link = "arm", .role = MeshRole::Collision, .content = mesh.digest()}};
+    robot.mesh_solids.solids = {{"arm", BoxShape{{0.1, 0.2, size_m}},
+                                 Eigen::Isometry3d(Eigen::Translation3d(0.05, 0.1, size_m / 2))}};
+    const auto read =
+        read_known_shapes(kinematics::read_model(robot).value_or_throw(), [&](const Digest&) {
+          return std::optional(mesh.content());
+        }).value_or_throw();
+    EXPECT_EQ(read.grade, GeometryGrade::Exact);
+    return read.covers;
+  };
+  EXPECT_EQ(covers_of(0.29), nullptr);
+  const auto covers = covers_of(0.3);
+  ASSERT_NE(covers, nullptr);
+  ASSERT_EQ(covers->shapes.size(), 2U);
+  EXPECT_GT(std::get<BoxShape>(covers->shapes[1].shape).size.z(), 0.3) << "as the test was made";
+}
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

@@ -132,6 +132,34 @@ TEST(CoverMesh, EqualMeshesHaveEqualShapes) {
   }
 }
 
+TEST(CoverMesh, SolidsHoldTheirMeshAndOthersThatMissAPartOfItDoNot) {
+  std::mt19937_64 generator(kSeed);
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::Matrix3Xd corners = any_pose(generator) * bent_link();
+    std::vector<FittedShape> solids = cover_mesh(corners);
+    ASSERT_GE(solids.size(), 2U);
+    EXPECT_TRUE(hold(solids, corners)) << i;
+    const FittedShape last = solids.back();
+    solids.back().T_points_shape.translation().x() += 0.01;
+    EXPECT_FALSE(hold(solids, corners)) << i;
+    solids.pop_back();
+    EXPECT_FALSE(hold(solids, corners)) << i;
+    EXPECT_FALSE(hold({}, corners));
+    EXPECT_FALSE(hold({last}, corners)) << i;
+  }
+}
+
+TEST(CoverMesh, AMeshThatSticksOutBetweenItsCornersIsNotHeld) {
+  Eigen::Matrix3Xd corners(3, 3);
+  corners << -1, 1, 0, 0, 0, 0.01, 0, 0, 0;
+  const auto ball_at = [](double x) {
+    return FittedShape{SphereShape{0.9}, Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0))};
+  };
+  EXPECT_TRUE(hold({ball_at(-0.8), ball_at(0.8)}, corners)) << "they overlap";
+  EXPECT_FALSE(hold({ball_at(-1), ball_at(1), {SphereShape{0.05}}}, corners))
+      << "every corner is in one of them";
+}
+
 TEST(FitTightly, IsNeverLargerThanTheFirstGuess) {
   std::mt19937_64 generator(kSeed);
   std::normal_distribution<double> normal;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
+#include "robots/models/text_file.hpp"
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -73,6 +75,66 @@ TEST_F(MeshRobot, AMalformedPackageIsRefusedEvenIfNothingNeedsIt) {
   EXPECT_FALSE(describe_robot(arguments_));
 }
 
+/// The same robot, all said by a chain.toml in a folder of its own.
+class MeshRobotFolder : public MeshRobot {
+ protected:
+  MeshRobotFolder() {
+    std::filesystem::create_directories(folder_ / "mine");
+    arguments_ = {.source = folder_ / "mine"};
+  }
+  void say(const std::string& more) {
+    std::ofstream(folder_ / "mine" / kChainFile)
+        << "urdf = '../arm.urdf'\nlabel = 'a'\nbase = 'base'\ntip = 'arm'\n"
+           "transfer = [0, 0, 0, 0, 0, 0, 1]\n"
+        << more;
+  }
+};
+
+TEST_F(MeshRobotFolder, SaysPackagesAndSrdfItself) {
+  say("srdf = '../arm.srdf'\n[packages]\narm = '..'\n");
+  const LoadedRobot robot = load_robot(arguments_).value_or_throw();
+  EXPECT_EQ(robot.description.label, "a");
+  ASSERT_EQ(robot.shapes.shapes.size(), 1U);
+  EXPECT_EQ(robot.shapes.never_colliding.size(), 1U);
+  kinematics::RobotModel model = robot;
+  EXPECT_EQ(add_meshes(arguments_, model).value_or_throw().size(), 1U) << "of the base, not there";
+  EXPECT_EQ(model.description.meshes.size(), 1U);
+  EXPECT_EQ(model.description.contents.size(), 1U);
+  arguments_.without_meshes = true;
+  model.description.meshes.clear();
+  EXPECT_TRUE(add_meshes(arguments_, model).value_or_throw().empty());
+  EXPECT_TRUE(model.description.meshes.empty());
+}
+
+TEST_F(MeshRobotFolder, LooksForMeshesInItsMeshFolders) {
+  say("mesh_folders = ['..']\n");
+  EXPECT_EQ(message(), "fine");
+  say("");
+  EXPECT_NE(message().find("the folder of package 'arm' is not known"), std::string::npos);
+}
+
+TEST_F(MeshRobotFolder, FindsPackagesAsRosDoesBesideItsUrdf) {
+  say("");
+  std::ofstream(folder_ / "package.xml") << "<package><name>arm</name></package>";
+  EXPECT_EQ(message(), "fine");
+  std::filesystem::remove(folder_ / "package.xml");
+  std::filesystem::create_directories(folder_ / "prefix/share/arm");
+  std::filesystem::copy(folder_ / "l1.STL", folder_ / "prefix/share/arm/l1.STL");
+  setenv("AMENT_PREFIX_PATH", (folder_ / "prefix").c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
+  EXPECT_EQ(message(), "fine");
+  unsetenv("AMENT_PREFIX_PATH");  // NOLINT(concurrency-mt-unsafe)
+}
+
+TEST_F(MeshRobotFolder, InMillimetresIsRefused) {
+  std::string text = read_text(folder_ / "arm.urdf", 10'000);
+  const std::string scale = R"( scale="0.001 0.001 0.001")";
+  std::ofstream(folder_ / "arm.urdf") << text.erase(text.find(scale), scale.size());
+  say("[packages]\narm = '..'\n");
+  EXPECT_NE(message().find("link 'arm' of an arm that reaches 0 m is 500 m long"),
+            std::string::npos)
+      << message();
+}
+
 TEST_F(MeshRobot, TakesPairsFromAnSrdf) {
   arguments_.srdf = folder_ / "arm.srdf";
   const LoadedRobot robot = load_robot(arguments_).value_or_throw();
@@ -107,6 +169,14 @@ TEST(LoadRobot, AnSrdfAddsToThePairsOfAFolder) {
   const LoadedRobot more =
       load_robot({.source = kModels + "panda", .srdf = folder / "more.srdf"}).value_or_throw();
   EXPECT_EQ(more.shapes.never_colliding.size(), plain.shapes.never_colliding.size() + 1);
+}
+
+TEST(LoadRobot, RefusesATransferFrameInMillimetres) {
+  const auto robot = load_robot({.source = kModels + "panda", .transfer = "0 0 125 0 0 0 1"});
+  ASSERT_FALSE(robot);
+  EXPECT_NE(robot.error().message.find("these are probably millimetres (0.125 m)"),
+            std::string::npos)
+      << robot.error().message;
 }
 
 TEST(LoadRobot, SaysWhatIsWrongWithFilesChainAndShapes) {

@@ -80,8 +80,75 @@ TEST_F(ModelFolder, NamesTheFieldOfWhatItRefuses) {
             "hold: must be a table of joints and values");
   EXPECT_EQ(message(kNames + kTransfer + "never_colliding = [['a', 'b'], ['c']]"),
             "never_colliding: pair 2 is not [link, link]");
-  EXPECT_EQ(message(kNames + kTransfer + "tipp = 't'"), "tipp: is not a field of this file");
+  EXPECT_EQ(message(kNames + kTransfer + "tipp = 't'"),
+            "tipp: is not a field of this file (did you mean 'tip'?)");
+  EXPECT_EQ(message(kNames + kTransfer + "limit_slack = 0.2"),
+            "limit_slack: 0.2 is not from 0 to 0.1, joint units");
+  EXPECT_EQ(message(kNames + kTransfer + "srdf = ''"), "srdf: is empty");
+  EXPECT_EQ(message(kNames + kTransfer + "collision_from_visual = 1"),
+            "collision_from_visual: must be true or false");
+  EXPECT_EQ(message(kNames + kTransfer + "[packages]\narm = 3"),
+            "packages.arm: must be a folder, as text");
+  EXPECT_EQ(message(kNames + kTransfer + "[packages]\narm = 'nowhere'"),
+            "packages.arm: '" + (folder_ / "nowhere").string() + "': no such folder");
+  EXPECT_EQ(message(kNames + kTransfer + "[xacro]\nprefix = 1"), "xacro.prefix: must be text");
   EXPECT_NE(message(kNames + "axes = ?\n").find("line 4: "), std::string::npos);
+}
+
+TEST_F(ModelFolder, NamesFilesAndFoldersRelativeToItself) {
+  for (const char* name : {"meshes", "src", "more", "other"})
+    std::filesystem::create_directory(folder_ / name);
+  write("src/arm.urdf", "<robot name='arm'/>");
+  write(kChainFile, "urdf = 'src/arm.urdf'\n" + kNames + kTransfer +
+                        "mesh_folders = ['meshes']\nlimit_slack = 0.01\n"
+                        "without_collision = ['cable']\n[packages]\narm = 'src'\nhand = 'more'\n");
+  EXPECT_EQ(read_model_folder(folder_).value_or_throw().urdf, "<robot name='arm'/>");
+  const RobotArguments given{.source = folder_,
+                             .packages = {"hand=" + (folder_ / "other").string()},
+                             .mesh_folders = {"first"}};
+  const RobotArguments all = resolve(given).value_or_throw().arguments;
+  EXPECT_EQ(all.source, folder_ / "src/arm.urdf");
+  EXPECT_EQ(all.packages, (std::vector{"hand=" + (folder_ / "other").string(),
+                                       "arm=" + (folder_ / "src").string()}))
+      << "arguments count before the file";
+  EXPECT_EQ(all.mesh_folders, (std::vector<std::filesystem::path>{"first", folder_ / "meshes"}));
+  EXPECT_EQ(all.without_collision, std::vector<std::string>{"cable"});
+  EXPECT_EQ(all.limit_slack, 0.01);
+  EXPECT_EQ(describe_robot({.source = folder_, .limit_slack = 0}).value_or_throw().limit_slack, 0);
+}
+
+TEST_F(ModelFolder, IsReadAsItIsWritten) {
+  write("a \"b\".urdf", "<robot/>");
+  std::filesystem::create_directory(folder_ / "p");
+  ChainFile chain{.label = "r", .base_link = "b\\1", .tip_link = "t"};
+  chain.T_tip_transfer.translation() = Eigen::Vector3d(0.1, -1e-7, 1.0 / 3);
+  chain.task_axes = parse_task_axes({"x", "yaw"}).value_or_throw();
+  chain.held = {{"finger joint", 0.25}};
+  chain.never_colliding = {{"a", "b"}};
+  chain.urdf = "a \"b\".urdf";
+  chain.srdf = "x.srdf";
+  chain.packages = {{"arm", "p"}};
+  chain.mesh_folders = {"p"};
+  chain.xacro = {"name:=a b"};
+  chain.collision_from_visual = true;
+  chain.without_collision = {"c"};
+  chain.limit_slack = 1e-5;
+  write(kChainFile, chain_file_text(chain));
+  const ChainFile again = read_chain_file(folder_).value_or_throw();
+  EXPECT_EQ(again.label, chain.label);
+  EXPECT_EQ(again.base_link, chain.base_link);
+  EXPECT_EQ(again.T_tip_transfer.matrix(), chain.T_tip_transfer.matrix());
+  EXPECT_EQ(again.task_axes, chain.task_axes);
+  EXPECT_EQ(again.held, chain.held);
+  EXPECT_EQ(again.never_colliding, chain.never_colliding);
+  EXPECT_EQ(again.urdf, folder_ / chain.urdf);
+  EXPECT_EQ(again.srdf, folder_ / "x.srdf");
+  EXPECT_EQ(again.packages.at("arm"), folder_ / "p");
+  EXPECT_EQ(again.mesh_folders, std::vector{folder_ / "p"});
+  EXPECT_EQ(again.xacro, chain.xacro);
+  EXPECT_TRUE(again.collision_from_visual);
+  EXPECT_EQ(again.without_collision, chain.without_collision);
+  EXPECT_EQ(again.limit_slack, chain.limit_slack);
 }
 
 TEST_F(ModelFolder, SaysWhichFileIsMissing) {
