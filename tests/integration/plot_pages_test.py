@@ -1,4 +1,5 @@
 """The pages of `distributions plot`, `tasks plot` and `robots compare`, of a real kinshipd, in a browser."""
+import io
 import json
 import pathlib
 import re
@@ -7,6 +8,7 @@ import unittest
 import uuid
 
 import numpy as np
+from PIL import Image
 
 from browser import BrowserTest, pixels_of, share_drawn
 from kinshipd_process import Kinshipd
@@ -165,6 +167,40 @@ class PlotPages(BrowserTest):
             self.assertEqual(self.marks("body", "#3fc1b8"), light["#0b7a75"], page + ": charts are drawn anew")
             self.assertEqual(light["#3fc1b8"], 0)
             self.browser.prefer("light")
+
+    def test_a_table_that_is_cut_shows_that_there_is_more(self):
+        """By a shadow at that side; keys scroll it."""
+        self.browser.resize(400, 800)
+        cut = 0
+        for page in ("distribution.html", "task.html", "worths.html"):
+            self.load(page)
+            for frame in self.browser.elements(".scroll"):
+                self.assertEqual(frame.get_attribute("tabindex"), "0", page)
+                self.assertTrue(frame.get_attribute("aria-label"), page)
+                hidden = self.browser.run("return arguments[0].scrollWidth - arguments[0].clientWidth", frame)
+                if hidden < 40 or not frame.is_displayed():
+                    continue
+                cut += 1
+                for scrolled, has_left, has_right in ((0, False, True), (hidden, True, False)):
+                    self.browser.run("arguments[0].scrollLeft = arguments[1]", frame, scrolled)
+                    self.browser.settle()
+                    left, right = (self.edge_of(frame, side) for side in (0, -1))
+                    self.assertEqual((left < 250, right < 250), (has_left, has_right), f"{page} at {scrolled}: {left}, {right}")
+        self.assertGreater(cut, 2)
+
+    def edge_of(self, frame, side: int) -> int:
+        """How bright the first or last column of its pixels is above the table, where there is nothing else."""
+        picture = np.array(Image.open(io.BytesIO(frame.screenshot_as_png)).convert("L"))
+        return int(picture[4, 1 if side == 0 else -2])
+
+    def test_a_toggle_that_is_off_is_not_struck_through(self):
+        self.load("distribution.html")
+        toggle = self.browser.element(".legend button[aria-pressed]")
+        if toggle.get_attribute("aria-pressed") == "true":
+            toggle.click()
+        self.assertEqual(toggle.get_attribute("aria-pressed"), "false")
+        self.assertEqual(toggle.value_of_css_property("text-decoration-line"), "none")
+        self.assertEqual(toggle.value_of_css_property("border-top-style"), "dashed")
 
     def test_what_is_not_there_is_code_three_and_leaves_the_file(self):
         kept = self.folder / "kept.html"
