@@ -19,6 +19,7 @@ namespace kinship::cli {
 
 int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   Session session{.out = out, .err = err};
+  session.arguments.assign(argv + 1, argv + argc);
   CLI::App app("The admin program of Kinship, an experience database for robot motion planning.",
                "kinship");
   manual::add_manual(app);
@@ -41,6 +42,8 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_jobs(app, session);
   add_robots(app, session);
   add_problems(app, session);
+  add_results(app, session);
+  add_schema(app, session);
   add_tasks(app, session);
   add_paths(app, session);
   add_attempts(app, session);

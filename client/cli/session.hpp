@@ -8,6 +8,7 @@
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "client/cli/job_commands.hpp"
 #include "client/cli/plot_commands.hpp"
@@ -25,9 +26,10 @@ struct Session {
   std::filesystem::path token = {};     ///< file of the server's token; empty: none
   double timeout_s = 5;
   bool json = false;
-  bool is_wide = false;               ///< tables with every column
-  bool is_verbose = false;            ///< progress of long work also if `err` is no terminal
-  std::function<int()> command = {};  ///< set by the subcommand that was named
+  std::vector<std::string> arguments = {};  ///< the command line, for a program that runs it again
+  bool is_wide = false;                     ///< tables with every column
+  bool is_verbose = false;                  ///< progress of long work also if `err` is no terminal
+  std::function<int()> command = {};        ///< set by the subcommand that was named
 
   /// Runs a command that needs a server.
   int with_server(const std::function<int(link::Client&)>& use) const;
@@ -107,6 +109,8 @@ void add_server_commands(CLI::App& app,
 void add_jobs(CLI::App& app, Session& session);
 void add_robots(CLI::App& app, Session& session);
 void add_problems(CLI::App& app, Session& session);
+void add_schema(CLI::App& app, Session& session);
+void add_results(CLI::App& app, Session& session);
 void add_tasks(CLI::App& app, Session& session);
 void add_paths(CLI::App& app, Session& session);
 void add_attempts(CLI::App& app, Session& session);

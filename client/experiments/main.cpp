@@ -1,14 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "client/arguments/command_options.hpp"
-#include "client/experiments/page_options.hpp"
-#include "client/experiments/python_program.hpp"
 #include "client/experiments/station_problems.hpp"
 #include "client/experiments/studies/study.hpp"
 #include "client/experiments/study_options.hpp"
+#include "client/results/python_program.hpp"
 #include "proto/files/output_file.hpp"
 #include "proto/manual/manual.hpp"
 #include "proto/manual/suggestion.hpp"
@@ -25,10 +23,6 @@ constexpr const char* kExamples = R"(
 Examples:
   kinship-experiments machine --model robots/models/panda --count 60 --seed 1 --output panda.problems.jsonl
   kinship-experiments placement --model robots/models/ur10e
-  kinship-experiments compare --uniform uniform.results.jsonl --guided guided.results.jsonl --also "mixture alone=mixture.results.jsonl"
-
-  kinship-experiments page --run build/quickstart --models robots/models --output quickstart.html
-      any run: kinship-experiments page --help
   kinship-experiments planar --out build/experiments --quick
       the whole first experiment with few instances: learning sets, distributions, queries
   kinship-experiments planar --out build/experiments --resume
@@ -46,7 +40,6 @@ struct CommandLine {
   std::filesystem::path output;
   std::string placed_at = std::string(to_text(Station::Machine));
   models::RobotArguments placed;
-  PageOptions page;
   StudyOptions study;
 };
 
@@ -82,23 +75,6 @@ void add_placement(CLI::App& app, CommandLine& line) {
       ->check(CLI::IsMember(
           {std::string(to_text(Station::Machine)), std::string(to_text(Station::Shelf))}))
       ->capture_default_str();
-}
-
-/// Python compares, which is told the options as they were given.
-void add_compare(CLI::App& app) {
-  CLI::App* const compare = app.add_subcommand(
-      "compare", "compare two result files of kinship-plan over the same problems");
-  const auto add = [&](const char* name, const char* text) {
-    return compare->add_option(name, CLI::callback_t(), text)->type_name("TEXT");
-  };
-  add("--uniform", "results without guidance")->required();
-  add("--guided", "results with guidance")->required();
-  add("--also",
-      "NAME=FILE: other results over the same problems, each compared with uniform planning in a "
-      "line below; may be repeated")
-      ->expected(1, CLI::detail::expected_max_vector_size);
-  compare->add_flag_callback(
-      "--json", [] {}, "one JSON document instead of a table");
 }
 
 /// Python runs them, which is told the options as they were given and the studies.
@@ -151,6 +127,13 @@ std::vector<std::string> studies_of(const CLI::App& order) {
   return names;
 }
 
+[[noreturn]] void run_orders(const CLI::App& order) {
+  results::Words words = results::words_of(order);
+  words["name"] = {"order"};
+  words["studies"] = studies_of(order);
+  run_study_program(std::move(words));
+}
+
 Eigen::Isometry3d read_placement(const std::string& text) {
   const Result<Eigen::Isometry3d> pose = models::parse_pose(text);
   if (!pose)
@@ -169,7 +152,7 @@ void write_problems(const CommandLine& line, StationOptions options) {
 int run(int argc, char** argv) {
   CommandLine line;
   line.shelf.station = Station::Shelf;
-  CLI::App app{"kinship-experiments: planning problems and comparisons for experiments",
+  CLI::App app{"kinship-experiments: studies, and the planning problems of the quickstart",
                "kinship-experiments"};
   manual::add_manual(app);
   app.footer(kExamples);
@@ -178,9 +161,7 @@ int run(int argc, char** argv) {
               line);
   add_station(app, "a held box goes from a table into a shelf", line.shelf, line);
   add_placement(app, line);
-  add_compare(app);
   add_order(app);
-  add_page_command(app, line.page);
   add_study_commands(app, line.study);
   try {
     manual::parse(app, argc, argv);
@@ -198,13 +179,8 @@ int run(int argc, char** argv) {
   else if (app.got_subcommand("placement"))
     write_placement(line.placed_at == to_text(Station::Shelf) ? Station::Shelf : Station::Machine,
                     line.placed, std::cout);
-  else if (app.got_subcommand("page"))
-    run_page_command(line.page, {argv + 1, argv + argc});
-  else if (app.got_subcommand("order"))
-    become_python("run_study.py", *app.get_subcommand("order"),
-                  {{"name", {"order"}}, {"studies", studies_of(*app.get_subcommand("order"))}});
   else
-    become_python("compare.py", *app.get_subcommand("compare"));
+    run_orders(*app.get_subcommand("order"));
   return kDone;
 }
 

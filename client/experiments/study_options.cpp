@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <vector>
 
 #include "client/arguments/command_options.hpp"
 #include "client/experiments/peer.hpp"
-#include "client/experiments/python_program.hpp"
 #include "client/experiments/studies/fleet.hpp"
 #include "client/experiments/studies/instance_draws.hpp"
 #include "proto/files/output_file.hpp"
@@ -131,10 +129,12 @@ void add_other_tasks(CLI::App& command, StudyOptions& options) {
 }
 
 void run_in_python(const StudyOptions& options) {
-  nlohmann::json more{{"name", {options.study}}, {"profile", {options.profile}}};
+  results::Words words = results::words_of(*options.command);
+  words["name"] = {options.study};
+  words["profile"] = {options.profile};
   for (const Study* const study : find_studies(options.study))
-    more["studies"].push_back(study->name);
-  become_python("run_study.py", *options.command, more);
+    words["studies"].push_back(study->name);
+  run_study_program(std::move(words));
 }
 
 /// Writes the point clouds of a problem, which names their files from here on.
@@ -180,6 +180,11 @@ std::vector<const Study*> studies_meant(const StudyOptions& options) {
 }
 
 }  // namespace
+
+void run_study_program(results::Words words) {
+  results::become_python(std::filesystem::path(KINSHIP_EXPERIMENTS_DIR) / "run_study.py",
+                         std::move(words));
+}
 
 void add_study_commands(CLI::App& app, StudyOptions& options) {
   const auto add = [&](const std::string& name, const std::string& purpose) {

@@ -5,6 +5,8 @@
 #include <iosfwd>
 #include <string>
 
+#include "client/results/python_program.hpp"
+
 namespace CLI {  // NOLINT: theirs
 class App;
 }
@@ -32,5 +34,8 @@ void add_study_commands(CLI::App& app, StudyOptions& options);
 
 /// Does what the options say; does not return from a study that is run. \throws Failure
 void run_study_command(const StudyOptions& options, std::istream& in, std::ostream& out);
+
+/// Runs pipeline/ in place of this program. \param words  what run_study.py is told.
+[[noreturn]] void run_study_program(results::Words words);
 
 }  // namespace kinship::experiments

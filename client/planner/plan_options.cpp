@@ -133,7 +133,7 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       ->type_name("FILE");
   app.add_option(
          "--searches", options.searches,
-         "file for how the trees of each search grew, which kinship-experiments page draws; "
+         "file for how the trees of each search grew, which kinship results page draws; "
          "makes planning a little slower")
       ->type_name("FILE");
   app.add_flag("--json", options.json,

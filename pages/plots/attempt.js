@@ -32,7 +32,7 @@ kinshipFigures.attempt = (element, data, {href = () => null} = {}) => {
 <section id="blockers-section" hidden>
   <h2>What was in the way</h2>
   <p class="note">Of the configurations that were looked at. Choose a pair to see it above.</p>
-  <div class="scroll"><table id="blockers"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="What blocked"><table id="blockers"></table></div>
 </section>
 
 <section id="beside" hidden>

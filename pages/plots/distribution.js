@@ -42,7 +42,7 @@ kinshipFigures.distribution = (element, data, {href = () => null} = {}) => {
   <p id="sources-text"></p>
   <div id="source-keys"></div>
   <div id="poses" class="chart"></div>
-  <div class="scroll"><table id="sources"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="Sources"><table id="sources"></table></div>
   <p class="note" id="sources-note"></p>
 </section>`);
   const {fillFacts, keys, panel, chart, timeText, hide} = kinshipPlots;

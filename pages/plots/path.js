@@ -31,7 +31,7 @@ const kinshipPath = (() => {
     const table = make("table", {"aria-label": "One query, two attempts"});
     fillTable(table, [["", ...both.map(titleOf)], ...rowsOf.map(([name, of]) => [name, ...both.map(of)])]);
     const stages = both.map(() => make("figure", {}));
-    element.append(make("div", {class: "scroll"}, table), make("div", {class: "panels wide"}, ...both.map((one, i) => make("div", {}, make("h3", {}, titleOf(one)), stages[i]))));
+    element.append(make("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Two attempts"}, table), make("div", {class: "panels wide"}, ...both.map((one, i) => make("div", {}, make("h3", {}, titleOf(one)), stages[i]))));
     const bodies = (q) => (q ? solids(q).links.concat(solids(q).held) : []);
     const startOf = ({path, search}) => (path ? path.waypoints[0] : search && search.start.length ? search.start : null);
     const everywhere = both.flatMap(({path}) => (path ? metres(path.hand) : [])); // both are seen from one place

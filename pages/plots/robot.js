@@ -27,7 +27,7 @@ kinshipFigures.robot = (element, data) => {
 
 <section>
   <h2>Links</h2>
-  <div class="scroll"><table id="links"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="Links"><table id="links"></table></div>
 </section>
 
 <section>

@@ -42,14 +42,14 @@ kinshipFigures.task = (element, data, {href = () => null} = {}) => {
 
 <section>
   <h2>Numbers</h2>
-  <div class="scroll"><table id="robots"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="Robots"><table id="robots"></table></div>
   <p class="note" id="robots-note"></p>
 </section>
 
 <section>
   <h2>Distributions</h2>
   <p id="revisions-text"></p>
-  <div class="scroll"><table id="revisions"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="Distributions"><table id="revisions"></table></div>
 </section>`);
   const {keys, panel, chart, hueOf, dashOf, timeText, dayText, lengthText, hide} = kinshipPlots;
   const {robots, revisions} = data;

@@ -13,13 +13,13 @@ kinshipFigures.worths = (element, data) => {
   <h2>Worth of each source's experience to each target</h2>
   <p id="matrix-text"></p>
   <div id="scale" class="scale" role="img"></div>
-  <div class="scroll"><table id="matrix" class="matrix"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="Worth of each source to each target"><table id="matrix" class="matrix"></table></div>
   <div id="detail" aria-live="polite"></div>
 </section>
 
 <section>
   <h2>Every pair in numbers</h2>
-  <div class="scroll"><table id="pairs"></table></div>
+  <div class="scroll" tabindex="0" role="region" aria-label="Pairs of robots"><table id="pairs"></table></div>
   <ul class="note" id="remarks"></ul>
   <p class="note" id="pairs-note"></p>
 </section>`);

@@ -86,11 +86,12 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string guided = "client/guided";
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
+  const std::string results = "client/results";
   const std::set<std::string> planner_programs = {
       guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
       collision, geometry, kinematics, models, mixture,  json, manual,   types};
   std::set<std::string> experiments = planner_programs;
-  experiments.insert(page);
+  experiments.insert(results);
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto", "zlib"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -146,10 +147,13 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {guided,
        {{recall, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
+      {results,
+       {{page, planning, collision, kinematics, models, mixture, json, files, types},
+        {"Eigen", "CLI11", "nlohmann-json"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp", "SQLite"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, guided, ompl, page, plots, mcap, inverse, collision,
-         geometry, kinematics, models, mixture, json, manual, tables, types},
+       {{link,      arguments, files,      moveit, guided,  ompl, page,   plots,   mcap,   inverse,
+         collision, geometry,  kinematics, models, mixture, json, manual, results, tables, types},
         {"Eigen", "CLI11"}}},
       {"client/c",
        {{guided, link, json, evidence, mixture, recall, planning, models, collision, geometry,

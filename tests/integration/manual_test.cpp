@@ -109,6 +109,7 @@ TEST_P(Shells, CompleteVerbsOptionsAndTheirWords) {
   EXPECT_EQ(offered("kinship pa"), (Words{"paths"}));
   EXPECT_EQ(offered("kinship --domain 7 paths "),
             (Words{"list", "show", "export", "import", "plot", "retire", "restore"}));
+  EXPECT_EQ(offered("kinship results "), (Words{"compare", "page"}));
   EXPECT_EQ(offered("kinship paths list -o "), (Words{"table", "wide", "json"}));
   const Words options = offered("kinship paths list --");
   for (const char* const option : {"--task", "--robot", "--limit", "--json", "--server"})

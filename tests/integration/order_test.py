@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 from kinshipd_process import reserve_domain
+from schemas import check_text
 
 SOURCE, BIN = (pathlib.Path(os.environ[name]) for name in ("KINSHIP_SOURCE_DIR", "KINSHIP_BIN_DIR"))
 QUERIES, EVERY = 24, 8
@@ -29,6 +30,7 @@ class Orders(unittest.TestCase):
     def test_guidance_begins_with_the_second_answer(self):
         done = self.order("--robot", "panda", "--queries", QUERIES)
         self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(set(check_text((self.out / "order.jsonl").read_text())), {"kinship.order-query/1"})
         rows = self.rows()
         self.assertEqual([row["query"] for row in rows], list(range(QUERIES)))
         self.assertEqual([row["query"] for row in rows if row["told"]], list(range(0, QUERIES, EVERY)))

@@ -124,6 +124,28 @@ class Page(unittest.TestCase):
         self.scrub("#searches", 1)
         self.assertEqual({search: self.checks(search) for search in ends}, ends)
 
+    def page_of(self, *words: object) -> None:
+        """Loads a page of the run's folder that `kinship results page` writes with these options."""
+        page = self.folder / "other.html"
+        subprocess.run([pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinship", "results", "page", "--run", self.folder, "--models",
+                        SOURCE / "robots" / "models", "--robot", "ur10e", "--output", page, *words], check=True)
+        self.browser.load(page)
+
+    def test_one_teacher_teaches_and_several_teach(self):
+        self.addCleanup(self.browser.load, self.folder / "quickstart.html")
+        self.assertIn(" teach ur10e a task", self.browser.text("#title"))
+        self.page_of("--teachers", "panda")
+        self.assertEqual(self.browser.text("#title"), "panda teaches ur10e a task")
+
+    def test_what_needs_no_experience_is_not_credited_to_it(self):
+        """The worth is against the best without it; a run that the retreat alone guided has no teacher."""
+        self.addCleanup(self.browser.load, self.folder / "quickstart.html")
+        worth = re.search(r"Worth of experience.*: ([0-9.]+) by checks, ([0-9.]+) by time", (self.folder / "comparison.txt").read_text())
+        self.assertRegex(self.browser.text("#tiles").replace("\u2009", " "), rf"(?s){worth[1]} ×.*worth of the experience.* by time {worth[2]} ×")
+        self.page_of("--guided", self.folder / "ur10e-retreat.results.jsonl")
+        self.assertEqual(self.browser.text("#title"), "ur10e plans a task, and nobody\u2019s experience helps")
+        self.assertIn("guided by what needs no experience", self.browser.text("#story"))
+
     def test_says_by_which_rule_its_instance_was_chosen(self):
         note = self.browser.text("#searches-note")
         self.assertRegex(note, f"of {INSTANCES} instances solved both ways its ratio of checks, [0-9.]+, is nearest the median")

@@ -166,6 +166,30 @@ class PlotPages(BrowserTest):
             self.assertEqual(light["#3fc1b8"], 0)
             self.browser.prefer("light")
 
+    def test_a_table_that_is_cut_shows_that_there_is_more(self):
+        """By a shadow at that side; keys scroll it."""
+        self.browser.resize(400, 800)
+        for page, table in (("distribution.html", "sources"), ("task.html", "revisions"), ("worths.html", "pairs")):
+            self.load(page)
+            for frame in self.browser.elements(".scroll"):
+                self.assertEqual(frame.get_attribute("tabindex"), "0", page)
+                self.assertTrue(frame.get_attribute("aria-label"), page)
+            hidden = self.browser.run("const frame = document.getElementById(arguments[0]).parentElement; frame.dataset.of = arguments[0];"
+                                      "return frame.scrollWidth - frame.clientWidth", table)
+            self.assertGreater(hidden, 40, page)
+            for scrolled, has_left, has_right in ((0, False, True), (hidden, True, False)):
+                self.browser.run("document.querySelector(arguments[0]).scrollLeft = arguments[1]", f"[data-of={table}]", scrolled)
+                above = self.browser.picture(f"[data-of={table}]")[4].mean(axis=1)  # the table's margin, where there is nothing else
+                self.assertEqual((above[1] < 250, above[-2] < 250), (has_left, has_right), f"{page} at {scrolled}: {above[1]}, {above[-2]}")
+
+    def test_a_toggle_that_is_off_is_not_struck_through(self):
+        self.load("distribution.html")
+        toggle = self.browser.element(".legend button[aria-pressed=true]")
+        self.browser.run("arguments[0].click()", toggle)
+        self.assertEqual(toggle.get_attribute("aria-pressed"), "false")
+        self.assertEqual(toggle.value_of_css_property("text-decoration-line"), "none")
+        self.assertEqual(toggle.value_of_css_property("border-top-style"), "dashed")
+
     def test_what_is_not_there_is_code_three_and_leaves_the_file(self):
         kept = self.folder / "kept.html"
         kept.write_text("mine")

@@ -12,6 +12,7 @@ import time
 import unittest
 
 from kinshipd_process import Kinshipd, reserve_domain
+from schemas import check_text
 
 SOURCE, BIN = (pathlib.Path(os.environ[name]) for name in ("KINSHIP_SOURCE_DIR", "KINSHIP_BIN_DIR"))
 EXPERIMENTS, MODELS = SOURCE / "client" / "experiments", SOURCE / "robots" / "models"
@@ -41,6 +42,11 @@ class StudyCell(unittest.TestCase):
     def options(self) -> study.RunOptions:
         return study.RunOptions(folder=self.out, models=MODELS, program=BIN / "kinship-experiments", kinshipd=BIN / "kinshipd",
                                 analysis=self.folder / "missing.py", domain=self.domain, quick=True)
+
+    def check_files(self, name: str) -> "set[str]":
+        """Each document of the run is of its schema. Returns their formats."""
+        return {found.removeprefix("kinship.") for file in (self.out / name).rglob("*.json*") if file.suffix != ".zst"
+                for found in check_text(file.read_text(), str(file))}
 
     def results(self, name: str) -> dict[files.Key, dict]:
         with contextlib.closing(files.QueryLog(self.out / name / "test.jsonl")) as log:
@@ -83,6 +89,9 @@ class StudyCell(unittest.TestCase):
         self.assertIn("<svg ", (folder / "checks.svg").read_text())
         self.assertGreater((folder / "clouds.png").stat().st_size, 0)
         self.assertEqual(len(self.results("open_table-quick")), 3 * 4 * 6)
+        self.assertEqual(self.check_files("open_table-quick"),
+                         {"study/1", "study-run/1", "study-query/1", "distribution/1", "attempt/1", "experience-robot/1"})
+        check_text(run("kinship-experiments", *self.words("--describe")), "--describe")
         self.repeat_by_hand("open_table-quick", "planar_7r_c", "planar_5r_b", 0.05,
                             run("kinship-experiments", *self.words("--problems", "planar_7r_c")))
         lines = (folder / "test.jsonl").read_text()
@@ -113,6 +122,7 @@ class StudyCell(unittest.TestCase):
         self.assertTrue(tuned.startswith("robot "), tuned)
         self.assertIn("\nplanar_5r_a    others ", tuned)
         self.assertIn("\nown          checks ", tuned)
+        self.assertIn("study-tuning/1", {found for folder in self.out.iterdir() for found in self.check_files(folder.name)})
         self.assertIn("| planar_7r_c | ", run("kinship-experiments", *self.words("--resume", "--calibration", 2)))
 
     def test_side_studies_join_the_report(self):

@@ -2,7 +2,7 @@
 import json
 from collections.abc import Sequence
 
-from formats import checked
+from kinship_results.formats import checked
 
 from . import markdown, tables
 from .bars import write_bars

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .wilcoxon import wilcoxon
+from kinship_results.wilcoxon import wilcoxon
 
 if TYPE_CHECKING:
     from .study_folder import Cell

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import zstandard
 
-from formats import checked
+from kinship_results.formats import checked
 
 
 @dataclasses.dataclass(frozen=True)

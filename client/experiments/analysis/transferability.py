@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy import special, stats
 
-from formats import checked
+from kinship_results.formats import checked
 
 from . import markdown
 from .study_folder import StudyFolder

@@ -2,3 +2,7 @@
 
 Scenes and instances come from kinship-experiments, plans from `import kinship`.
 """
+import pathlib
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "results"))  # kinship_results

@@ -7,7 +7,7 @@ from typing import Any
 
 import zstandard
 
-from formats import checked, in_format
+from kinship_results.formats import checked, in_format
 
 Key = tuple[str, str, str, int]  # robot, guidance, instance, seed: 0, 1, ... is added to the instance's own
 _LEVEL = 19  # files are written once
@@ -88,6 +88,7 @@ class QueryLog:
                 if number == len(lines):
                     return
                 raise ValueError(f"'{self.file}' line {number}: {error}") from error
+            row.pop("format", None)  # of files
             self.rows[key_of(row)] = row
 
     def has(self, key: Key, distribution: str | None) -> bool:

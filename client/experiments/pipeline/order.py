@@ -9,7 +9,7 @@ from typing import Any
 
 import kinship
 
-from formats import in_format
+from kinship_results.formats import in_format
 
 from .files import LineFile, to_line
 from .learning import SHORTCUT_CHECKS, running_kinshipd

@@ -12,7 +12,7 @@ from typing import Any
 
 import kinship
 
-from formats import in_format
+from kinship_results.formats import in_format
 
 from . import peers
 from .cells import Cell, DistributionRequest, QueryPlan, run_queries, uniform_cell, uniform_cells, uniform_name

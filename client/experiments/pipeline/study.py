@@ -8,7 +8,7 @@ from typing import Any
 import kinship
 import numpy as np
 
-from formats import checked
+from kinship_results.formats import checked
 
 QUICK_LEARNING, QUICK_INSTANCES = 20, 6  # of each robot; a quick run plans test instances once
 

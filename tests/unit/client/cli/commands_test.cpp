@@ -383,7 +383,8 @@ TEST(RobotsIk, AnswersAPoseAsJson) {
   const Answer answer = run_command({"robots", "ik", kModels + "panda", "--pose",
                                      "0.4 0.1 0.5 1 0 0 0", "--max-solutions", "2", "--json"});
   EXPECT_EQ(answer.code, kDone) << answer.err;
-  EXPECT_TRUE(answer.out.starts_with("{\"solver\":")) << answer.out;
+  EXPECT_TRUE(answer.out.starts_with(R"({"format":"kinship.inverse-kinematics/1","solver":)"))
+      << answer.out;
   EXPECT_NE(answer.out.find("\"reason\":null"), std::string::npos) << answer.out;
 }
 
@@ -415,7 +416,8 @@ TEST(RobotsFk, IsWhatIkLeadsBackTo) {
   const Answer answer = run_command(
       {"robots", "fk", kModels + "panda", "--q", "0.3 -0.4 0.1 -2 0.2 1.8 0.7", "--json"});
   ASSERT_EQ(answer.code, kDone) << answer.err;
-  EXPECT_TRUE(answer.out.starts_with("{\"q\":[0.3,-0.4,0.1,-2.0,0.2,1.8,0.7],\"frame\":\"base\","))
+  EXPECT_TRUE(answer.out.starts_with(
+      R"({"format":"kinship.forward-kinematics/1","q":[0.3,-0.4,0.1,-2.0,0.2,1.8,0.7],"frame":"base",)"))
       << answer.out;
   const std::size_t begin = answer.out.find("\"transfer\":[") + 12;
   std::string pose = answer.out.substr(begin, answer.out.find(']', begin) - begin);

@@ -46,7 +46,8 @@ class QueryLogs(InFolder):
         log = self.log()
         self.assertTrue(log.has(files.key_of(first), None))
         self.assertTrue(log.has(files.key_of(second), DIGESTS[0]))
-        self.assertEqual([json.loads(line) for line in self.file.read_text().splitlines()], [second, first])  # by key
+        self.assertEqual([json.loads(line) for line in self.file.read_text().splitlines()],
+                         [{"format": "kinship.study-query/1"} | row for row in (second, first)])  # by key
         log.add(row("c"))
         self.assertEqual(len(self.log().rows), 3)
 

@@ -41,7 +41,9 @@ TEST(AdminReply, EveryKindOfRowIsItsOwnDocument) {
   const Digest id = Digest::from_hex(std::string(64, 'a')).value();
   EXPECT_EQ(json::row_from_json<Eviction>(to_json(Eviction{id})).value_or_throw().id, id);
   const service::AdminRow exported = service::ExportedRobot{robot};
-  EXPECT_TRUE(to_json(exported).starts_with("{\"robot_description\":")) << to_json(exported);
+  EXPECT_TRUE(to_json(exported).starts_with(
+      R"({"format":"kinship.experience-robot/1","robot_description":)"))
+      << to_json(exported);
   EXPECT_EQ(to_json(service::TextLine{"1,2,3"}), "1,2,3");
 }
 

@@ -73,7 +73,9 @@ TEST_F(Offline, ARepairOfASoundStoreLosesNothing) {
 
 TEST_F(Offline, ACheckIsOneDocumentForPrograms) {
   EXPECT_EQ(run(OfflineVerb::Check, store_, {}, true), kDone);
-  EXPECT_EQ(out_.str().find("{\"file\":\"" + store_.string() + "\",\"epoch\":\""), 0U);
+  EXPECT_EQ(out_.str().find(R"({"format":"kinship.store-check/1","file":")" + store_.string() +
+                            "\",\"epoch\":\""),
+            0U);
   EXPECT_NE(out_.str().find("{\"name\":\"path\",\"rows\":14,\"problems\":0}"), std::string::npos);
   EXPECT_NE(out_.str().find("\"problems\":0,\"messages\":[]}\n"), std::string::npos) << out_.str();
 }

@@ -12,7 +12,7 @@
 
 /// The files of a run as values. All throw Failure(NotFound) that names a file that is missing, or
 /// Failure(InvalidInput) that names the file, and the line, that is broken.
-namespace kinship::experiments {
+namespace kinship::results {
 
 /// By name, with their meshes read. \param robot  for packages.
 std::map<std::string, Problem> read_problems(const std::filesystem::path& file,
@@ -27,4 +27,4 @@ Distribution read_distribution(const std::filesystem::path& file);
 /// By the name of the problem. \param file  empty: none.
 std::map<std::string, RecordedSearch> read_searches(const std::filesystem::path& file);
 
-}  // namespace kinship::experiments
+}  // namespace kinship::results

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Finds the files and figures of a run; kinship-experiments, which starts it, draws them as a page.
+"""Finds the files and figures of a run: `kinship results page`, which starts it and then draws them as a page.
 
     page.py OPTIONS      one JSON document: by name a list of words for each option, for "program" and for "arguments", its own
 
@@ -9,25 +8,22 @@ import json
 import subprocess
 import sys
 
+from kinship_results import comparison, run_files
+
 
 def main() -> int:
     """Returns the exit code."""
-    from analysis import comparison, run_files
-
     words: dict[str, list[str]] = json.loads(sys.argv[1])
     try:
-        run = run_files.find_run(words)
-        document = run_files.described(run)
-    except ModuleNotFoundError as error:
-        return comparison.fail(f"{error}; on Debian: apt-get install python3-numpy", 1)
+        document = run_files.described(run_files.find_run(words))
     except FileNotFoundError as error:
-        return comparison.fail(f"cannot read '{error.filename}': {error.strerror}", 3)
+        return comparison.fail(f"results page: cannot read '{error.filename}': {error.strerror}", 3)
     except run_files.IncompleteRun as error:
-        return comparison.fail(str(error), 3)
+        return comparison.fail(f"results page: {error}", 3)
     except ValueError as error:
-        return comparison.fail(str(error), 2)
+        return comparison.fail(f"results page: {error}", 2)
     except OSError as error:
-        return comparison.fail(str(error), 1)
+        return comparison.fail(f"results page: {error}", 1)
     return subprocess.run([*words["program"], *words["arguments"], "--draws"], input=json.dumps(document), text=True).returncode
 
 

@@ -4,6 +4,7 @@
   const {data, byId, count, fixed, percent, several, listed, total, metres, fillTable, fillTiles, color, make} = kinshipPage;
   const {comparison, distribution, fleet, samples, typical} = data;
 
+  const usesExperience = data.uses_experience;
   const names = listed(fleet.map((robot) => robot.label));
   const taught = names || listed(distribution.sources.map((source) => source.label)) || "A fleet";
   const paths = total(fleet.map((robot) => robot.paths.length));
@@ -42,6 +43,14 @@
             (times >= 1 ? "" : "; it did not help")];
   }
 
+  /// What the experience saved beside the best that needs none, where that was planned, too.
+  function worthTile() {
+    const worth = comparison.worth;
+    if (!worth || worth.by_checks === null) return [];
+    const times = (value) => (value === null ? "\u2013" : fixed(value, 2) + "\u2009\u00d7");
+    return [[times(worth.by_checks), `worth of the experience: checks of the best without it, uniform or the retreat, to those of the best with it; by time ${times(worth.by_time)}`]];
+  }
+
   /// Planning time as a sentence, and what it is.
   function timeInWords() {
     if (timeRatio === null) return "";
@@ -61,17 +70,21 @@
 
   function tell() {
     const holding = data.held.length ? `, holding ${listed(data.held.map((name) => `\u201c${name}\u201d`))},` : "";
-    byId("title").textContent = `${taught} teach${fleet.length === 1 ? "es" : ""} ${data.robot} a task`;
+    const teachers = fleet.length || distribution.sources.length || 1;
+    byId("title").textContent = usesExperience ? `${taught} ${teachers === 1 ? "teaches" : "teach"} ${data.robot} a task`
+      : `${data.robot} plans a task, and nobody\u2019s experience helps`;
     byId("story").textContent =
       (fleet.length
         ? `${names} planned the task \u201c${distribution.task}\u201d${holding} with uniform sampling and reported ` +
           `${several(paths, "path")} to a Kinship server. `
         : `A Kinship server has experience of the task \u201c${distribution.task}\u201d. `) +
       `The server moved it into the joint space of ${data.robot}, another robot, and fitted a sampling distribution. ${data.robot} then ` +
-      `planned ${several(instances, "new instance")} twice: with uniform samples, and guided by what the server made of that experience.`;
+      `planned ${several(instances, "new instance")} twice: with uniform samples, and ` +
+      (usesExperience ? "guided by what the server made of that experience." : "guided by what needs no experience, as the server had found best.");
     fillTiles(byId("tiles"), [
       ratioTile(ratio, "as many collision checks", "collision checks, mean"),
       ratioTile(timeRatio, "as much planning time", "planning time, mean"),
+      ...worthTile(),
       [`${count(data.cheaper_guided)} of ${count(instances)}`, "instances took fewer checks with guidance"],
       [`${percent(samples.uniform_free_share)} \u2192 ${percent(samples.free_share)}`, "of the samples are free of collision, uniform \u2192 distribution"]]);
   }
@@ -82,7 +95,7 @@
       why: "It is the one in the middle of all that it solved, by checks."}));
     if (data.newcomer)
       actors.push({label: data.robot, role: "new to the task", color: "accent", demo: data.newcomer,
-                   why: "It planned this one guided by what the server made of that experience."});
+                   why: usesExperience ? "It planned this one guided by what the server made of that experience." : "It planned this one guided by what needs no experience."});
     if (!actors.length) return byId("station").remove();
     byId("station-text").textContent =
       `Every instance has its obstacles a little elsewhere. One path of each robot is drawn in its own instance, with the hand's start and ` +
@@ -190,7 +203,7 @@
       `Distribution ${distribution.id}, revision ${distribution.revision}, profile \u201c${distribution.profile}\u201d: transfer ` +
       `${fixed(distribution.transfer_time_s, 2)}\u202fs, fit ${fixed(distribution.fit_time_s, 2)}\u202fs.`;
     byId("footer").textContent =
-      "Written by kinship-experiments page from the run's own files. The page holds everything it needs and loads nothing. " +
+      "Written by kinship results page from the run's own files. The page holds everything it needs and loads nothing. " +
       "Drawn with three.js (MIT) and Vega (BSD 3-clause).";
   }
 

@@ -8,7 +8,7 @@
 
 #include "robots/models/robot_arguments.hpp"
 
-namespace kinship::experiments {
+namespace kinship::results {
 
 /// The files of an experienced robot: its problems and the results of kinship-plan.
 struct TeacherFiles {
@@ -27,8 +27,8 @@ struct PageRun {
   std::filesystem::path uniform_searches, guided_searches;
   std::vector<TeacherFiles> teachers;
   std::string shown;  ///< name of the problem that the page shows
-  /// Members of the page's data that are statistics (analysis/page_figures.py). "typical" is null
-  /// where no instance was solved by both: the page shows a problem without paths.
+  /// Members of the page's data that are statistics (kinship_results/page_figures.py). "typical" is
+  /// null where no instance was solved by both: the page shows a problem without paths.
   nlohmann::ordered_json figures;
 };
 
@@ -41,4 +41,4 @@ PageRun parse_run(const std::string& document, models::RobotArguments robot);
 /// others.
 void write_page(const PageRun& run, std::ostream& out);
 
-}  // namespace kinship::experiments
+}  // namespace kinship::results

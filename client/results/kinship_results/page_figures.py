@@ -1,15 +1,15 @@
 """The figures of a page that shows what a run did."""
 import collections
-import dataclasses
+import random
 import statistics
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from . import comparison_table
 from .comparison import Comparison, Result, document
-from .statistics import mean_estimate
+
+_RESAMPLES = 10_000  # fewer of many instances: at most _MAX_DRAWS
+_MAX_DRAWS = 2_000_000
 
 
 def page_figures(uniform: Sequence[Result], guided: Sequence[Result], compared: Comparison,
@@ -17,16 +17,28 @@ def page_figures(uniform: Sequence[Result], guided: Sequence[Result], compared: 
     """Members of the page's data. typical: the instance to show; None if none was solved by both."""
     guides = collections.Counter((result.get("guidance") or {}).get("guide", "none") for result in guided)
     figures: dict[str, Any] = {
-        "comparison": document(compared), "table": {"rows": comparison_table.rows(compared), "notes": comparison_table.notes(compared)},
+        "comparison": document(compared, also),
+        "table": {"rows": comparison_table.rows(compared), "notes": comparison_table.notes(compared, also)},
+        "uses_experience": compared.uses_experience,
         "also": comparison_table.also_rows(also), "worth": comparison_table.worth_text(compared, also),
         "guides": [{"guide": guide, "queries": count} for guide, count in sorted(guides.items(), key=_bits)],
         "cheaper_guided": _count_cheaper(uniform, guided), "typical": find_typical(uniform, guided)}
     for name, results in (("uniform", uniform), ("guided", guided)):
         planned = [result for result in results if not result.get("not_planned")]
         for short, what in (("checks", "collision_checks"), ("time_s", "planning_time_s")):
-            estimate = dataclasses.asdict(mean_estimate(np.array([[result[what]] for result in planned], dtype=float)))
-            figures[f"{name}_{short}"] = {"mean": estimate["value"], "low": estimate["low"], "high": estimate["high"]}
+            figures[f"{name}_{short}"] = _mean_and_interval([result[what] for result in planned])
     return figures
+
+
+def _mean_and_interval(values: Sequence[float]) -> dict[str, float]:
+    """The mean and the 95 % percentile interval of the bootstrap over instances.
+
+    Source: Efron and Tibshirani, An Introduction to the Bootstrap (1993), section 13.3.
+    """
+    generator, count = random.Random(1), len(values)
+    means = [statistics.fmean(generator.choices(values, k=count)) for _ in range(max(400, min(_RESAMPLES, _MAX_DRAWS // count)))]
+    quantiles = statistics.quantiles(means, n=40, method="inclusive")
+    return {"mean": statistics.fmean(values), "low": quantiles[0], "high": quantiles[-1]}
 
 
 def _bits(guide_and_count: tuple[str, int]) -> int:

@@ -4,9 +4,9 @@
 
 #include "pages/page/embedded_text.hpp"
 
-namespace kinship::experiments {
+namespace kinship::results {
 
 /// The page's own files. Written while building.
 std::span<const page::EmbeddedText> page_texts();
 
-}  // namespace kinship::experiments
+}  // namespace kinship::results

@@ -1,4 +1,4 @@
-#include "client/experiments/page/run_files.hpp"
+#include "client/results/page/run_files.hpp"
 
 #include <iterator>
 #include <utility>
@@ -9,7 +9,7 @@
 #include "proto/types/failure.hpp"
 #include "robots/models/mesh_files.hpp"
 
-namespace kinship::experiments {
+namespace kinship::results {
 namespace {
 
 /// Hands over what `read` makes of each line.
@@ -76,4 +76,4 @@ std::map<std::string, RecordedSearch> read_searches(const std::filesystem::path&
   return searches;
 }
 
-}  // namespace kinship::experiments
+}  // namespace kinship::results

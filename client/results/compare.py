@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Compares result files of kinship-plan. kinship-experiments starts it, which has read the command line.
+"""Compares result files of kinship-plan: `kinship results compare`, which has read the command line.
 
     compare.py OPTIONS      one JSON document: by name a list of words for each option
 
@@ -8,25 +7,25 @@ Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file does not exist.
 import json
 import sys
 
+from kinship_results import comparison, comparison_table
+
 
 def main() -> int:
     """Returns the exit code."""
-    from analysis import comparison, comparison_table
-    from analysis.comparison import fail
-
     words: dict[str, list[str]] = json.loads(sys.argv[1])
+    first, second, *others = words["files"]
     try:
-        beside = [comparison.parse_also(text) for text in words.get("also", [])]
+        beside = [comparison.parse_named(text) for text in others]
     except ValueError as error:
-        return fail(str(error), 2)
+        return comparison.fail(f"results compare: {error}", 2)
     try:
-        uniform, guided = (comparison.read_results(words[side][0]) for side in ("uniform", "guided"))
-        compared = comparison.Comparison(uniform, guided)
+        uniform, guided = comparison.read_results(first), comparison.read_results(second)
+        compared = comparison.named(f"{first} and {second}", uniform, guided)
         also = comparison.compare_also(uniform, beside)
     except FileNotFoundError as error:
-        return fail(f"cannot read '{error.filename}': {error.strerror}", 3)
+        return comparison.fail(f"results compare: cannot read '{error.filename}': {error.strerror}", 3)
     except (OSError, ValueError) as error:
-        return fail(str(error), 1)
+        return comparison.fail(f"results compare: {error}", 1)
     if "json" in words:
         print(json.dumps(comparison.document(compared, also), separators=(",", ":"), ensure_ascii=False))
     else:

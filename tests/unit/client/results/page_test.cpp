@@ -1,6 +1,6 @@
 // A page of a small run: real models, files as deploy/quickstart leaves them.
 
-#include "client/experiments/page/run_page.hpp"
+#include "client/results/page/run_page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::experiments::page_test {
+namespace kinship::results::page_test {
 namespace {
 
 const std::string kModels = test::source_dir() + "/robots/models";
@@ -249,4 +249,4 @@ TEST_F(Page, AnAnswerToNoProblemIsRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments::page_test
+}  // namespace kinship::results::page_test

@@ -11,14 +11,14 @@ import sys
 import tempfile
 import unittest
 
-EXPERIMENTS = pathlib.Path(__file__).resolve().parents[5] / "client" / "experiments"
+RESULTS = pathlib.Path(__file__).resolve().parents[4] / "client" / "results"
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(EXPERIMENTS))
+sys.path.insert(0, str(RESULTS))
 
-from analysis import page_figures, run_files  # noqa: E402: after the path
-from analysis.comparison import Comparison, document, worth  # noqa: E402
-from analysis.comparison_table import duration_text, table  # noqa: E402
-from analysis.wilcoxon import MAX_EXACT_PAIRS, wilcoxon  # noqa: E402
+from kinship_results import page_figures, run_files  # noqa: E402: after the path
+from kinship_results.comparison import Comparison, document, worth  # noqa: E402
+from kinship_results.comparison_table import duration_text, table  # noqa: E402
+from kinship_results.wilcoxon import MAX_EXACT_PAIRS, wilcoxon  # noqa: E402
 
 INFINITY = math.inf
 
@@ -138,7 +138,30 @@ Lengths and clearance are of the 2 problems that both solved.
         self.assertTrue(math.isnan(worth(alone, [], "mean_checks")))
         said = "Worth of experience, the best without it (uniform, the retreat) / the best with it: 1.20 by checks, 0.75 by time."
         self.assertTrue(table(compared, also).endswith(f"\n\n{said}\n"))
+        told = document(compared, also)["worth"]
+        self.assertAlmostEqual(told["by_checks"], 1.2)
+        self.assertAlmostEqual(told["by_time"], 0.75)
+        self.assertIsNone(document(compared)["worth"])
         self.assertNotIn("Worth", table(compared, [("ways alone", compared)]))
+
+    def test_what_needs_no_experience_is_not_credited_to_it(self):
+        by_itself = "Nothing that guided used experience: what was saved needs no fleet and no server."
+        part = "Part of the ratio may be the retreat's, which needs no experience"
+
+        def guided_by(guide: str) -> Comparison:
+            return Comparison(UNIFORM, [attempt(name, True, 1600, 1, guidance={"distribution_id": "00", "share": 0.5, "guide": guide})
+                                        for name in "abc"])
+
+        retreat, both = guided_by("retreat"), guided_by("retreat+ways")
+        self.assertIn(by_itself, table(retreat, []))
+        self.assertFalse(page_figures.page_figures(UNIFORM, UNIFORM, retreat, [])["uses_experience"])
+        self.assertIn(part, table(both, []))
+        self.assertNotIn(part, table(both, [("retreat alone", retreat)]))
+        for told in (table(guided_by("ways"), []), table(Comparison(UNIFORM, UNIFORM), [])):
+            self.assertNotIn(by_itself, told)
+            self.assertNotIn(part, told)
+        older = Comparison(UNIFORM, [attempt(name, True, 9, 1, guidance={"distribution_id": "00", "share": 0.5}) for name in "abc"])
+        self.assertTrue(older.uses_experience)
 
     def test_what_is_to_be_known_of_the_run_is_said(self):
         self.assertIn("Only 0 of the 3 guided attempts had guided", table(Comparison(UNIFORM, UNIFORM), []))
@@ -159,6 +182,7 @@ Lengths and clearance are of the 2 problems that both solved.
                       | unmeasured,
             "ratio": {"mean_checks": 60, "median_checks": None, "mean_time": 9, "median_time": None},
             "wilcoxon_checks": exact, "wilcoxon_time": exact, "unpaired": 0, "not_planned": {},
+            "worth": None,
             "also": [{"name": "say \"alone\""} | {name: document(compared)[name] for name in ("pairs", "uniform", "guided", "ratio")}]})
 
 
@@ -169,15 +193,19 @@ class Program(unittest.TestCase):
         good.write_text("".join(json.dumps(each) + "\n" for each in UNIFORM))
         bad.write_text(json.dumps(UNIFORM[0]) + '\n{"name": "b"}\n')
 
-        def run(guided_file: pathlib.Path, also: str = f"again={good}", **more: list[str]) -> subprocess.CompletedProcess:
-            words = {"uniform": [str(good)], "guided": [str(guided_file)], "also": [also]} | more
-            return subprocess.run([sys.executable, "-B", EXPERIMENTS / "compare.py", json.dumps(words)], capture_output=True, text=True)
+        def run(guided_file: pathlib.Path, *others: str, **more: list[str]) -> subprocess.CompletedProcess:
+            words = {"files": [str(good), str(guided_file), *others]} | more
+            return subprocess.run([sys.executable, "-B", RESULTS / "compare.py", json.dumps(words)], capture_output=True, text=True)
 
-        self.assertEqual(json.loads(run(good, json=["true"]).stdout)["also"][0]["name"], "again")
-        for wrong in ("file", "=file", "name="):
+        also = json.loads(run(good, f"again={good}", str(good), json=["true"]).stdout)["also"]
+        self.assertEqual([each["name"] for each in also], ["again", "good"])
+        for wrong in ("=file", "name="):
             done = run(good, wrong)
-            self.assertEqual((done.returncode, done.stderr), (2, f"kinship-experiments: --also '{wrong}' is not NAME=FILE\n"))
-        for code, file, why in ((3, folder / "none", "none'"), (1, bad, "bad.jsonl line 2: solved: is missing")):
+            self.assertEqual((done.returncode, done.stderr), (2, f"results compare: '{wrong}' is not NAME=FILE\n"))
+        newer = folder / "newer.jsonl"
+        newer.write_text(json.dumps({"format": "kinship.result/2"} | UNIFORM[0]) + "\n")
+        for code, file, why in ((3, folder / "none", "none'"), (1, bad, "bad.jsonl line 2: solved: is missing"),
+                                (1, newer, "format: 'kinship.result/2' is newer than 'kinship.result/1'")):
             done = run(file)
             self.assertEqual(done.returncode, code)
             self.assertIn(why, done.stderr)

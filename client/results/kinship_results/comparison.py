@@ -3,13 +3,13 @@ import collections
 import dataclasses
 import json
 import math
+import os
 import statistics
 import sys
 from collections.abc import Sequence
 from typing import Any
 
-from formats import checked, in_format
-
+from .formats import checked, in_format
 from .wilcoxon import Wilcoxon, wilcoxon
 
 Result = dict[str, Any]  # a line of a result file
@@ -78,6 +78,7 @@ class Comparison:
         self.both_solved = len(solved)
         self.uniform, self.guided = (_figures(results, _measured(solved, side)) for side, results in enumerate(sides))
         self.uses_experience = any(map(_uses_experience, sides[1]))
+        self.retreats = any("retreat" in _guides(result) for result in sides[1])
         self.checks_test, self.time_test = (wilcoxon(*(_ranked(side, what) for side in sides))
                                             for what in ("collision_checks", "planning_time_s"))
 
@@ -121,9 +122,14 @@ def _draws(result: Result) -> bool:
     return guidance.get("share", 0) > 0 or result.get("found_by") == "recalled"
 
 
+def _guides(result: Result) -> list[str]:
+    """What guided it; of an older result with guidance, the mixture."""
+    guidance = result.get("guidance") or {}
+    return (guidance.get("guide") or ("mixture" if guidance.get("distribution_id") else "none")).split("+")
+
+
 def _uses_experience(result: Result) -> bool:
-    guide = (result.get("guidance") or {}).get("guide", "none")
-    return any(part not in ("none", "retreat") for part in guide.split("+"))
+    return any(part not in ("none", "retreat") for part in _guides(result))
 
 
 def _measured(pairs: Sequence[tuple[Result, Result]], side: int) -> dict[str, float]:
@@ -153,11 +159,18 @@ def worth(comparison: Comparison, also: Sequence[tuple[str, Comparison]], what: 
     return min(getattr(one, what) for one in without) / min(used) if used and min(used) > 0 else math.nan
 
 
+def worths(comparison: Comparison, also: Sequence[tuple[str, Comparison]]) -> dict[str, float] | None:
+    """By checks and by time, if something without experience was compared besides uniform planning."""
+    if all(each.uses_experience for _, each in also):
+        return None
+    return _finite({"by_checks": worth(comparison, also, "mean_checks"), "by_time": worth(comparison, also, "mean_time_s")})
+
+
 def document(comparison: Comparison, also: Sequence[tuple[str, Comparison]] = ()) -> dict[str, Any]:
     """For programs; infinite and undefined numbers are None. also: named comparisons of uniform planning with something else."""
     told: dict[str, Any] = _pair(comparison) | {
         "wilcoxon_checks": _test(comparison.checks_test), "wilcoxon_time": _test(comparison.time_test), "unpaired": comparison.unpaired,
-        "not_planned": comparison.counts()}
+        "not_planned": comparison.counts(), "worth": worths(comparison, also)}
     return in_format("comparison", told) | ({"also": [{"name": name} | _pair(each) for name, each in also]} if also else {})
 
 
@@ -174,11 +187,13 @@ def _test(test: Wilcoxon) -> dict[str, Any]:
     return dataclasses.asdict(test)
 
 
-def parse_also(text: str) -> tuple[str, str]:
-    """"NAME=FILE". Raises ValueError if it is not."""
-    name, _, file = text.partition("=")
+def parse_named(text: str) -> tuple[str, str]:
+    """Name and file of "NAME=FILE", or of a file that has its name by the beginning of its own. Raises ValueError if one is empty."""
+    name, has_name, file = text.partition("=")
+    if not has_name:
+        return os.path.basename(text).partition(".")[0] or text, text
     if not name or not file:
-        raise ValueError(f"--also '{text}' is not NAME=FILE")
+        raise ValueError(f"'{text}' is not NAME=FILE")
     return name, file
 
 
@@ -197,5 +212,5 @@ def compare_also(uniform: Sequence[Result], beside: Sequence[tuple[str, str]]) -
 
 def fail(message: str, code: int) -> int:
     """Tells people why the program fails. Returns the code."""
-    print(f"kinship-experiments: {message}", file=sys.stderr)
+    print(message, file=sys.stderr)
     return code

@@ -2,7 +2,7 @@
 import math
 from collections.abc import Callable, Sequence
 
-from .comparison import Comparison, worth
+from .comparison import Comparison, worths
 
 Also = Sequence[tuple[str, Comparison]]  # what else was compared with uniform planning, by name
 _HEAD = ("", "uniform", "guided", "ratio", "p")
@@ -77,15 +77,17 @@ def also_rows(also: Also) -> list[tuple[str, ...]]:
 
 def worth_text(comparison: Comparison, also: Also) -> str:
     """Empty unless something without experience, such as the retreat, was compared too."""
-    if all(each.uses_experience for _, each in also):
+    told = worths(comparison, also)
+    if told is None:
         return ""
-    by_checks, by_time = (ratio_text(worth(comparison, also, what)) for what in ("mean_checks", "mean_time_s"))
+    by_checks, by_time = (ratio_text(math.nan if value is None else value) for value in told.values())
     return f"Worth of experience, the best without it (uniform, the retreat) / the best with it: {by_checks} by checks, {by_time} by time."
 
 
-def notes(comparison: Comparison) -> list[str]:
+def notes(comparison: Comparison, also: Also = ()) -> list[str]:
     """What the figures mean, and what is to be known of this run."""
     uniform, guided, pairs = comparison.uniform, comparison.guided, comparison.pairs
+    guides_by_itself = guided.with_guidance > 0 and not comparison.uses_experience
     test = comparison.checks_test
     method = "exact" if test.method == "exact" else "normal approximation, corrected for ties and continuity"
     told = {
@@ -94,6 +96,9 @@ def notes(comparison: Comparison) -> list[str]:
         "An unsolved attempt counts in a mean with what it had used when it gave up: that mean is a lower bound. In a median it is worse "
         "than all that are solved.": min(uniform.solved, guided.solved) < pairs,
         f"Lengths and clearance are of the {comparison.both_solved} problems that both solved.": comparison.both_solved < pairs,
+        "Nothing that guided used experience: what was saved needs no fleet and no server.": guides_by_itself,
+        "Part of the ratio may be the retreat's, which needs no experience: compare a run with kinship-plan --guide retreat, too.":
+            comparison.retreats and comparison.uses_experience and all(each.uses_experience for _, each in also),
         f"Only {guided.with_guidance} of the {pairs} guided attempts had guided samples.": guided.with_guidance < pairs,
         f"{uniform.with_guidance} of the uniform attempts had guided samples.": uniform.with_guidance > 0,
         f"Of {comparison.proven_by_one} pairs of paths one is proven and the other is not (--resolution): they are not asked the same, in "
@@ -121,7 +126,7 @@ def table(comparison: Comparison, also: Also) -> str:
         return line(cells, (26, 11, 11, 9, 11)).rstrip()
 
     lines = [f"{comparison.pairs} problems, each planned with both", "", row(_HEAD), *map(row, rows(comparison)), "",
-             *notes(comparison), *_first_not_planned(comparison)]
+             *notes(comparison, also), *_first_not_planned(comparison)]
     if also:
         lines += ["", "The same problems, means and the ratio of uniform planning to each:", "",
                   *(line(cells, (20, 9, 9, 9, 11, 9, 9, 9, 11)) for cells in (_ALSO_HEAD, *also_rows(also)))]

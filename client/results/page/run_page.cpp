@@ -1,4 +1,4 @@
-#include "client/experiments/page/run_page.hpp"
+#include "client/results/page/run_page.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,8 +6,8 @@
 #include <random>
 #include <utility>
 
-#include "client/experiments/page/embedded_texts.hpp"
-#include "client/experiments/page/run_files.hpp"
+#include "client/results/page/embedded_texts.hpp"
+#include "client/results/page/run_files.hpp"
 #include "pages/page/bones.hpp"
 #include "pages/page/document.hpp"
 #include "pages/page/json_text.hpp"
@@ -19,7 +19,7 @@
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/path_vertices.hpp"
 
-namespace kinship::experiments {
+namespace kinship::results {
 namespace {
 
 using page::json_string;
@@ -335,4 +335,4 @@ void write_page(const PageRun& run, std::ostream& out) {
     throw Failure(ErrorCode::Storage, "cannot write the page");
 }
 
-}  // namespace kinship::experiments
+}  // namespace kinship::results

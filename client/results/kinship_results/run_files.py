@@ -3,6 +3,7 @@ import os
 from typing import Any
 
 from . import comparison
+from .page_figures import page_figures
 
 Words = dict[str, list[str]]  # of the command line, by option
 _PROBLEMS, _RESULTS = ".problems.jsonl", ".results.jsonl"
@@ -21,7 +22,7 @@ class IncompleteRun(Exception):
 
 
 def find_run(words: Words) -> dict[str, Any]:
-    """Looks in the folder for files that are not named (kinship-experiments page --help has their names).
+    """Looks in the folder for files that are not named (kinship results page --help has their names).
 
     Returns "files" by option, "also" as pairs of name and file, "teachers" as [model, problems, results]. Raises IncompleteRun with
     everything that is missing, and how it is named; ValueError for what is written wrongly.
@@ -38,7 +39,7 @@ def find_run(words: Words) -> dict[str, Any]:
         return os.path.join(folder, name) if name in names else ""
 
     files = {name: value(name) for name in ("model", *_OF_ROBOT, *_OF_FOLDER)}
-    also = [comparison.parse_also(text) for text in words.get("also", [])]
+    also = [_parse_also(text) for text in words.get("also", [])]
     robot = value("robot") or _only_robot(folder, names)
     if robot:
         files |= {name: files[name] or found(robot + ending) for name, ending in _OF_ROBOT.items()}
@@ -70,6 +71,12 @@ def _only_robot(folder: str, names: list[str]) -> str:
     return robots[0] if robots else ""
 
 
+def _parse_also(text: str) -> tuple[str, str]:
+    if "=" not in text:
+        raise ValueError(f"--also '{text}' is not NAME=FILE")
+    return comparison.parse_named(text)
+
+
 def _parse_teacher(text: str) -> list[str]:
     parts = text.split(",")
     if len(parts) != 3 or not all(parts):
@@ -91,10 +98,8 @@ def _missing(run: dict[str, Any], folder: str) -> list[str]:
 
 
 def described(run: dict[str, Any]) -> dict[str, Any]:
-    """What kinship-experiments draws: the files, the problem that is shown, and the figures. Raises ValueError for files that do not
+    """What kinship draws: the files, the problem that is shown, and the figures. Raises ValueError for files that do not
     belong together."""
-    from .page_figures import page_figures
-
     files = run["files"]
     uniform, guided = (comparison.read_results(files[side]) for side in ("uniform", "guided"))
     compared = comparison.named(f"{files['uniform']} and {files['guided']}", uniform, guided)
