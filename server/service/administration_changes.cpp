@@ -118,7 +118,8 @@ AdminPage Administration::restore_path(const Call& call) {
       restore_paths(parts_.store, one, restored);
   } catch (const Failure& failure) {
     tell();
-    return page_of_unfinished(failure.error());
+    return failure.code() == ErrorCode::Unavailable ? page_of_unfinished(failure.error())
+                                                    : page_of(failure.error());
   }
   tell();
   trail_.end(call.audit, {},
