@@ -62,6 +62,16 @@ TEST(WrappedLines, WritesWholeLinesWrappedAndAPartAsItIs) {
         << "what is flushed is not wrapped" << std::flush << " at all\nend";
   }
   out << '.';
+  std::ostringstream unbuffered;
+  unbuffered << std::unitbuf;
+  {
+    WrappedLines lines(unbuffered, 10);
+    unbuffered << "one "
+               << "two "
+               << "three" << '\n';
+  }
+  EXPECT_EQ(unbuffered.str(), "one two\n  three\n");
+  EXPECT_TRUE(unbuffered.flags() & std::ios_base::unitbuf);
   EXPECT_EQ(out.str(), "one two\n  three\nwhat is flushed is not wrapped at all\nend.");
 }
 
