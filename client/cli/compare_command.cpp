@@ -150,11 +150,11 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
 void print_comparison(const std::string& task, const std::vector<Transferability>& pairs,
                       std::ostream& out) {
   out << "What the experience of each source is worth to each target on '" << task
-      << "': processor time of\nthe best guide that needs no experience (none, retreat) to that of "
-         "the best that uses it,\nby rehearsal of the source's recorded queries; above 1 it pays, "
-         "* "
-         "the best of a row. The\npath that once answered a query never guides that query again, "
-         "also on the diagonal,\nwhere a robot uses its own experience.\n\n";
+      << "':\nprocessor time of the best guide that needs no experience (none, retreat) to\n"
+         "that of the best that uses it, by rehearsal of the source's recorded queries;\n"
+         "above 1 it pays, * the best of a row. The path that once answered a query never\n"
+         "guides that query again, also on the diagonal, where a robot uses its own\n"
+         "experience.\n\n";
   print_worths(pairs, out);
   out << '\n';
   print_remarks(pairs, out);

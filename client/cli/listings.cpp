@@ -17,6 +17,7 @@
 #include "client/link/admin_rows.hpp"
 #include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
@@ -119,6 +120,14 @@ RowColumns<PathSummary> columns_of_paths(link::Client& /*server*/) {
           {{"RETIRED", Fit::Wide}, time(&Row::retired_ms)}};
 }
 
+/// Why it was not solved, in a few lines of a narrow column; `attempts show` has all.
+std::string short_why_text(const AttemptSummary& attempt) {
+  constexpr std::size_t kMost = 120;
+  if (attempt.record.outcome == Outcome::Solved || attempt.why.empty())
+    return "-";
+  return attempt.why.size() <= kMost ? attempt.why : cut_text(attempt.why, kMost) + "..";
+}
+
 RowColumns<AttemptSummary> columns_of_attempts() {
   using Row = AttemptSummary;
   const auto record = [](auto PlanningRecord::*member) {
@@ -132,14 +141,15 @@ RowColumns<AttemptSummary> columns_of_attempts() {
           {"TIME_S", [](const Row& row) { return number_text(row.record.planning_time_s, 3); }},
           {"CHECKS", record(&PlanningRecord::collision_checks)},
           {"AGE", age(&Row::received_ms)},
-          {"WHY", or_none(&Row::why)},
+          {"WHY", short_why_text},
           {{"LENGTH", Fit::Wide},
            [](const Row& row) { return row.length > 0 ? number_text(row.length, 2) : "-"; }},
           {{"PLANNER", Fit::Wide}, record(&PlanningRecord::planner)},
           {{"MODE", Fit::Wide}, record(&PlanningRecord::sampling_mode)},
           {{"MACHINE", Fit::Wide}, &Row::machine},
           {{"RECEIVED", Fit::Wide}, time(&Row::received_ms)},
-          {{"REPORT", Fit::Wide}, &Row::report_uuid}};
+          {{"REPORT", Fit::Wide}, &Row::report_uuid},
+          {{"WHY IN FULL", Fit::Wide}, or_none(&Row::why)}};
 }
 
 /// Labels of robots by their digests, asked for when the first is wanted.

@@ -129,12 +129,16 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
            "--max-paths-per-pair)\n";
   if (!attempt.path)
     return;
-  out << "waypoints   " << attempt.path->size() << '\n';
   constexpr int kDigits = 4;
+  const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
+  const Eigen::Index steps = waypoints.cols() - 1;
+  out << "waypoints   " << waypoints.cols() << ", "
+      << number_text(
+             (waypoints.rightCols(steps) - waypoints.leftCols(steps)).colwise().norm().sum(), 2)
+      << " long in joint space\n";
   for (Eigen::Index waypoint = 0; waypoint < attempt.path->size(); ++waypoint) {
     for (Eigen::Index joint = 0; joint < attempt.path->dof(); ++joint)
-      out << (joint == 0 ? "  " : " ")
-          << number_text(attempt.path->waypoints()(joint, waypoint), kDigits);
+      out << (joint == 0 ? "  " : " ") << number_text(waypoints(joint, waypoint), kDigits);
     out << '\n';
   }
 }

@@ -52,13 +52,19 @@ std::string wrapped(std::string_view line, std::size_t width) {
 }
 
 WrappedLines::WrappedLines(std::ostream& out, std::size_t width)
-    : out_(out), behind_(out.rdbuf()), width_(width) {
+    : out_(out),
+      behind_(out.rdbuf()),
+      width_(width),
+      is_unbuffered_((out.flags() & std::ios_base::unitbuf) != 0) {
   out_.rdbuf(this);
+  out_ << std::nounitbuf;
 }
 
 WrappedLines::~WrappedLines() {
   put_line(false);
   out_.rdbuf(behind_);
+  if (is_unbuffered_)
+    out_ << std::unitbuf << std::flush;
 }
 
 WrappedLines::int_type WrappedLines::overflow(int_type c) {
@@ -84,6 +90,8 @@ void WrappedLines::put_line(bool ends) {
   if (ends)
     text += '\n';
   behind_->sputn(text.data(), static_cast<std::streamsize>(text.size()));
+  if (ends && is_unbuffered_)
+    behind_->pubsync();
 }
 
 }  // namespace kinship::cli

@@ -13,7 +13,8 @@ namespace kinship::cli {
 std::string wrapped(std::string_view line, std::size_t width);
 
 /// Wraps the lines of a stream for its lifetime, so that nothing is wider than a terminal. What is
-/// flushed before the end of its line is written as it is.
+/// flushed before the end of its line is written as it is; a stream that flushes each word, as
+/// std::cerr, flushes each line meanwhile.
 class WrappedLines final : public std::streambuf {
  public:
   WrappedLines(std::ostream& out, std::size_t width);
@@ -29,6 +30,7 @@ class WrappedLines final : public std::streambuf {
   std::ostream& out_;
   std::streambuf* const behind_;
   const std::size_t width_;
+  const bool is_unbuffered_;
   std::string line_;
   bool is_begun_ = false;  // a part of the line is written
 };

@@ -42,7 +42,7 @@ bool is_kept(AdminVerb verb, const AdminPage& page) {
 
 AdminPage Administration::answer(const AdminRequest& request, const std::string& request_key,
                                  const Caller& caller) {
-  const AuditEntry audit = audit_entry(caller, request);
+  const AuditEntry audit = audit_entry(caller, with_whole_uuid(request));
   const Call call{request, request_key, audit};
   if (!rule_of(request.verb).is(VerbRule::Changes))
     return attempt(call, caller);
@@ -53,6 +53,18 @@ AdminPage Administration::answer(const AdminRequest& request, const std::string&
   if (is_kept(request.verb, page))
     answered_.keep(request_key, page);
   return page;
+}
+
+/// The request of a change with the UUID that a prefix stands for, for the audit log.
+AdminRequest Administration::with_whole_uuid(AdminRequest request) const {
+  const VerbRule& rule = rule_of(request.verb);
+  if (rule.is(VerbRule::Changes) && rule.argument == VerbArgument::Report &&
+      !request.argument.empty() && !Uuid::parse(request.argument))
+    try {
+      request.argument = report_of(parts_.store, request.argument).text();
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): it is refused as it stands
+    }
+  return request;
 }
 
 AdminPage Administration::refuse(const AdminRequest& request, const Caller& caller,

@@ -100,6 +100,7 @@ class Administration {
                                              request.cursor, page_size(request)));
   }
 
+  AdminRequest with_whole_uuid(AdminRequest request) const;
   AdminPage attempt(const Call& call, const Caller& caller);
   AdminPage checked(const Call& call, const Narrowing& narrowing);
   AdminPage dispatch(const Call& call);

@@ -90,7 +90,9 @@ AdminPage Administration::restore_path(const Call& call) {
         Error{ErrorCode::InvalidInput, "restore_path: takes a path's report, or a task or robot"});
   Restoration restored;
   restored.task = request.task;
-  const std::optional<Digest> robot = robot_filter(request);
+  std::optional<Digest> robot;
+  if (!request.robot.empty())
+    robot = find_robot(parts_.store, request.robot).value_or_throw().robot;
   std::vector<Uuid> one;
   if (!request.argument.empty()) {
     one.push_back(report_of(parts_.store, request.argument));
@@ -116,7 +118,8 @@ AdminPage Administration::restore_path(const Call& call) {
       restore_paths(parts_.store, one, restored);
   } catch (const Failure& failure) {
     tell();
-    return page_of_unfinished(failure.error());
+    return failure.code() == ErrorCode::Unavailable ? page_of_unfinished(failure.error())
+                                                    : page_of(failure.error());
   }
   tell();
   trail_.end(call.audit, {},
@@ -138,6 +141,9 @@ void Administration::restore_listed(const std::optional<Digest>& robot, const st
         retired.push_back(path.report_uuid);
     cursor = page.next_cursor;
   } while (!cursor.empty());
+  // A removed task is not listed, and may be restored.
+  if (retired.empty() && !task.empty() && !parts_.store.find_task(task))
+    throw Failure(no_task(parts_.store, task));
   std::ranges::reverse(retired);  // the oldest first, as they came
   for (const Uuid& report : retired) {
     if (parts_.stop.stop_requested())

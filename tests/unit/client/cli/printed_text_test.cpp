@@ -41,7 +41,8 @@ std::size_t longest_line(const std::string& text) {
 }
 
 TEST(Wrapped, WordsGoOnBeneathTheTextOfTheirLabel) {
-  EXPECT_EQ(wrapped("note    one two three", 14), "note    one\n        two\n        three");
+  EXPECT_EQ(wrapped("note    one two three four", 16),
+            "note    one two\n        three\n        four");
   EXPECT_EQ(wrapped("kinship: one two three", 14), "kinship: one\n  two three");
   EXPECT_EQ(wrapped("short", 14), "short");
   EXPECT_EQ(wrapped("{\"a\": 1, \"b\": 2, \"c\": 3}", 14), "{\"a\": 1, \"b\": 2, \"c\": 3}");
@@ -57,9 +58,20 @@ TEST(WrappedLines, WritesWholeLinesWrappedAndAPartAsItIs) {
   std::ostringstream out;
   {
     WrappedLines lines(out, 10);
-    out << "one two three\n" << "what is flushed is not wrapped" << std::flush << " at all\nend";
+    out << "one two three\n"
+        << "what is flushed is not wrapped" << std::flush << " at all\nend";
   }
   out << '.';
+  std::ostringstream unbuffered;
+  unbuffered << std::unitbuf;
+  {
+    WrappedLines lines(unbuffered, 10);
+    unbuffered << "one "
+               << "two "
+               << "three" << '\n';
+  }
+  EXPECT_EQ(unbuffered.str(), "one two\n  three\n");
+  EXPECT_TRUE(unbuffered.flags() & std::ios_base::unitbuf);
   EXPECT_EQ(out.str(), "one two\n  three\nwhat is flushed is not wrapped at all\nend.");
 }
 

@@ -171,6 +171,13 @@ TEST_F(AdministrationChanges, ARemovedTaskIsListedAgainOnceItIsReported) {
   report(fleet::solved(teacher_, "lod", 1, 5));
   EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 1U);
   EXPECT_EQ(ask(AdminVerb::ListTasks).rows.size(), 2U);
+  ASSERT_EQ(ask(AdminVerb::RemoveTask, "lod").status, AdminStatus::Ok);
+  AdminRequest request = fleet::question(AdminVerb::RestorePath);
+  request.task = "lod";
+  EXPECT_EQ(row<Restoration>(administer(request)).paths, 3U);
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 3U);
+  request.task = "lud";
+  EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
 }
 
 TEST_F(AdministrationChanges, AnUnknownNameIsAnsweredWithTheNearest) {

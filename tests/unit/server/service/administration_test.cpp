@@ -132,7 +132,8 @@ TEST_F(AdministrationTest, MissingThingsAreNamed) {
   EXPECT_EQ(ask(AdminVerb::ShowTask, "bin").message, "no task 'bin'");
   const std::string uuid = Uuid::random().text();
   EXPECT_EQ(ask(AdminVerb::ShowPath, uuid).message, "no report '" + uuid + "'");
-  EXPECT_EQ(ask(AdminVerb::ShowPath, "17").message, "'17' is not a report's UUID");
+  EXPECT_EQ(ask(AdminVerb::ShowPath, "17").message,
+            "'17' is not a report's UUID, nor a prefix of at least 8 of its digits");
   EXPECT_EQ(ask(AdminVerb::ShowDistribution, "abcd").message, "no distribution 'abcd'");
   EXPECT_EQ(ask(AdminVerb::ShowDistribution, "xyz").status, AdminStatus::Refused);
 }
@@ -202,7 +203,7 @@ TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefuse
     request.task = "bin";
     const AdminPage page = administration_.answer(request, "", fleet::caller_here());
     const std::string refusal = std::string(rule.name) + " takes no filter of task";
-    EXPECT_EQ(page.message == refusal, !rule.is(VerbRule::Filters)) << rule.name << page.message;
+    EXPECT_EQ(page.message == refusal, !rule.is(VerbRule::NamesTask)) << rule.name << page.message;
   }
   request = fleet::question(AdminVerb::ListTasks);
   request.robot = "nobody";
