@@ -14,6 +14,10 @@ target_compile_options(kinship_warnings INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(kinship_warnings INTERFACE
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-Wno-restrict -Wno-stringop-overflow>)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 14 warns of impossible sizes, too, and of members that a designated initializer leaves at their defaults.
+  target_compile_options(kinship_warnings INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wno-missing-field-initializers $<$<NOT:$<CONFIG:Debug>>:-Wno-stringop-overflow>>)
 endif()
 
 # What also its users are compiled with.

@@ -56,11 +56,11 @@ struct Repaired {
       std::optional<Uuid> report = {};  ///< of an attempt, if an index still has it
     };
     std::string name;
-    std::uint64_t before = 0;           ///< in the damaged store, by its indexes and its rows
-    bool is_before_known = true;        ///< else `before` is what could be read of these
-    std::uint64_t after = 0;            ///< copied
-    std::uint64_t again = 0;            ///< damaged, but sent again since: not missing
-    std::vector<Missing> missing = {};  ///< all of them
+    std::uint64_t before = 0;      ///< in the damaged store, by its indexes and its rows
+    bool is_before_known = true;   ///< else `before` is what could be read of these
+    std::uint64_t after = 0;       ///< copied
+    std::uint64_t again = 0;       ///< damaged, but sent again since: not missing
+    std::vector<Missing> missing;  ///< all of them
   };
   Restored restored;
   std::vector<Table> tables;
