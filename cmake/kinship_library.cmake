@@ -14,6 +14,10 @@ target_compile_options(kinship_warnings INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(kinship_warnings INTERFACE
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-Wno-restrict -Wno-stringop-overflow>)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 14 warns of impossible sizes, too, and of members that a designated initializer leaves at their defaults.
+  target_compile_options(kinship_warnings INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wno-missing-field-initializers $<$<NOT:$<CONFIG:Debug>>:-Wno-stringop-overflow>>)
 endif()
 
 # What also its users are compiled with.
@@ -85,6 +89,13 @@ function(kinship_kernels)
   set_source_files_properties(${arg_SOURCES} PROPERTIES COMPILE_OPTIONS "${arg_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
+# What is compiled at -O1 behind a precompiled header of -O3: GCC 13 and later want it with the settings that differ then, on x86.
+set(KINSHIP_LIGHTLY -O1)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13 AND
+   CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  list(APPEND KINSHIP_LIGHTLY -munroll-only-small-loops -mvzeroupper)
+endif()
+
 # Archives go into shared libraries too, ours (C, Python) and others' (plug-ins), and are not seen through them.
 function(kinship_hide target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden
@@ -110,7 +121,7 @@ function(kinship_library name)
       kinship_precompile(kinship_${name} kinship_types)
     endif()
     if(NOT arg_COMPUTES)
-      target_compile_options(kinship_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+      target_compile_options(kinship_${name} PRIVATE "$<$<CONFIG:Release>:${KINSHIP_LIGHTLY}>")
     endif()
   else()
     add_library(kinship_${name} INTERFACE)

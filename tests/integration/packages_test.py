@@ -14,8 +14,8 @@ from markdown import Document  # noqa: E402
 
 FILES = {
     "kinship-server": ["usr/bin/kinshipd", "usr/share/man/man8/kinshipd.8.gz", "etc/kinship/kinshipd.toml", "usr/lib/kinship/backup",
-                       "usr/lib/sysusers.d/kinship.conf", "lib/systemd/system/kinshipd.service",
-                       "lib/systemd/system/kinship-backup.service", "lib/systemd/system/kinship-backup.timer",
+                       "usr/lib/sysusers.d/kinship.conf", "usr/lib/systemd/system/kinshipd.service",
+                       "usr/lib/systemd/system/kinship-backup.service", "usr/lib/systemd/system/kinship-backup.timer",
                        "usr/share/doc/kinship-server/kinship.json", "usr/share/doc/kinship-server/kinship.rules.yml"],
     "kinship-client": ["usr/bin/kinship", "usr/share/man/man1/kinship.1.gz", "usr/bin/kinship-plan", "usr/share/kinship/robots/panda/robot.urdf",
                        "usr/share/kinship/results/compare.py", "usr/share/kinship/results/kinship_results/comparison.py",
@@ -72,6 +72,11 @@ class Packages(unittest.TestCase):
                               "python3-kinship": "libddsc"}.items():
             self.assertIn(library, self.field(name, "Depends"), name)
             self.assertIn("libc6", self.field(name, "Depends"), name)
+
+    def test_module_needs_the_python_that_loads_it(self):
+        module = re.search(r"\.cpython-3(\d+)-", run("dpkg-deb", "--contents", self.packages["python3-kinship"]))
+        wanted = f"python3 (>= 3.{module[1]}), python3 (<< 3.{int(module[1]) + 1})"
+        self.assertIn(wanted, self.field("python3-kinship", "Depends"))
 
     def test_links_of_the_documents_lead_to_what_is_installed(self):
         root = self.folder / "installed"

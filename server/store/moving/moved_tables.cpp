@@ -315,11 +315,11 @@ std::span<const MovedTable> moved_tables() {
   return tables;
 }
 
-const MovedTable& moved_table(const std::string& name) {
+const MovedTable& moved_table(std::string_view name) {
   const std::span<const MovedTable> tables = moved_tables();
   const auto found = std::ranges::find(tables, name, &MovedTable::name);
   if (found == tables.end())
-    throw std::logic_error("there is no table " + name);
+    throw std::logic_error("there is no table " + std::string(name));
   return *found;
 }
 

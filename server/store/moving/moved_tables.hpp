@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -71,6 +72,6 @@ std::string listed(const MovedTable& table, std::size_t count);
 /// All tables; a table comes after those that it refers to.
 std::span<const MovedTable> moved_tables();
 /// \throws std::logic_error if there is none.
-const MovedTable& moved_table(const std::string& name);
+const MovedTable& moved_table(std::string_view name);
 
 }  // namespace kinship::store::moving
