@@ -6,8 +6,9 @@
 
 namespace kinship::dds {
 
-/// Limits the replies to a client without any rights to ten a second, so that a client with an old
-/// certificate cannot cause unlimited work. Not to be shared between threads.
+/// Limits the refusals that a client is sent to ten a second, so that a client with an old
+/// certificate, or a ROS node over its quota, cannot cause unlimited work. Not to be shared between
+/// threads.
 class RefusalRateLimit {
  public:
   using Clock = std::chrono::steady_clock;

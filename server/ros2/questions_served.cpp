@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "proto/dds/refusal_rate_limit.hpp"
 #include "proto/ros2/answers.hpp"
 #include "proto/ros2/channel.hpp"
 #include "proto/ros2/outlet.hpp"
@@ -94,6 +95,12 @@ class QuestionsServed::Implementation {
   }
 
  private:
+  /// Whether a node over its quota is told so now. Ten times a second at most: every node hears it,
+  /// and may lose its own answer among others'.
+  bool is_told(const std::string& client) {
+    return refusals_.take(client, dds::RefusalRateLimit::Clock::now());
+  }
+
   /// What nodes follow that cannot ask any more.
   void forget_departed() {
     if (follows_.empty())
@@ -201,7 +208,7 @@ class QuestionsServed::Implementation {
     };
     const std::string& client = question.caller().client;
     if (const auto refusal = service_.admit_robot(client, size_of(message).bytes))
-      return refuse(reply_to(*refusal, RegisterReply{}));
+      return is_told(client) ? refuse(reply_to(*refusal, RegisterReply{})) : nullptr;
     Result<RobotDescription> robot = read(message);
     if (!robot)
       return refuse(codec::RegisterConversation::refuse(robot.error()));
@@ -226,7 +233,8 @@ class QuestionsServed::Implementation {
     const std::string& client = question.caller().client;
     const codec::RequestSize size = size_of(message);
     if (const auto refusal = service_.admit(client, size.bytes, size.attempts)) {
-      send(question, to_receipt(reply_to(*refusal, ReportReply{}), uuid).wire);
+      if (is_told(client))
+        send(question, to_receipt(reply_to(*refusal, ReportReply{}), uuid).wire);
       return {};
     }
     Result<PathReport> read_report = read(message);
@@ -283,7 +291,8 @@ class QuestionsServed::Implementation {
     };
     const std::string& client = question.caller().client;
     if (const auto refusal = service_.admit(client, size_of(message).bytes))
-      return refuse(reply_to(*refusal, FetchReply{}), FetchStatus::Busy);
+      return is_told(client) ? refuse(reply_to(*refusal, FetchReply{}), FetchStatus::Busy)
+                             : nullptr;
     const Result<FetchRequest> query = read(message);
     if (!query)
       return refuse(codec::FetchConversation::refuse(query.error()), FetchStatus::Refused);
@@ -322,8 +331,10 @@ class QuestionsServed::Implementation {
     const auto answer = [question, send, uuid](const Result<ServerStatus>& status) {
       send(question, to_status(status, uuid).wire);
     };
-    if (const auto refusal = service_.admit(question.caller().client, size_of(message).bytes)) {
-      answer(Error{ErrorCode::Unavailable, refusal->message});
+    const std::string& client = question.caller().client;
+    if (const auto refusal = service_.admit(client, size_of(message).bytes)) {
+      if (is_told(client))
+        answer(Error{ErrorCode::Unavailable, refusal->message});
       return {};
     }
     return [this, question, answer] {
@@ -341,6 +352,7 @@ class QuestionsServed::Implementation {
 
   service::Service& service_;
   Follows follows_;
+  dds::RefusalRateLimit refusals_;
   std::shared_ptr<const Outlet> distributions_;  // shared with answers under way
   std::vector<std::unique_ptr<Channel>> channels_;
 };

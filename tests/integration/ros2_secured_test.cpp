@@ -77,8 +77,12 @@ TEST_F(SecuredRos2, NodesOfTheKeystoreAreServedBesideClientsWithCertificates) {
   ASSERT_EQ(answer.size(), 4U);
   EXPECT_EQ(answer[0] + answer[1], "registered0");
   const Words path = {"robot=" + answer[2], "joints=" + answer[3]};
-  EXPECT_EQ(run("report", path).out.substr(0, 10), "receipt 0 ");
-  EXPECT_EQ(run("call_report", path).out.substr(0, 10), "receipt 0 ");
+  // 1, a duplicate, where the first answer came before the handshake of its reader was over.
+  for (const char* const verb : {"report", "call_report"}) {
+    const Words receipt = test::words(run(verb, path).out);
+    ASSERT_GE(receipt.size(), 2U) << verb;
+    EXPECT_TRUE(receipt[1] == "0" || receipt[1] == "1") << receipt[1];
+  }
   const test::Answer robots =
       test::run_to_end("kinship", {"robots", "list", "--domain", std::to_string(domain_.number()),
                                    "--security", anna_, "--timeout", "30"});
