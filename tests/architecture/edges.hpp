@@ -146,7 +146,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {guided,
        {{recall, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {link, {{dds, security, codec, kinematics, json, files, types}, {"Eigen"}}},
-      {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp", "SQLite"}}},
+      {moveit, {{planning, kinematics, types}, {"Eigen", "yaml-cpp", "SQLite"}}},
       {"client/cli",
        {{link, arguments, files, moveit, guided, ompl, page, plots, mcap, inverse, collision,
          geometry, kinematics, models, mixture, json, manual, tables, types},
