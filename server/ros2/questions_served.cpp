@@ -7,7 +7,6 @@
 #include <utility>
 #include <variant>
 
-#include "proto/dds/refusal_rate_limit.hpp"
 #include "proto/ros2/answers.hpp"
 #include "proto/ros2/channel.hpp"
 #include "proto/ros2/outlet.hpp"
@@ -54,7 +53,8 @@ ChannelTopics topics_of(const std::string& question, const dds_topic_descriptor&
 /// The topics of a service as rmw_cyclonedds has them.
 ChannelTopics topics_of_service(const std::string& name, const dds_topic_descriptor& request,
                                 const dds_topic_descriptor& response) {
-  return {"rq/kinship/" + name + "Request", request, "rr/kinship/" + name + "Reply", response};
+  return {"rq/kinship/" + name + "Request", request, "rr/kinship/" + name + "Reply", response,
+          false};
 }
 
 /// The message of a sample, which is all of it, or stands behind a request's identity.
@@ -95,12 +95,6 @@ class QuestionsServed::Implementation {
   }
 
  private:
-  /// Whether a node over its quota is told so now. Ten times a second at most: every node hears it,
-  /// and may lose its own answer among others'.
-  bool is_told(const std::string& client) {
-    return refusals_.take(client, dds::RefusalRateLimit::Clock::now());
-  }
-
   /// What nodes follow that cannot ask any more.
   void forget_departed() {
     if (follows_.empty())
@@ -208,7 +202,7 @@ class QuestionsServed::Implementation {
     };
     const std::string& client = question.caller().client;
     if (const auto refusal = service_.admit_robot(client, size_of(message).bytes))
-      return is_told(client) ? refuse(reply_to(*refusal, RegisterReply{})) : nullptr;
+      return refuse(reply_to(*refusal, RegisterReply{}));
     Result<RobotDescription> robot = read(message);
     if (!robot)
       return refuse(codec::RegisterConversation::refuse(robot.error()));
@@ -233,8 +227,7 @@ class QuestionsServed::Implementation {
     const std::string& client = question.caller().client;
     const codec::RequestSize size = size_of(message);
     if (const auto refusal = service_.admit(client, size.bytes, size.attempts)) {
-      if (is_told(client))
-        send(question, to_receipt(reply_to(*refusal, ReportReply{}), uuid).wire);
+      send(question, to_receipt(reply_to(*refusal, ReportReply{}), uuid).wire);
       return {};
     }
     Result<PathReport> read_report = read(message);
@@ -291,8 +284,7 @@ class QuestionsServed::Implementation {
     };
     const std::string& client = question.caller().client;
     if (const auto refusal = service_.admit(client, size_of(message).bytes))
-      return is_told(client) ? refuse(reply_to(*refusal, FetchReply{}), FetchStatus::Busy)
-                             : nullptr;
+      return refuse(reply_to(*refusal, FetchReply{}), FetchStatus::Busy);
     const Result<FetchRequest> query = read(message);
     if (!query)
       return refuse(codec::FetchConversation::refuse(query.error()), FetchStatus::Refused);
@@ -331,10 +323,8 @@ class QuestionsServed::Implementation {
     const auto answer = [question, send, uuid](const Result<ServerStatus>& status) {
       send(question, to_status(status, uuid).wire);
     };
-    const std::string& client = question.caller().client;
-    if (const auto refusal = service_.admit(client, size_of(message).bytes)) {
-      if (is_told(client))
-        answer(Error{ErrorCode::Unavailable, refusal->message});
+    if (const auto refusal = service_.admit(question.caller().client, size_of(message).bytes)) {
+      answer(Error{ErrorCode::Unavailable, refusal->message});
       return {};
     }
     return [this, question, answer] {
@@ -352,7 +342,6 @@ class QuestionsServed::Implementation {
 
   service::Service& service_;
   Follows follows_;
-  dds::RefusalRateLimit refusals_;
   std::shared_ptr<const Outlet> distributions_;  // shared with answers under way
   std::vector<std::unique_ptr<Channel>> channels_;
 };
