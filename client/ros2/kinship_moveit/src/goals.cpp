@@ -97,7 +97,10 @@ KeptRegion read_path_constraints(const planning_scene::PlanningScene& scene,
     region.upper[i] -= kLeft_rad;
     region.lower[i] += kLeft_rad;
     if (region.upper[i] <= 0)
-      return {{}, "a path constraint on an orientation to less than 0.6 degrees"};
+      return {{},
+              "a path constraint on an orientation to " +
+                  std::to_string(region.upper[i] + kLeft_rad) + " rad, must be above " +
+                  std::to_string(kLeft_rad)};
   }
   Eigen::Isometry3d T_task_region = Eigen::Isometry3d::Identity();
   T_task_region.linear() = T_task_world.linear() *
