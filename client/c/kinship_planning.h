@@ -23,6 +23,26 @@ KINSHIP_API kinship_code kinship_planner_create(const kinship_robot_file* file,
                                                 kinship_planner** planner, size_t* dof);
 KINSHIP_API void kinship_planner_free(kinship_planner* planner);
 
+/** A box in the space of poses that the transfer frame must not leave along a whole path: x, y, z
+ * (m) and roll, pitch, yaw (rad, R = Rz(yaw) Ry(pitch) Rx(roll)) of the frame "end" in the frame
+ * "region". Both coincide where the transfer frame is at T_task_region * T_region_end. */
+typedef struct kinship_region {
+  size_t size;
+  double T_task_region[7];
+  double T_region_end[7]; /**< the transfer frame in the region's, without displacement */
+  double lower[6];        /**< -INFINITY without a bound */
+  double upper[6];        /**< INFINITY without a bound */
+} kinship_region;
+
+/** Sets the bounds of a region, and nothing else of it, for an orientation to be kept as MoveIt has
+ * it: bounded are Rx(a) Ry(b) Rz(c), or a rotation vector. Beside a free turn the others get bounds
+ * under which every tilt of the region is one of the tolerances; no position is bounded.
+ * \param tolerances  of a, b and c, rad; pi or more: free.
+ * \return KINSHIP_INVALID_INPUT if they bound no tilt: two are free, or b alone. */
+KINSHIP_API kinship_code kinship_region_keep_orientation(const double* tolerances,
+                                                         int is_rotation_vector,
+                                                         kinship_region* region);
+
 /** What is to be planned, and with which guidance. */
 typedef struct kinship_query {
   size_t size;
@@ -34,7 +54,8 @@ typedef struct kinship_query {
   const double* T_task_goal; /**< of the transfer frame, in the task's frame; else not looked at */
   double time_limit_s;       /**< 0: 10 */
   uint64_t seed;             /**< equal queries with equal seeds have equal paths */
-  /** "birrt", "roadmap" or "rrtconnect"; NULL: birrt. */
+  /** "birrt", "cbirrt2", "roadmap" or "rrtconnect"; NULL: birrt, with a region cbirrt2. With one
+   * cbirrt2 and roadmap alone have paths. */
   const char* algorithm;
   /** What guides it, of the robot at this placement (else: KINSHIP_INVALID_INPUT); NULL: not guided
    * by that. They are used during the call only. */
@@ -45,7 +66,8 @@ typedef struct kinship_query {
   kinship_sampling sampling;
   /** Called by the calling thread before every check: not 0 ends planning. NULL: never. */
   int (*stop)(void* user);
-  void* user; /**< its argument */
+  void* user;                   /**< its argument */
+  const kinship_region* region; /**< along the whole path; NULL: none */
 } kinship_query;
 
 /** An answer: a path, or why there is none. Never changes. */

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,9 +13,21 @@
 #include "client/guided/scene_record.hpp"
 #include "proto/types/number_text.hpp"
 #include "robots/geometry/geometry_doubts.hpp"
+#include "robots/planning/kept_orientation.hpp"
 
 namespace kinship::c_library {
 namespace {
+
+TaskSpaceRegion read_region(const kinship_region& given) {
+  TaskSpaceRegion region;
+  region.T_task_region = read_pose(given.T_task_region, "query->region->T_task_region");
+  region.T_region_end = read_pose(given.T_region_end, "query->region->T_region_end");
+  region.bounds.row(0) = Eigen::Map<const Eigen::RowVector<double, 6>>(given.lower);
+  region.bounds.row(1) = Eigen::Map<const Eigen::RowVector<double, 6>>(given.upper);
+  if (const auto fault = validate(region))
+    throw Failure(invalid_input("query->region: " + *fault));
+  return region;
+}
 
 Problem read_problem(const kinship_query& given, const kinematics::Chain& chain) {
   if (given.dof != static_cast<std::size_t>(chain.dof()))
@@ -45,6 +58,8 @@ Problem read_problem(const kinship_query& given, const kinematics::Chain& chain)
     problem.time_limit_s = given.time_limit_s;
   }
   problem.seed = given.seed;
+  if (given.region != nullptr)
+    problem.constraint = read_region(read_structure(given.region, "query->region"));
   return problem;
 }
 
@@ -125,6 +140,24 @@ kinship_code kinship_planner_create(const kinship_robot_file* file, kinship_plan
     *planner = new kinship_planner(robot);
     if (dof != nullptr)
       *dof = static_cast<size_t>(robot.chain.dof());
+    return KINSHIP_OK;
+  });
+}
+
+kinship_code kinship_region_keep_orientation(const double* tolerances, int is_rotation_vector,
+                                             kinship_region* region) {
+  return guarded([&] {
+    require(tolerances, "tolerances");
+    kinship_region kept = read_structure(region, "region");
+    const auto found = kinship::planning::keep_orientation(
+        Eigen::Map<const Eigen::Vector3d>(tolerances), is_rotation_vector != 0);
+    if (!found)
+      return remember(found.error());
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      kept.upper[i] = i < 3 ? HUGE_VAL : found->bounds[i - 3];
+      kept.lower[i] = -kept.upper[i];
+    }
+    write_structure(kept, region, "region");
     return KINSHIP_OK;
   });
 }

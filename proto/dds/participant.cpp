@@ -17,6 +17,7 @@
 #include "proto/dds/qos.hpp"
 #include "proto/dds/rejoin_watch.hpp"
 #include "proto/dds/self_description.hpp"
+#include "proto/security/enclave.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::dds {
@@ -33,9 +34,11 @@ std::string describe_failure(const ParticipantOptions& options, Handle code) {
   return message + ")" + note_of_environment();
 }
 
-/// What Cyclone DDS calls a domain in this process: the ROS domain of a number is another one.
+/// What Cyclone DDS calls a domain in this process: the ROS domain of a number is another one. With
+/// security it is the number itself, as Cyclone DDS looks this one up in what SROS 2 has signed.
 std::uint32_t number_here(const ParticipantOptions& options) {
-  return options.domain + (options.role == Role::RosNode ? kMaxDomain + 1 : 0);
+  const bool has_other_number = options.role == Role::RosNode && options.security.empty();
+  return options.domain + (has_other_number ? kMaxDomain + 1 : 0);
 }
 
 // The process with the threads of Cyclone DDS, and its domains; the threads end with the last one.
@@ -128,6 +131,10 @@ namespace {
 std::optional<security::Credentials> credentials_of(const ParticipantOptions& options) {
   if (options.security.empty())
     return std::nullopt;
+  if (options.role == Role::RosNode) {
+    security::require_enclave(options.security);
+    return std::nullopt;
+  }
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   security::Credentials credentials =
       security::read_credentials(options.security, now).value_or_throw();
@@ -158,7 +165,9 @@ std::unique_ptr<EndpointGuard> guard_of(const ParticipantOptions& options) {
 Entity create_participant(const ParticipantOptions& options) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  Qos qos = options.security.empty() ? Qos(dds_create_qos()) : security_qos(options.security);
+  Qos qos = options.security.empty()        ? Qos(dds_create_qos())
+            : options.role == Role::RosNode ? enclave_qos(options.security)
+                                            : security_qos(options.security);
   if (options.security.empty() && options.role == Role::Client)
     set_description(qos.get(), own_description());
   const Handle handle = dds_create_participant(number_here(options), qos.get(), nullptr);

@@ -60,8 +60,8 @@ struct ParticipantOptions {
   /// E.g. "eth0". Empty: at a server, or for a server on a loopback address, "lo"; otherwise
   /// Cyclone DDS chooses.
   std::string network_interface = {};
-  /// Folder of credentials (kinshipd secure): only participants with credentials of the same
-  /// authority are accepted. Empty: no security.
+  /// Folder of credentials (kinshipd secure), of a RosNode an enclave of SROS 2: only participants
+  /// with certificates of the same authority are accepted. Empty: no security.
   std::filesystem::path security = {};
   Directory directory = {};  ///< of a server with security; without one it refuses every client
 };
@@ -106,7 +106,7 @@ class Participant {
   Handle get() const noexcept { return entity_.get(); }
   const ParticipantOptions& options() const noexcept { return options_; }
 
-  /// Name and role with which it joined; nothing without security.
+  /// Name and role with which it joined; nothing without security, and of a RosNode.
   const std::optional<security::Credentials>& credentials() const noexcept { return credentials_; }
 
  private:

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "proto/security/credentials.hpp"
+#include "proto/security/enclave.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/types/failure.hpp"
 
@@ -53,6 +54,23 @@ void set_plugin(dds_qos_t* qos, const std::string& role, const std::string& file
   dds_qset_prop(qos, (library + "finalize").c_str(), ("finalize_" + suffix).c_str());
 }
 
+Qos plugins_qos(const security::EnclaveFiles& files) {
+  Qos qos = make_qos();
+  set_plugin(qos.get(), "auth", "auth", "authentication");
+  set_plugin(qos.get(), "access", "ac", "access_control");
+  set_plugin(qos.get(), "crypto", "crypto", "crypto");
+  const auto set_file = [&](const char* property, const std::filesystem::path& file) {
+    dds_qset_prop(qos.get(), property, ("file:" + file.string()).c_str());
+  };
+  set_file("dds.sec.auth.identity_ca", files.identity_authority);
+  set_file("dds.sec.auth.identity_certificate", files.certificate);
+  set_file("dds.sec.auth.private_key", files.key);
+  set_file("dds.sec.access.permissions_ca", files.permissions_authority);
+  set_file("dds.sec.access.governance", files.governance);
+  set_file("dds.sec.access.permissions", files.permissions);
+  return qos;
+}
+
 }  // namespace
 
 void DeleteQos::operator()(dds_qos* qos) const noexcept { dds_delete_qos(qos); }
@@ -91,23 +109,20 @@ Qos event_qos() {
 }
 
 Qos security_qos(const std::filesystem::path& credentials) {
-  Qos qos = make_qos();
-  set_plugin(qos.get(), "auth", "auth", "authentication");
-  set_plugin(qos.get(), "access", "ac", "access_control");
-  set_plugin(qos.get(), "crypto", "crypto", "crypto");
   const security::CredentialFiles files(std::filesystem::absolute(credentials));
-  const auto set_file = [&](const char* property, const std::filesystem::path& file) {
-    dds_qset_prop(qos.get(), property, ("file:" + file.string()).c_str());
-  };
-  set_file("dds.sec.auth.identity_ca", files.authorities);
-  set_file("dds.sec.auth.identity_certificate", files.certificate);
-  set_file("dds.sec.auth.private_key", files.key);
-  set_file("dds.sec.access.permissions_ca", files.authorities);
-  set_file("dds.sec.access.governance", files.governance);
-  set_file("dds.sec.access.permissions", files.permissions);
+  Qos qos = plugins_qos({.identity_authority = files.authorities,
+                         .certificate = files.certificate,
+                         .key = files.key,
+                         .permissions_authority = files.authorities,
+                         .governance = files.governance,
+                         .permissions = files.permissions});
   // A folder, not a URI: while authorities change, others' certificates are of either.
   dds_qset_prop(qos.get(), "dds.sec.auth.trusted_ca_dir", files.trusted.c_str());
   return qos;
+}
+
+Qos enclave_qos(const std::filesystem::path& enclave) {
+  return plugins_qos(security::EnclaveFiles::in(std::filesystem::absolute(enclave)));
 }
 
 std::string client_partition(const Participant& participant) {

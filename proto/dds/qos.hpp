@@ -38,6 +38,9 @@ Qos event_qos();
 /// Of a participant with security: the plugins of Cyclone DDS, and their files.
 Qos security_qos(const std::filesystem::path& credentials);
 
+/// The same of an enclave of SROS 2.
+Qos enclave_qos(const std::filesystem::path& enclave);
+
 /// Partition of a client with security, for all its writers and readers. \pre it has credentials.
 std::string client_partition(const Participant& participant);
 

@@ -8,8 +8,8 @@
 
 #include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
-#include "proto/dds/refusal_rate_limit.hpp"
 #include "proto/dds/reply_channel.hpp"
+#include "proto/dds/reply_rate_limit.hpp"
 
 namespace kinship::dds {
 
@@ -146,7 +146,7 @@ class Replier<Conversation>::Implementation {
       return;
     const Result<Caller> caller = caller_of(*sender);
     if (caller ? is_refused(place, *caller, wire)
-               : !refusals_.take(sender->client, RefusalRateLimit::Clock::now()))
+               : !refusals_.take(sender->client, ReplyRateLimit::Clock::now()))
       return;
     const auto held_until = hold(*sender, head);
     waiting_.push(*opening, {*sender, caller ? decoded(wire) : Decoded(caller.error())},
@@ -233,7 +233,8 @@ class Replier<Conversation>::Implementation {
   Handler handler_;
   Gate gate_;
   Queue waiting_{kWaitingRequests};
-  RefusalRateLimit refusals_;
+  /// A client with an old certificate cannot cause unlimited work.
+  ReplyRateLimit refusals_{10};
 };
 
 template <typename Conversation>

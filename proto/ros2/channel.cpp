@@ -14,6 +14,7 @@
 #include "proto/dds/loan.hpp"
 #include "proto/dds/matched_readers.hpp"
 #include "proto/dds/matched_writers.hpp"
+#include "proto/dds/reply_rate_limit.hpp"
 #include "proto/ros2/outlet.hpp"
 
 namespace kinship::ros2 {
@@ -22,6 +23,7 @@ namespace {
 constexpr int kHeldQuestions = 256;  ///< by the reader, until they are taken
 constexpr int kKeptAnswers = 256;    ///< for a reader that is slow
 constexpr std::size_t kWaitingQuestions = 256;
+constexpr int kAnswersPerSecond = 100;
 constexpr std::chrono::milliseconds kMaxHold{100};  ///< then its node sends it again
 
 /// Of a sample, as the head that queues know.
@@ -42,6 +44,7 @@ class AnswerLine {
       : topic_(make_topic(participant, topics.answer_type, topics.answer)),
         publisher_(dds_create_publisher(participant.get(), nullptr, nullptr), "publisher"),
         readers_(participant),
+        is_asked_again_(topics.is_asked_again),
         writer_(readers_.make_writer(publisher_, topic_.get(),
                                      node_qos(Durability::Volatile, kKeptAnswers).get(),
                                      "writer " + topics.answer)) {}
@@ -50,8 +53,6 @@ class AnswerLine {
   bool reaches(const dds::Sender& sender) const {
     return readers_.has(writer_, sender.participant);
   }
-  void write(const void* sample) const noexcept { dds_write(writer_.get(), sample); }
-
   bool begin(const Place& place) {
     const std::lock_guard lock(mutex_);
     return being_answered_.insert(place).second;
@@ -60,14 +61,27 @@ class AnswerLine {
     const std::lock_guard lock(mutex_);
     being_answered_.erase(place);
   }
+  void end_with(const Place& place, const void* answer) {
+    if (end_and_count(place))
+      dds_write(writer_.get(), answer);
+  }
 
  private:
+  /// \return whether its node is sent one more answer now.
+  bool end_and_count(const Place& place) {
+    const std::lock_guard lock(mutex_);
+    being_answered_.erase(place);
+    return !is_asked_again_ || sent_.take(place.first, dds::ReplyRateLimit::Clock::now());
+  }
+
   dds::Entity topic_;
   dds::Entity publisher_;
   dds::MatchedReaders readers_;
+  const bool is_asked_again_;
   dds::Entity writer_;
-  std::mutex mutex_;  // guards being_answered_
+  std::mutex mutex_;  // guards the next two
   std::set<Place> being_answered_;
+  dds::ReplyRateLimit sent_{kAnswersPerSecond};
 };
 
 }  // namespace
@@ -92,10 +106,8 @@ class Question::State {
     if (is_sent_.exchange(true))
       return;
     std::memcpy(sample, place_.second.client_id.bytes.data(), wire::kKeyBytes);
-    if (const auto line = line_.lock()) {
-      line->end(place_);
-      line->write(sample);
-    }
+    if (const auto line = line_.lock())
+      line->end_with(place_, sample);
   }
 
  private:

@@ -22,6 +22,7 @@ struct ChannelTopics {
   const dds_topic_descriptor& question_type;
   std::string answer;
   const dds_topic_descriptor& answer_type;
+  bool is_asked_again = true;  ///< by nodes that did not get their answer; a service's call is not
 };
 
 /// One question of a ROS node, and the way back. Copyable; may be used from any thread, also after
@@ -49,7 +50,9 @@ class Question {
 
 /// The server's side of a topic or service of ROS: nodes in turn, so that one that asks much delays
 /// only itself. A question waits until its node can hear the answer, 100 ms at most. One that is
-/// sent again while it is being answered is dropped.
+/// sent again while it is being answered is dropped. Every node hears every answer, and may lose
+/// its own among many of another: where it is asked again a node is sent 100 answers a second at
+/// most.
 class Channel {
  public:
   using Answering = std::function<void()>;

@@ -70,6 +70,7 @@ struct ServerOptions {
   std::vector<std::string> console_hosts;  ///< names by which it may be asked for
   bool ros2 = false;                       ///< serve ROS 2 nodes, too
   std::uint32_t ros2_domain = 0;           ///< their ROS_DOMAIN_ID
+  std::filesystem::path ros2_enclave;      ///< of SROS 2; empty: without security
   std::string log_level = "info";
 };
 

@@ -38,11 +38,17 @@ void add_port_options(CLI::App& app, ServerOptions& options) {
                  "A name by which the console may be asked for, besides addresses, localhost and "
                  "this machine's name; may be given again");
   app.add_flag("--ros2", options.ros2,
-               "Serve ROS 2 nodes too (messages of kinship_msgs), on the same interface; not with "
-               "--security, whose certificates they do not have");
+               "Serve ROS 2 nodes too (messages of kinship_msgs), on the same interface; with "
+               "--security only those of a keystore of SROS 2 (--ros2-enclave)");
   app.add_option("--ros2-domain", options.ros2_domain, "Of --ros2: their domain")
       ->envname("ROS_DOMAIN_ID")
       ->capture_default_str();
+  app.add_option("--ros2-enclave", options.ros2_enclave,
+                 "Of --ros2 with --security: the server's enclave in their keystore of SROS 2, a "
+                 "folder with cert.pem, key.pem, governance.p7s, permissions.p7s and both "
+                 "authorities")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("FOLDER");
 }
 
 std::string ros2_fault(const ServerOptions& options) {
@@ -51,10 +57,18 @@ std::string ros2_fault(const ServerOptions& options) {
   if (options.ros2_domain > dds::kMaxDomain)
     return "--ros2-domain " + std::to_string(options.ros2_domain) + " (or ROS_DOMAIN_ID) exceeds " +
            std::to_string(dds::kMaxDomain);
-  return options.security.empty()
-             ? ""
-             : "--ros2 is not for a server with --security: ROS 2 nodes have no certificate of it, "
-               "and would be let in without";
+  if (options.security.empty() != options.ros2_enclave.empty())
+    return options.security.empty()
+               ? "--ros2-enclave '" + options.ros2_enclave.string() +
+                     "' secures ROS 2 alone: it is for a server whose own clients have "
+                     "certificates, too (--security FOLDER)"
+               : "--ros2 with --security needs --ros2-enclave FOLDER: ROS 2 nodes have no "
+                 "certificate of Kinship's, and would be let in without one of SROS 2";
+  return !options.security.empty() && options.ros2_domain == options.domain
+             ? "--ros2-domain " + std::to_string(options.ros2_domain) +
+                   " (or ROS_DOMAIN_ID) is --domain's number, too: with security they have to "
+                   "differ"
+             : "";
 }
 
 std::string console_fault(const ServerOptions& options) {

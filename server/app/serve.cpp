@@ -129,8 +129,9 @@ std::unique_ptr<ros2::Node> join_ros2(const ServerOptions& options) {
   if (!options.ros2)
     return nullptr;
   auto node = std::make_unique<ros2::Node>(
-      ros2::NodeOptions{options.ros2_domain, options.network_interface});
-  spdlog::info("ROS 2: serves domain {} (topics kinship/...)", options.ros2_domain);
+      ros2::NodeOptions{options.ros2_domain, options.network_interface, options.ros2_enclave});
+  spdlog::info("ROS 2: serves domain {} (topics kinship/...){}", options.ros2_domain,
+               options.ros2_enclave.empty() ? "" : " with security");
   return node;
 }
 

@@ -18,7 +18,8 @@ class Node::Implementation {
   explicit Implementation(const NodeOptions& options)
       : participant_({.domain = options.domain,
                       .role = dds::Role::RosNode,
-                      .network_interface = options.network_interface}),
+                      .network_interface = options.network_interface,
+                      .security = options.enclave}),
         loop_(participant_) {}
 
   void announce(const Announcement& announcement) {

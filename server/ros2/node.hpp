@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,7 @@ namespace kinship::ros2 {
 struct NodeOptions {
   std::uint32_t domain = 0;       ///< ROS_DOMAIN_ID
   std::string network_interface;  ///< empty: loopback
+  std::filesystem::path enclave;  ///< folder of SROS 2's files; empty: no security
 };
 
 /// kinshipd as a ROS 2 node: topics and services of client/ros2/kinship_msgs to the same service
@@ -21,7 +23,8 @@ class Node {
 
  public:
   /// Joins the domain.
-  /// \throws Failure(Unavailable) if that fails.
+  /// \throws Failure(Unavailable) if that fails; Failure(NotFound) that names a missing file of the
+  ///         enclave.
   explicit Node(const NodeOptions& options);
   ~Node();
   Node(const Node&) = delete;

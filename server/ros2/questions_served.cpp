@@ -53,7 +53,8 @@ ChannelTopics topics_of(const std::string& question, const dds_topic_descriptor&
 /// The topics of a service as rmw_cyclonedds has them.
 ChannelTopics topics_of_service(const std::string& name, const dds_topic_descriptor& request,
                                 const dds_topic_descriptor& response) {
-  return {"rq/kinship/" + name + "Request", request, "rr/kinship/" + name + "Reply", response};
+  return {"rq/kinship/" + name + "Request", request, "rr/kinship/" + name + "Reply", response,
+          false};
 }
 
 /// The message of a sample, which is all of it, or stands behind a request's identity.

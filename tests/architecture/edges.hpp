@@ -150,7 +150,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {results,
        {{page, planning, collision, kinematics, models, mixture, json, files, types},
         {"Eigen", "CLI11", "nlohmann-json"}}},
-      {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp", "SQLite"}}},
+      {moveit, {{planning, kinematics, types}, {"Eigen", "yaml-cpp", "SQLite"}}},
       {"client/cli",
        {{link,      arguments, files,      moveit, guided,  ompl, page,   plots,   mcap,   inverse,
          collision, geometry,  kinematics, models, mixture, json, manual, results, tables, types},

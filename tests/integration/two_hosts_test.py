@@ -200,6 +200,18 @@ class TwoHosts(unittest.TestCase):
         self.assertIn("address 10.77.0.2, token shown", said)
         self.assertIn("this machine, by packet address 10.77.0.1, token shown", said)
 
+    def test_ros_nodes_of_another_host_are_found_by_multicast(self):
+        """Neither side is told the other's address."""
+        self.serve("kinshipd --interface eth0 --insecure --ros2 --ros2-domain 5 --store fleet.db")
+        for seed, middleware in enumerate(("cyclone", "fastdds")):
+            node = f"ROS_LOCALHOST_ONLY=0 {PROGRAMS.parent}/tests/ros_peer_{middleware} 5"
+            done = self.robot.run(f"{node} register urdf=robots/models/ur10e/robot.urdf label=arm base=base_link tip=tool0")
+            self.assertEqual(done.returncode, 0, middleware + ": " + done.stdout)
+            _, status, robot, joints = done.stdout.split()
+            self.assertIn(status, ("0", "1"), "stored, or known since the other one")
+            done = self.robot.run(f"{node} report robot={robot} joints={joints} seed={seed}")
+            self.assertTrue(done.stdout.startswith("receipt 0 "), middleware + ": " + done.stdout)
+
     def test_replayed_packets_of_a_lab_are_not_of_the_servers_machine(self):
         """The robot's host captures how a reset is done on the server's machine, in a lab of its own with the server's address."""
         serve = "kinshipd --interface eth0 --insecure --store fleet.db"

@@ -155,6 +155,54 @@ TEST_F(KINSHIP_FIXTURE, MatrixAndAttachedBodiesCount) {
   EXPECT_NE(said.find("does not move with 'panda_link8'"), std::string::npos) << said;
 }
 
+TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptAlongThePathAndOtherConstraintsAreRefusedByName) {
+  const auto planner = this->planner(node());
+  const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.6, 0, 0.4));
+  auto answer = plan_past(*planner, box, T, {});
+  ASSERT_NE(trajectory_of(answer), nullptr) << "the robot is read";
+  const auto scene = empty_scene(turned(-0.7));
+  add(*scene, "post", box, T);
+  MotionPlanRequest upright = request(turned(0.7));
+  upright.path_constraints.orientation_constraints.emplace_back();
+  auto& kept = upright.path_constraints.orientation_constraints.front();
+  kept.link_name = "hand";  // which panda_link8 holds
+  const Eigen::Matrix3d R_world_hand = scene->state.getGlobalLinkTransform("hand").linear();
+  const Eigen::Quaterniond turn(R_world_hand);
+  kept.orientation.x = turn.x();
+  kept.orientation.y = turn.y();
+  kept.orientation.z = turn.z();
+  kept.orientation.w = turn.w();
+  kept.absolute_x_axis_tolerance = kept.absolute_y_axis_tolerance = 0.2;
+  kept.absolute_z_axis_tolerance = 3.2;
+  answer = solve(*planner, scene, upright);
+  ASSERT_TRUE(is_past_the_post(answer));
+  const auto tilt = [&](std::size_t i) {
+    return std::acos(std::min(
+        1.0,
+        trajectory_of(answer)->getWayPoint(i).getGlobalLinkTransform("hand").linear().col(2).dot(
+            R_world_hand.col(2))));
+  };
+  for (std::size_t i = 0; i < trajectory_of(answer)->getWayPointCount(); ++i)
+    EXPECT_LT(tilt(i), 0.2) << i;
+
+  const auto refusal = [&](const MotionPlanRequest& asked) {
+    testing::internal::CaptureStderr();
+    auto refused = solve(*planner, scene, asked);
+    EXPECT_EQ(trajectory_of(refused), nullptr);
+    return testing::internal::GetCapturedStderr();
+  };
+  MotionPlanRequest tilted = upright;
+  tilted.path_constraints.orientation_constraints.front().absolute_y_axis_tolerance = 3.2;
+  EXPECT_NE(refusal(tilted).find("bound no tilt"), std::string::npos);
+  MotionPlanRequest elbow = upright;
+  elbow.path_constraints.orientation_constraints.front().link_name = "panda_link4";
+  EXPECT_NE(refusal(elbow).find("does not move with 'panda_link8'"), std::string::npos);
+  MotionPlanRequest joints = request(turned(0.7));
+  joints.path_constraints.joint_constraints.emplace_back();
+  EXPECT_NE(refusal(joints).find("a path constraint on joints"), std::string::npos);
+}
+
 TEST_F(KINSHIP_FIXTURE, WhatTheSceneRefusesIsNoAnswer) {
   const auto planner = this->planner(node());
   auto answer = plan_past(*planner, std::make_shared<shapes::Box>(0.05, 0.05, 0.8),

@@ -2,8 +2,13 @@
 #include <dds/ddsi/ddsi_serdata.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <functional>
+#include <initializer_list>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "tests/integration/ros2/transport.hpp"
 
@@ -23,12 +28,15 @@ class CycloneTransport final : public Transport {
   explicit CycloneTransport(std::uint32_t domain) {
     domain_ = checked(dds_create_domain(
         domain,
-        "<Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
-        "<AllowMulticast>false</AllowMulticast></General><Discovery>"
-        "<ParticipantIndex>auto</ParticipantIndex>"
-        "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
-        "<Peers><Peer address=\"localhost\"/></Peers></Discovery></Domain>"));
-    participant_ = checked(dds_create_participant(domain, nullptr, nullptr));
+        variable("ROS_LOCALHOST_ONLY") == std::string("0")
+            ? "<Domain Id=\"any\"/>"
+            : "<Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
+              "<AllowMulticast>false</AllowMulticast></General><Discovery>"
+              "<ParticipantIndex>auto</ParticipantIndex>"
+              "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
+              "<Peers><Peer address=\"localhost\"/></Peers></Discovery></Domain>"));
+    const Qos qos = security();
+    participant_ = checked(dds_create_participant(domain, qos.get(), nullptr));
   }
 
   ~CycloneTransport() override { dds_delete(domain_); }  // others hear of it at once
@@ -86,6 +94,43 @@ class CycloneTransport final : public Transport {
 
  private:
   using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
+
+  static const char* variable(const char* name) {
+    const char* const value = std::getenv(name);
+    return value != nullptr ? value : "";
+  }
+
+  /// As rmw_cyclonedds reads SROS 2's environment.
+  static Qos security() {
+    Qos qos(dds_create_qos(), &dds_delete_qos);
+    if (variable("ROS_SECURITY_ENABLE") != std::string("true"))
+      return qos;
+    const std::string enclave = variable("ROS_SECURITY_KEYSTORE") + std::string("/enclaves") +
+                                variable("ROS_SECURITY_ENCLAVE_OVERRIDE");
+    const auto set = [&](const std::string& name, const std::string& value) {
+      dds_qset_prop(qos.get(), ("dds.sec." + name).c_str(), value.c_str());
+    };
+    using Three = std::array<const char*, 3>;
+    using Two = std::pair<const char*, const char*>;
+    for (const auto& [role, file, suffix] :
+         std::initializer_list<Three>{{"auth", "auth", "authentication"},
+                                      {"access", "ac", "access_control"},
+                                      {"crypto", "crypto", "crypto"}}) {
+      const std::string library = std::string(role) + ".library.";
+      set(library + "path", KINSHIP_DDS_PLUGINS "/libdds_security_" + std::string(file) + ".so");
+      set(library + "init", "init_" + std::string(suffix));
+      set(library + "finalize", "finalize_" + std::string(suffix));
+    }
+    for (const auto& [name, file] :
+         std::initializer_list<Two>{{"auth.identity_ca", "identity_ca.cert.pem"},
+                                    {"auth.identity_certificate", "cert.pem"},
+                                    {"auth.private_key", "key.pem"},
+                                    {"access.permissions_ca", "permissions_ca.cert.pem"},
+                                    {"access.governance", "governance.p7s"},
+                                    {"access.permissions", "permissions.p7s"}})
+      set(name, "file:" + enclave + '/' + file);
+    return qos;
+  }
 
   static Qos qos(bool is_late) {
     Qos qos(dds_create_qos(), &dds_delete_qos);

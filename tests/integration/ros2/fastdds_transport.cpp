@@ -7,9 +7,11 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <stdexcept>
+#include <string>
 
 #include "tests/integration/ros2/fastdds_bytes_type.hpp"
 #include "tests/integration/ros2/transport.hpp"
@@ -28,19 +30,14 @@ Pointer checked(Pointer pointer, const char* what) {
   return pointer;
 }
 
-/// As rmw_fastrtps has it by default, but on loopback alone, which has no multicast.
+/// As rmw_fastrtps has it by default.
 class FastTransport final : public Transport {
  public:
   explicit FastTransport(std::uint32_t domain) {
     DomainParticipantQos qos;
-    qos.transport().use_builtin_transports = false;
-    const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-    udp->interfaceWhiteList.emplace_back("127.0.0.1");
-    udp->sendBufferSize = udp->receiveBufferSize = 4 << 20;
-    qos.transport().user_transports.push_back(udp);
-    rtps::Locator_t peer;
-    rtps::IPLocator::setIPv4(peer, "127.0.0.1");
-    qos.wire_protocol().builtin.initialPeersList.push_back(peer);
+    if (const char* const local = std::getenv("ROS_LOCALHOST_ONLY");
+        local == nullptr || local != std::string("0"))
+      stay_on_loopback(qos);
     participant_ = checked(
         DomainParticipantFactory::get_instance()->create_participant(domain, qos), "participant");
     publisher_ = checked(participant_->create_publisher(PUBLISHER_QOS_DEFAULT), "publisher");
@@ -112,6 +109,17 @@ class FastTransport final : public Transport {
   }
 
  private:
+  static void stay_on_loopback(DomainParticipantQos& qos) {
+    qos.transport().use_builtin_transports = false;
+    const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+    udp->interfaceWhiteList.emplace_back("127.0.0.1");
+    udp->sendBufferSize = udp->receiveBufferSize = 4 << 20;
+    qos.transport().user_transports.push_back(udp);
+    rtps::Locator_t peer;
+    rtps::IPLocator::setIPv4(peer, "127.0.0.1");
+    qos.wire_protocol().builtin.initialPeersList.push_back(peer);
+  }
+
   Topic* make_topic(const std::string& topic, const TopicType& type) {
     if (types_.try_emplace(type.name, new BytesType(type.name)).second)
       types_.at(type.name).register_type(participant_);

@@ -44,7 +44,8 @@ class Transport {
   virtual std::optional<std::vector<std::uint8_t>> take(int reader, Deadline deadline) = 0;
 };
 
-/// Joins on loopback. Defined once for each middleware.
+/// Joins on loopback, or with ROS_LOCALHOST_ONLY=0 as nodes do that other hosts find by multicast.
+/// Defined once for each middleware.
 std::unique_ptr<Transport> join(std::uint32_t domain);
 
 }  // namespace kinship::test

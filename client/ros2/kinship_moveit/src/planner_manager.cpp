@@ -18,14 +18,18 @@ class OwnSearch {
              const MotionPlanRequest& request, const std::atomic<bool>& is_over,
              MotionPlanResponse& response) {
     error_code_of(response).val = ErrorCodes::PLANNING_FAILED;
-    const std::string untold = why_not(query, request);
+    const KeptRegion kept =
+        read_path_constraints(*scene, *query.start, request.path_constraints, query.arm->tip_link(),
+                              query.T_task_world, to_pose(session_.settings().T_tip_transfer));
+    const std::string untold = kept.untold.empty() ? why_not(query) : kept.untold;
     if (!untold.empty()) {
       RCLCPP_ERROR(session_.logger(), "Kinship cannot plan this: %s", untold.c_str());
-      error_code_of(response).val = ErrorCodes::INVALID_GOAL_CONSTRAINTS;
+      if (kept.untold.empty())
+        error_code_of(response).val = ErrorCodes::INVALID_GOAL_CONSTRAINTS;
       return;
     }
     kinship_plan* found = nullptr;
-    const kinship_code code = find(query, scene, request, is_over, &found);
+    const kinship_code code = find(query, scene, request, kept, is_over, &found);
     if (code != KINSHIP_OK) {
       RCLCPP_ERROR(session_.logger(), "Kinship cannot plan this: %s", kinship_error_text());
       return;
@@ -55,11 +59,7 @@ class OwnSearch {
   }
 
  private:
-  static std::string why_not(const Query& query, const MotionPlanRequest& request) {
-    const auto& path = request.path_constraints;
-    if (!path.joint_constraints.empty() || !path.position_constraints.empty() ||
-        !path.orientation_constraints.empty() || !path.visibility_constraints.empty())
-      return "it has path constraints";
+  static std::string why_not(const Query& query) {
     if (!query.goals.has_any())
       return query.goals.untold.empty() ? "it has no goal" : query.goals.untold;
     if (query.arm->planner() == nullptr)
@@ -68,8 +68,8 @@ class OwnSearch {
   }
 
   kinship_code find(const Query& query, const planning_scene::PlanningSceneConstPtr& scene,
-                    const MotionPlanRequest& request, const std::atomic<bool>& is_over,
-                    kinship_plan** plan) {
+                    const MotionPlanRequest& request, const KeptRegion& kept,
+                    const std::atomic<bool>& is_over, kinship_plan** plan) {
     std::vector<double> start(query.arm->dof());
     query.start->copyJointGroupPositions(
         scene->getRobotModel()->getJointModelGroup(request.group_name), start.data());
@@ -91,6 +91,7 @@ class OwnSearch {
                                to_pose(session_.settings().T_tip_transfer));
       asked.T_task_goal = T_task_goal.data();
     }
+    asked.region = kept.region ? &*kept.region : nullptr;
     asked.time_limit_s = request.allowed_planning_time;
     asked.seed = ++seed_;
     const std::string algorithm = algorithm_of(request);
@@ -110,7 +111,7 @@ class OwnSearch {
 
   /// A planner_id of Kinship; others, e.g. one of OMPL's configurations, are not for it.
   static std::string algorithm_of(const MotionPlanRequest& request) {
-    for (const char* known : {"birrt", "roadmap", "rrtconnect"})
+    for (const char* known : {"birrt", "cbirrt2", "roadmap", "rrtconnect"})
       if (request.planner_id == known)
         return known;
     return "";
@@ -230,7 +231,7 @@ class PlannerManager : public planning_interface::PlannerManager {
     if (other_ != nullptr)
       other_->getPlanningAlgorithms(algorithms);
     else
-      algorithms = {"birrt", "roadmap", "rrtconnect"};
+      algorithms = {"birrt", "cbirrt2", "roadmap", "rrtconnect"};
   }
 
   planning_interface::PlanningContextPtr getPlanningContext(

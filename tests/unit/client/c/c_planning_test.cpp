@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "client/c/kinship_planning.h"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::c_planning_test {
@@ -144,6 +149,42 @@ class CPlanning : public testing::Test {
   kinship_plan* plan_ = nullptr;
   kinship_plan_info info_{};
 };
+
+TEST_F(CPlanning, APathKeepsToItsRegion) {
+  kinship_region region{};
+  region.size = sizeof region;
+  const double upright[] = {0.2, 0.2, 4};
+  ASSERT_EQ(kinship_region_keep_orientation(upright, 0, &region), KINSHIP_OK);
+  EXPECT_EQ(region.upper[0], HUGE_VAL);
+  EXPECT_EQ(region.upper[5], HUGE_VAL);
+  EXPECT_NEAR(region.upper[3], 0.2 / std::numbers::sqrt2, 1e-12);
+  EXPECT_EQ(region.lower[4], -region.upper[4]);
+  region.T_task_region[3] = 1;  // the hand points down
+  region.T_region_end[6] = 1;
+  query_.region = &region;
+  plan();
+  ASSERT_EQ(info_.is_solved, 1) << info_.reason;
+  EXPECT_STREQ(info_.planner, "CBiRRT2");
+  const auto waypoints = path();
+  EXPECT_TRUE(misses_the_post(waypoints));
+  const kinematics::Chain chain =
+      kinematics::read_chain(test::model_description("panda")).value_or_throw();
+  for (std::size_t i = 0; i < info_.waypoint_count; ++i) {
+    const Eigen::Map<const Eigen::VectorXd> q(&waypoints[i * kDof], kDof);
+    EXPECT_LT(kinematics::T_base_transfer(chain, q).linear()(2, 2), -std::cos(0.2)) << i;
+  }
+  query_.algorithm = "rrtconnect";
+  plan();
+  EXPECT_EQ(info_.is_solved, 0);
+  EXPECT_NE(std::string(info_.reason).find("does not keep to a constraint"), std::string::npos);
+  query_.algorithm = nullptr;
+  region.lower[3] = 1;
+  EXPECT_EQ(kinship_plan_find(planner_, &query_, &plan_), KINSHIP_INVALID_INPUT);
+  EXPECT_EQ(std::string(kinship_error_text()).find("query->region: "), 0U) << kinship_error_text();
+  const double rolling[] = {0.2, 4, 0.2};
+  EXPECT_EQ(kinship_region_keep_orientation(rolling, 0, &region), KINSHIP_INVALID_INPUT);
+  EXPECT_NE(std::string(kinship_error_text()).find("bound no tilt"), std::string::npos);
+}
 
 TEST_F(CPlanning, APathLeadsAroundABoxAMeshAndVoxels) {
   std::vector<double> straight(start_.begin(), start_.end());

@@ -161,7 +161,7 @@ TEST_F(Options, OtherHostsAreServedWithSecurityOrIfInsecureIsSpeltOut) {
   EXPECT_NE(out_.str().find("[command line]\ninsecure = true\n"), std::string::npos);
 }
 
-TEST_F(Options, RosNodesAreServedOnTheirDomainAndNeverBesideCertificates) {
+TEST_F(Options, RosNodesAreServedOnTheirDomainAndBesideCertificatesWithTheirOwn) {
   EXPECT_FALSE(good({}).ros2);
   EXPECT_TRUE(good({"--ros2"}).ros2);
   EXPECT_EQ(good({"--ros2", "--ros2-domain", "7"}).ros2_domain, 7U);
@@ -172,7 +172,18 @@ TEST_F(Options, RosNodesAreServedOnTheirDomainAndNeverBesideCertificates) {
   const test::TemporaryDirectory directory;
   const std::string folder = directory.path().string();
   EXPECT_EQ(code({"--ros2", "--ros2-domain", "0", "--security", folder.c_str()}), kWrongUsage);
-  EXPECT_NE(err_.str().find("no certificate"), std::string::npos) << err_.str();
+  EXPECT_NE(err_.str().find("needs --ros2-enclave"), std::string::npos) << err_.str();
+  EXPECT_EQ(code({"--ros2", "--ros2-domain", "0", "--ros2-enclave", folder.c_str()}), kWrongUsage);
+  EXPECT_NE(err_.str().find("' secures ROS 2 alone"), std::string::npos) << err_.str();
+  EXPECT_EQ(code({"--ros2", "--ros2-domain", "0", "--ros2-enclave", folder.c_str(), "--security",
+                  folder.c_str()}),
+            kWrongUsage);
+  EXPECT_NE(err_.str().find("--ros2-domain 0 (or ROS_DOMAIN_ID) is --domain's"), std::string::npos)
+      << err_.str();
+  EXPECT_EQ(good({"--ros2", "--ros2-domain", "1", "--ros2-enclave", folder.c_str(), "--security",
+                  folder.c_str()})
+                .ros2_enclave,
+            folder);
   unsetenv("ROS_DOMAIN_ID");
 }
 

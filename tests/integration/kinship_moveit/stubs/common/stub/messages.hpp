@@ -54,9 +54,13 @@ struct PositionConstraint {
   BoundingVolume constraint_region;
 };
 struct OrientationConstraint {
+  enum : std::uint8_t { XYZ_EULER_ANGLES = 0, ROTATION_VECTOR = 1 };
   std_msgs::msg::Header header;
   geometry_msgs::msg::Quaternion orientation;
   std::string link_name;
+  double absolute_x_axis_tolerance = 0, absolute_y_axis_tolerance = 0,
+         absolute_z_axis_tolerance = 0;
+  std::uint8_t parameterization = XYZ_EULER_ANGLES;
 };
 struct VisibilityConstraint {};
 struct Constraints {
