@@ -1,4 +1,5 @@
 """Markdown as text."""
+import re
 import textwrap
 from collections.abc import Iterable, Sequence
 
@@ -33,10 +34,15 @@ def _width(columns: Sequence[Sequence[str]]) -> int:
 
 
 def wrapped(text: str) -> str:
-    """The text with its paragraphs broken into lines; tables and headings stay."""
-    return "".join(line if len(line) <= MAX_LINE or line.startswith(("|", "#")) else
-                   textwrap.fill(line, MAX_LINE, break_long_words=False, break_on_hyphens=False) + "\n"
+    """The text with its paragraphs and items of lists broken into lines, but no number; tables and headings stay."""
+    return "".join(line if len(line) <= MAX_LINE or line.startswith(("|", "#")) else _filled(line)
                    for line in text.splitlines(keepends=True))
+
+
+def _filled(line: str) -> str:
+    whole = re.sub(r"(?<=\d) (?=\d{3}\b)", "\0", line)
+    return textwrap.fill(whole, MAX_LINE, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False,
+                         break_on_hyphens=False).replace("\0", " ") + "\n"
 
 
 def p_text(p: float) -> str:
