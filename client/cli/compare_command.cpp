@@ -149,12 +149,14 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
 
 void print_comparison(const std::string& task, const std::vector<Transferability>& pairs,
                       std::ostream& out) {
-  out << "What the experience of each source is worth to each target on '" << task
-      << "': processor time of\nthe best guide that needs no experience (none, retreat) to that of "
-         "the best that uses it,\nby rehearsal of the source's recorded queries; above 1 it pays, "
-         "* "
-         "the best of a row. The\npath that once answered a query never guides that query again, "
-         "also on the diagonal,\nwhere a robot uses its own experience.\n\n";
+  out << "Processor time with the best guide that needs no experience (none, retreat) / with the "
+         "best that\nuses it, when TARGET (row) plans on '"
+      << task
+      << "' with the experience of SOURCE (column); above 1\nit pays, * the best of a row. "
+         "Predicted by "
+         "replay of SOURCE's recorded queries, leave-one-out:\nthe path that originally solved a "
+         "query "
+         "is excluded, also on the diagonal (own experience).\n\n";
   print_worths(pairs, out);
   out << '\n';
   print_remarks(pairs, out);

@@ -47,7 +47,7 @@ void add_query_or_id(CLI::App& command, DistributionQuery& query, const std::str
 void add_fetch(CLI::App& group, Session& session) {
   const auto options = std::make_shared<FetchOptions>();
   CLI::App* command = add_command(
-      group, "fetch", "A robot's distribution for a task, made if need be",
+      group, "fetch", "A robot's distribution for a task, computed if needed",
       "kinship distributions fetch --task box_to_shelf --robot ur10e --samples 1000 --csv\n"
       "  kinship distributions fetch --task box_to_shelf --robot ur10e --sources panda --since "
       "14d");
@@ -88,9 +88,7 @@ void add_distribution_plot(CLI::App& group, Session& session) {
   const auto query = std::make_shared<DistributionQuery>();
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command = add_command(
-      group, "plot",
-      "A page that shows a distribution over its robot, the poses that were lost, its joints and "
-      "its sources",
+      group, "plot", "A page of a distribution over its robot: lost poses, joints, sources",
       "kinship distributions plot --task box_to_shelf --robot ur10e --output ur10e.html\n"
       "  kinship distributions plot 3f9a0c --output - > ur10e.html");
   add_query_or_id(*command, *query, "id");
@@ -114,7 +112,7 @@ void add_distributions(CLI::App& app, Session& session) {
   add_distribution_plot(*group, session);
   add_one(*group, session,
           {"evict", "id", "Four digits of it or more",
-           "Forget a distribution: the next fetch has it made anew",
+           "Delete a distribution; the next fetch computes it again",
            "kinship distributions evict 3f9a0c"},
           evict_distribution);
 }

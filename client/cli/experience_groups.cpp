@@ -110,7 +110,7 @@ void add_experience(CLI::App& group, Session& session) {
   const auto options = std::make_shared<ExperienceOptions>();
   CLI::App* command =
       add_command(group, "experience",
-                  "The paths that planners are given of a task, as ways of the transfer frame",
+                  "A task's end-effector paths (of the transfer frame) as planners get them",
                   "kinship tasks experience box_to_shelf\n"
                   "  kinship tasks experience box_to_shelf --json --max-bytes 1048576");
   command->add_option("task", options->task, "Its name")->required()->type_name("TASK");

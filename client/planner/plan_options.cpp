@@ -39,9 +39,10 @@ Examples:
 A problem that cannot be planned (start or goal in collision, goal out of reach, wrong number of joints, a planner that
 cannot keep to a constraint) is answered with its reason, and the others are planned. proto/FORMATS.md has the formats.
 
-Exit codes: 0 every line was answered (unsolved is an answer); 1 failed or interrupted, the robot was refused (its label belongs to
-another robot), no problem fits it or could be read, or a report could not be kept; 2 wrong usage; 3 a file or folder does not exist, or
-no such task or distribution (--guidance require); 4 no server answered (--guidance require).)";
+Exit codes: 0 every problem was answered ("unsolved" and "goal out of reach" are answers); 1 failed or interrupted, the robot was
+refused (its label belongs to another robot), no problem could be read or fits the robot's joints, or a report could not be stored; 2
+wrong usage; 3 a file or folder does not exist, or no such task or distribution (--guidance require); 4 no server answered (--guidance
+require).)";
 
 std::vector<std::string> guide_words() {
   std::vector<std::string> words(Words<Guide>::kWords.begin(), Words<Guide>::kWords.end());
