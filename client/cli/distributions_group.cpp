@@ -17,9 +17,10 @@ std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query)
   CLI::Option* robot =
       command.add_option("--robot", query.robot, "Label, or beginning of its digest")
           ->type_name("ROBOT");
-  command.add_option("--placement", query.placement,
-                     "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: as the robot "
-                     "last reported the task)");
+  command.add_option(
+      "--placement", query.placement,
+      "Base pose in the task frame (placement), \"x y z qx qy qz qw\" (default: as the robot "
+      "last reported the task)");
   arguments::add_profile_options(command, query.profile);
   arguments::add_selection_options(command, query.selection);
   command

@@ -94,9 +94,10 @@ void add_import(CLI::App& group, Session& session) {
           ->needs(robot);
   planner_data->needs(task);
   command
-      ->add_option("--placement", options->placement,
-                   "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task frame "
-                   "is MoveIt's planning frame, for OMPL the base)")
+      ->add_option(
+          "--placement", options->placement,
+          "Base pose in the task frame (placement), \"x y z qx qy qz qw\" (default: the task frame "
+          "is MoveIt's planning frame, for OMPL the base)")
       ->needs(robot);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
