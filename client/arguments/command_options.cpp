@@ -45,7 +45,7 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
   app.add_option("--tip", arguments.tip_link, "tip link (required with a URDF file)");
   app.add_option("--label", arguments.label, "name for people (default: the folder's or file's)");
   add_numbers(app, "--transfer", arguments.transfer,
-              "transfer frame in the tip link, \"x y z qx qy qz qw\"");
+              "transfer frame (TCP, grasp frame) in the tip link, \"x y z qx qy qz qw\"");
   app.add_option("--axes", arguments.axes,
                  "coordinates that matter, of x,y,z,roll,pitch,yaw (default: all)");
   app.add_option("--hold", arguments.held,

@@ -50,7 +50,7 @@ void add_attempt_list(CLI::App& group, Session& session) {
 void add_problem_export(CLI::App& group, Session& session) {
   const auto options = std::make_shared<AttemptExportOptions>();
   CLI::App* command = add_command(
-      group, "export", "The problem of an attempt, which kinship-plan plans again",
+      group, "export", "The problem of an attempt, for kinship-plan to plan again",
       std::string("kinship attempts export ") + kExampleAttempt + " --output query.jsonl\n" +
           "  kinship-plan --problems query.jsonl --robot panda --guidance uniform");
   command->add_option("id", options->id, kAttemptId)->required()->type_name("ID");

@@ -149,12 +149,13 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
 
 void print_comparison(const std::string& task, const std::vector<Transferability>& pairs,
                       std::ostream& out) {
-  out << "What the experience of each source is worth to each target on '" << task
-      << "':\nprocessor time of the best guide that needs no experience (none, retreat) to\n"
-         "that of the best that uses it, by rehearsal of the source's recorded queries;\n"
-         "above 1 it pays, * the best of a row. The path that once answered a query never\n"
-         "guides that query again, also on the diagonal, where a robot uses its own\n"
-         "experience.\n\n";
+  out << "Processor time with the best guide that needs no experience (none, retreat) /\n"
+         "with the best that uses it, when TARGET (row) plans with the experience of\n"
+         "SOURCE (column); above 1 it pays, * the best of a row. Predicted by replay of\n"
+         "SOURCE's recorded queries of '"
+      << task
+      << "', leave-one-out: the path that\n"
+         "originally solved a query is excluded, also on the diagonal.\n\n";
   print_worths(pairs, out);
   out << '\n';
   print_remarks(pairs, out);

@@ -19,7 +19,7 @@ std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query)
           ->type_name("ROBOT");
   arguments::add_numbers(
       command, "--placement", query.placement,
-      "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: as the robot "
+      "Base pose in the task frame (placement), \"x y z qx qy qz qw\" (default: as the robot "
       "last reported the task)");
   arguments::add_profile_options(command, query.profile);
   arguments::add_selection_options(command, query.selection);
@@ -48,7 +48,7 @@ void add_query_or_id(CLI::App& command, DistributionQuery& query, const std::str
 void add_fetch(CLI::App& group, Session& session) {
   const auto options = std::make_shared<FetchOptions>();
   CLI::App* command = add_command(
-      group, "fetch", "A robot's distribution for a task, made if need be",
+      group, "fetch", "A robot's distribution for a task, computed if needed",
       "kinship distributions fetch --task box_to_shelf --robot ur10e --placement '0.2 -0.1 0 0 0 0 "
       "1' --samples 1000 --csv\n"
       "  kinship distributions fetch --task box_to_shelf --robot ur10e --sources panda --since "
@@ -91,9 +91,7 @@ void add_distribution_plot(CLI::App& group, Session& session) {
   const auto query = std::make_shared<DistributionQuery>();
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command = add_command(
-      group, "plot",
-      "A page that shows a distribution over its robot, the poses that were lost, its joints and "
-      "its sources",
+      group, "plot", "A page of a distribution over its robot: lost poses, joints, sources",
       "kinship distributions plot --task box_to_shelf --robot ur10e --placement '0.2 -0.1 0 0 0 0 "
       "1' --output ur10e.html\n"
       "  kinship distributions plot 3f9a0c --output - > ur10e.html");
@@ -118,7 +116,7 @@ void add_distributions(CLI::App& app, Session& session) {
   add_distribution_plot(*group, session);
   add_one(*group, session,
           {"evict", "id", "Four digits of it or more",
-           "Forget a distribution: the next fetch has it made anew",
+           "Delete a distribution; the next fetch computes it again",
            "kinship distributions evict 3f9a0c"},
           evict_distribution);
 }

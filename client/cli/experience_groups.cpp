@@ -102,7 +102,7 @@ void add_import(CLI::App& group, Session& session) {
   planner_data->needs(task);
   arguments::add_numbers(
       *command, "--placement", options->placement,
-      "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task frame "
+      "Base pose in the task frame (placement), \"x y z qx qy qz qw\" (default: the task frame "
       "is MoveIt's planning frame, for OMPL the base)")
       ->needs(robot);
   add_json(*command, session);
@@ -119,7 +119,7 @@ void add_experience(CLI::App& group, Session& session) {
   const auto options = std::make_shared<ExperienceOptions>();
   CLI::App* command =
       add_command(group, "experience",
-                  "The paths that planners are given of a task, as ways of the transfer frame",
+                  "A task's end-effector paths (of the transfer frame) as planners get them",
                   "kinship tasks experience box_to_shelf\n"
                   "  kinship tasks experience box_to_shelf --json --max-bytes 1048576");
   command->add_option("task", options->task, "Its name")->required()->type_name("TASK");

@@ -194,9 +194,8 @@ void add_outbox(CLI::App& app, Session& session) {
     if (group->get_subcommands().empty())
       session.command = [&session, folder] { return look(session, *folder); };
   });
-  CLI::App* list =
-      add_command(*group, "list", "Reports that wait, or are kept for somebody to look",
-                  "kinship outbox list\n  kinship outbox list --outbox FOLDER --json");
+  CLI::App* list = add_command(*group, "list", "Reports that are waiting, set aside or rejected",
+                               "kinship outbox list\n  kinship outbox list --outbox FOLDER --json");
   const auto list_folder = std::make_shared<std::filesystem::path>();
   list->add_option("--outbox", *list_folder, kOutboxHelp)->type_name("FOLDER");
   add_json(*list, session);

@@ -39,9 +39,10 @@ void add_problems(CLI::App& app, Session& session) {
                    "several documents one for each of the requests' file")
       ->check(CLI::ExistingFile)
       ->needs(requests);
-  arguments::add_numbers(*command, "--placement", options->placement,
-                         "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task "
-                         "frame is MoveIt's planning frame, that of the URDF's root link)");
+  arguments::add_numbers(
+      *command, "--placement", options->placement,
+      "Base pose in the task frame (placement), \"x y z qx qy qz qw\" (default: the task "
+      "frame is MoveIt's planning frame, that of the URDF's root link)");
   command
       ->add_option("--output", options->output,
                    "Problem file (default: standard output); meshes go into a folder beside it")

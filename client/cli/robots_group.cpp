@@ -86,7 +86,8 @@ void add_check(CLI::App& group, Session& session) {
 }
 
 constexpr const char* kPlacementHelp =
-    "Robot's base in the task frame, \"x y z qx qy qz qw\": poses are then in the task frame";
+    "Base pose in the task frame (placement), \"x y z qx qy qz qw\": poses are then in the task "
+    "frame";
 
 void add_forward(CLI::App& group, Session& session) {
   const auto options = std::make_shared<ForwardCommandOptions>();
@@ -182,7 +183,7 @@ void add_compare(CLI::App& group, Session& session) {
       ->type_name("ROBOT")
       ->delimiter(',');
   command->add_option("--placement", options->placements,
-                      "\"LABEL=x y z qx qy qz qw\": where a robot's base stands in the task frame "
+                      "\"LABEL=x y z qx qy qz qw\": base pose of a robot in the task frame "
                       "(default: as in its newest path of the task); may be repeated");
   const auto wait_s = std::make_shared<double>(120);
   command->add_option("--wait", *wait_s, "Seconds for one pair (default 120)")

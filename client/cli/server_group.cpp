@@ -135,7 +135,7 @@ void add_audit(CLI::App& app, Session& session) {
   const auto options = std::make_shared<AuditOptions>();
   const auto since = std::make_shared<std::string>();
   CLI::App* command =
-      add_command(app, "audit", "Who had what done, or was refused it: the audit log, newest first",
+      add_command(app, "audit", "The audit log: who changed what, or was refused; newest first",
                   "kinship audit --since 90m\n  kinship audit --who anna --json");
   command->add_option("--who", options->who, "Only of this name in a certificate");
   add_since(*command, *since);
@@ -151,14 +151,14 @@ void add_audit(CLI::App& app, Session& session) {
 }
 
 void add_console(CLI::App& app, Session& session) {
-  CLI::App* command = add_command(app, "console",
-                                  "The link to the server's live console, for a browser on this "
-                                  "machine; who has it may see what the server knows",
-                                  "kinship console\n  xdg-open \"$(kinship console)\"");
+  CLI::App* command = add_command(
+      app, "console", "The link to the server's live console, for a browser on this machine",
+      "kinship console\n  xdg-open \"$(kinship console)\"");
   const auto file = std::make_shared<std::filesystem::path>();
   command
       ->add_option("--file", *file,
-                   "File with the link; default: STORE.console of the store that the server names")
+                   "File with the link, which admits to all that the server knows; default: "
+                   "STORE.console of the store that the server names")
       ->type_name("FILE");
   on_run_with_server(*command, session, [&session, file](link::Client& server) {
     return print_console_link(server, *file, session.out, session.err);

@@ -40,9 +40,10 @@ Examples:
 A problem that cannot be planned (start or goal in collision, goal out of reach, wrong number of joints, a planner that
 cannot keep to a constraint) is answered with its reason, and the others are planned. proto/FORMATS.md has the formats.
 
-Exit codes: 0 every line was answered (unsolved is an answer); 1 failed or interrupted, the robot was refused (its label belongs to
-another robot), no problem fits it or could be read, or a report could not be kept; 2 wrong usage; 3 a file or folder does not exist, or
-no such task or distribution (--guidance require); 4 no server answered (--guidance require).)";
+Exit codes: 0 every problem was answered ("unsolved" and "goal out of reach" are answers); 1 failed or interrupted, the robot was
+refused (its label belongs to another robot), no problem could be read or fits the robot's joints, or a report could not be stored; 2
+wrong usage; 3 a file or folder does not exist, or no such task or distribution (--guidance require); 4 no server answered (--guidance
+require).)";
 
 std::vector<std::string> guide_words() {
   std::vector<std::string> words(Words<Guide>::kWords.begin(), Words<Guide>::kWords.end());
@@ -154,26 +155,28 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   arguments::add_selection_options(app, raw.selection);
   app.add_option(
          "--share", raw.guided_fraction,
-         "share of guided samples in a guided query; the server's if missing; 0: all uniform")
+         "sampling bias: share of guided samples in a guided query (default: the server's); 0: all "
+         "uniform")
       ->check(between(0.0, 1.0));
-  app.add_option("--control-share", raw.control_fraction,
-                 "part of the queries planned uniformly as control (default: chosen query by query "
-                 "with --guidance auto, 0 with always)")
+  app.add_option(
+         "--control-share", raw.control_fraction,
+         "fraction of the queries planned uniformly as control (default: chosen query by query "
+         "with --guidance auto, 0 with always)")
       ->check(between(0.0, 1.0));
   app.add_option(
          "--guide", raw.guide,
-         "what guides a query: recall (stored paths, tried whole), retreat (the hand backs "
-         "out first; needs neither --task nor a server), ways (stored ways of the hand, moved onto "
-         "it), mixture (samples of the distribution), any of them joined by + in this order, or "
-         "none; auto: what the server found best by planning "
-         "recorded queries again, else all "
+         "what guides a query: recall (stored paths, tried whole), retreat (the end effector backs "
+         "out of the goal first; needs neither --task nor a server), ways (stored end-effector "
+         "paths, moved onto the query), mixture (samples of the Gaussian mixture), any of them "
+         "joined by + in this order, or none; auto: what the server's rehearsal found best, else "
+         "all "
          "(default: auto, and mixture with a profile that begins with paper)")
       ->check(CLI::IsMember(guide_words()));
   app.add_flag(
       "--rehearsed", options.rehearsed,
       "wait for the server's rehearsal too, which takes seconds to minutes, once per robot, "
       "task and placement");
-  app.add_option("--wait", raw.wait_s, "seconds to wait for a distribution that is being made")
+  app.add_option("--wait", raw.wait_s, "seconds to wait for a distribution that is being computed")
       ->check(between(0.0, 3600.0))
       ->capture_default_str();
 }

@@ -121,21 +121,22 @@ int renew_authority(SecurityFolder& folder, const SecureOptions& options,
   const std::chrono::days days(options.days);
   if (options.leaked) {
     const auto before = folder.replace_authority(days, now);
-    out << "the new authority is the only one; what the server had is in " << before.string()
-        << "\n1. kinshipd secure renew NAME for each client whose state says 'previous authority' "
-           "in "
-           "kinshipd secure list, and bring the credentials to its machine"
-           "\n2. start the server anew, and each client: what they have now is refused from then "
-           "on\n";
+    out << "the new authority is the only one; the server's previous credentials are in "
+        << before.string()
+        << "\n1. kinshipd secure renew NAME for each client whose state is 'previous authority' in "
+           "kinshipd secure list, and copy the credentials to its machine"
+           "\n2. restart the server and each client: their previous credentials are refused from "
+           "then on\n";
     return kDone;
   }
   const auto before = folder.renew_authority(days, now);
-  out << "a second authority issues from now on; what the server had is in " << before.string()
-      << "\n1. start the server anew: it trusts both then"
-         "\n2. kinshipd secure renew NAME for each client whose state says 'previous authority' in "
+  out << "a second authority issues from now on; the server's previous credentials are in "
+      << before.string()
+      << "\n1. restart the server: it then trusts both"
+         "\n2. kinshipd secure renew NAME for each client whose state is 'previous authority' in "
          "kinshipd secure list"
-         "\n3. kinshipd secure retire-authority, and start the server anew"
-         "\n4. the same clients once more: until then they still trust the previous authority\n";
+         "\n3. kinshipd secure retire-authority, and restart the server"
+         "\n4. renew the same clients again: until then they still trust the previous authority\n";
   return kDone;
 }
 
@@ -144,17 +145,17 @@ int retire_authority(SecurityFolder& folder, const SecureOptions& options,
   if (const auto names = folder.clients_of_previous_authority(now);
       !names.empty() && !options.force) {
     err << "kinshipd: retire-authority would shut out " << names.size()
-        << " clients: " << joined(names) << "; renew or revoke them first, or say --force\n";
+        << " clients: " << joined(names) << "; renew or revoke them first, or use --force\n";
     return kFailed;
   }
   const auto key = folder.retire_authority(std::chrono::days(options.days), now);
-  out << "the newer authority is the only one; start the server anew\n";
+  out << "the newer authority is the only one; restart the server\n";
   if (!key.empty())
     out << "the key of the previous one is " << key.string()
-        << ": the server refuses what it signs from then on\n";
+        << ": after the restart the server refuses what it signs\n";
   if (const auto names = folder.clients_that_trust_retired(now); !names.empty())
     out << "kinshipd secure renew once more for " << joined(names)
-        << ": until they have those credentials, they take who has that key for the server\n";
+        << ": until they have the new files, anyone with that key can pose as the server to them\n";
   return kDone;
 }
 

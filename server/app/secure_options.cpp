@@ -173,8 +173,8 @@ void add_authority_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen)
             "Others know the key, or it is lost: the new authority alone is trusted; clients are "
             "shut out until they have new credentials")
       .example(
-          "kinshipd secure renew-authority --security DIR     then: start the server anew,\n"
-          "  renew each client, retire-authority, start the server anew, renew each client again");
+          "kinshipd secure renew-authority --security DIR     then: restart the server,\n"
+          "  renew each client, retire-authority, restart the server, renew each client again");
   SecureCommand(secure, chosen, "retire-authority", SecureVerb::RetireAuthority,
                 "Trust the newer authority only, once every client has its credentials")
       .folder()

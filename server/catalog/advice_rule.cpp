@@ -60,10 +60,10 @@ Advice advise(const store::AttemptTotals& totals, JudgedAttempts judged, double 
   advice.control = evidence_of(totals.control);
   advice.recent = std::move(judged.attempts);
   if (std::min(judged.guided, judged.control) < kMinAttempts) {
-    advice.evidence = std::to_string(judged.guided) + " guided and " +
-                      std::to_string(judged.control) +
-                      " control attempts with this profile and these engines, compared from " +
-                      std::to_string(kMinAttempts) + " of each on: share of the profile";
+    const std::string needed = std::to_string(kMinAttempts);
+    advice.evidence = "default; a measured one needs " + needed + " guided and " + needed +
+                      " control attempts with this profile and these engines, there are " +
+                      std::to_string(judged.guided) + " and " + std::to_string(judged.control);
     return advice;
   }
   const evidence::CostRatio ratio = evidence::compare_costs(advice.recent);

@@ -1,5 +1,10 @@
 """The report of tests/bench/run.py as text, as Markdown and as a page of its own."""
 import html as markup
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "client" / "experiments"))
+from analysis.markdown import wrapped  # noqa: E402: after the path
 
 
 def number(value):
@@ -66,9 +71,9 @@ def alone(bench):
     return f". Without a reference: {bench['alone'] or 'not said'}."
 
 
-INTRODUCTION = ("Medians, and least to greatest where there were several runs; a note is of the last run. References were "
-                "measured in the same runs. What other work the machine did shows in the load: the runs themselves bring "
-                "it to 1 or 2.")
+INTRODUCTION = ("Each figure is a median, with least and greatest where there were several runs, then its reference, measured in the "
+                "same runs, their ratio (value / reference), and the budget. A note is of the last run. Other work of the machine "
+                "shows in the load: the runs themselves bring it to 1 or 2.")
 
 
 #: What a reader wants first: benchmark and figure.
@@ -106,23 +111,22 @@ def faults(document):
         for figure in bench["figures"] if "reference" not in figure and not bench["alone"]]
 
 
-def table(headings, rows):
-    lines = ["| " + " | ".join(headings) + " |", "|---" * len(headings) + "|"]
-    return lines + ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+def item(figure, title=""):
+    """The figure as an item of a list: value; reference; their ratio; budget and verdict. Note."""
+    name, value, reference, ratio, limit, kept, note = columns(figure)
+    told = [value, reference, f"ratio {ratio}" if ratio else "", f"{limit}: {kept}" if kept else limit]
+    return f"- {title}{name}: " + "; ".join(text for text in told if text) + (f". {note}" if note else "") + "\n"
 
 
 def markdown(document):
-    lines = ["# What was measured", "", "Made by `deploy/bench`; do not edit.", ""]
-    lines += [f"- {line}" for line in machine(document)]
-    lines += ["", *table(["Of", *HEADINGS[:-1]], [[title, *columns(figure)[:-1]] for title, figure in first(document)])]
-    lines += ["", INTRODUCTION]
+    """Lists: names, references and notes are longer than the columns of a table may be."""
+    text = "# What was measured\n\nMade by `deploy/bench`; do not edit.\n\n"
+    text += "".join(f"- {line}\n" for line in machine(document)) + f"\n{INTRODUCTION}\n\n## Summary\n\n"
+    text += "".join(item(figure | {"note": ""}, f"{title}, ") for title, figure in first(document))
     for bench in document["benches"]:
-        lines += ["", f"## {bench['title']}", "", f"`deploy/bench {bench['bench']}`: {state(bench)}{alone(bench)}", ""]
-        if "failure" in bench:
-            lines.append(f"FAILED: {bench['failure']}")
-            continue
-        lines += table(HEADINGS, [columns(figure) for figure in bench["figures"]])
-    return "\n".join(lines) + "\n"
+        text += f"\n## {bench['title']}\n\n`deploy/bench {bench['bench']}`: {state(bench)}{alone(bench)}\n\n"
+        text += f"FAILED: {bench['failure']}\n" if "failure" in bench else "".join(map(item, bench["figures"]))
+    return wrapped(text)
 
 
 STYLE = """

@@ -10,7 +10,7 @@ from .study_folder import StudyFolder
 
 LEAST_CHECKS = 1000  # of uniform planning in the mean: where it costs less there is nothing to save
 _EXPERIENCE = ("own", "another robot's")
-_HEAD = ["kind", "<experience", "pairs", "uniform checks", "ratio of means", "of medians", f"of {tables.TAIL_HEAD}",
+_HEAD = ["kind", "<experience", "pairs", "uniform", "ratio of means", "of medians", f"of {tables.TAIL_HEAD}",
          "of times", "least", "least tail", "gated"]
 
 
@@ -39,10 +39,10 @@ def family_text(kinds: Sequence[StudyFolder], family: str) -> str:
                 rows.append(_row(kind.study["study"].removeprefix(family + "_"), experience, chosen))
             counted[experience] += [pair for pair in chosen if pair.uniform.checks.mean() > LEAST_CHECKS]
     rows += [_row("all", experience, chosen) for experience, chosen in counted.items() if chosen]
-    return (f"# Family {family}\n\nMade by `client/experiments/analyse.py`; not to be edited. Ratios are uniform to "
-            "guided, geometric means over pairs of robots; *least* is the least ratio of means among them, *least tail* "
-            f"that of {tables.TAIL_HEAD} quantiles. *all*: over all kinds, those pairs whose uniform mean is above "
-            f"{LEAST_CHECKS} checks.\n\n" + markdown.table(_HEAD, rows))
+    return markdown.wrapped(f"# Family {family}\n\nMade by `client/experiments/analyse.py`; not to be edited. Ratios are uniform to "
+                            "guided, geometric means over pairs of robots; *uniform*: checks; *least*: the least ratio of means among them, *least tail* "
+                            f"that of {tables.TAIL_HEAD} quantiles. *all*: over all kinds, those pairs whose uniform mean is above "
+                            f"{LEAST_CHECKS} checks.\n\n" + markdown.table(_HEAD, rows))
 
 
 def _row(kind: str, experience: str, pairs: Sequence[Comparison]) -> list[str]:

@@ -43,8 +43,8 @@ def results_text(study: StudyFolder) -> str:
              "queries that took more than twice the checks of the uniform query of the same instance and seed, and how "
              "many guided queries the gate sent to uniform planning (older rows do not say).\n\n")
     text += markdown.table(tables.PAIR_HEAD, tables.pair_rows(pairs)) + tables.significance_text(pairs)
-    text += ("The paths of the queries that both solved: mean, median of their length in joint units, of the hand's, and of their "
-             "least clearance (older rows tell the first alone).\n\n")
+    text += ("The paths of the queries that both solved: mean and median of their length in joint units, of the end effector's (the "
+             "hand's) in m, and of their least clearance in mm (older rows have the first only).\n\n")
     text += markdown.table(tables.PATH_HEAD, tables.path_rows(pairs))
     text += "For each robot the other one whose experience helped least and most, and what the transfer left of it:\n\n"
     text += tables.loss_table(study, pairs, distributions)
@@ -58,7 +58,7 @@ def results_text(study: StudyFolder) -> str:
     text += tables.distribution_table(study, distributions)
     text += (f"`clouds.png`, written beside this file, shows the transfer frame of samples and the arm in {POSTURES} of "
              "them, in the scene of the first test instance.\n")
-    return text
+    return markdown.wrapped(text)
 
 
 def _protocol_text(study: StudyFolder, cells: Cells) -> str:

@@ -111,9 +111,9 @@ def _paper_mean(study: StudyFolder, column: str, own: bool | None) -> str:
 
 
 PAIR_HEAD = ["robot", "<experience of",
-             "uniform: mean", "median", TAIL_HEAD, "guided: mean", "median", TAIL_HEAD,
+             "uniform mean", "uniform median", f"uniform {TAIL_HEAD}", "guided mean", "guided median", f"guided {TAIL_HEAD}",
              "ratio of means", "of medians", f"of {TAIL_HEAD}", "of times", "> 2 x", "gated", "p, checks",
-             "p, time", "solved uniform", "guided", "p, solved"]
+             "p, time", "solved uniform", "solved guided", "p, solved"]
 
 
 def pair_rows(pairs: Iterable[Comparison]) -> list[list[str]]:
@@ -131,8 +131,8 @@ def pair_rows(pairs: Iterable[Comparison]) -> list[list[str]]:
     return rows
 
 
-PATH_HEAD = ["robot", "<experience of", "paths", "length: uniform", "guided", "hand's, m: uniform", "guided",
-             "least clearance, mm: uniform", "guided"]
+PATH_HEAD = ["robot", "<experience of", "paths", "length, uniform", "length, guided", "hand's, uniform", "hand's, guided",
+             "clearance, uniform", "clearance, guided"]
 
 
 def path_rows(pairs: Iterable[Comparison]) -> list[list[str]]:

@@ -185,6 +185,7 @@ def transferability_text(pairs: Sequence[Pair], pooled: PooledGains) -> str:
     text += "## Choosing a source\n\nWhat a target gains, as a part of what the best single source gives; means over targets.\n\n"
     text += choice_text(pairs, pooled)
     text += "## Every pair\n\n"
-    return text + markdown.table(["Study", "<target", "<source", "gain", "predicted"],
-                                 [[pair.study, pair.target, pair.source, f"{pair.gain:.2f}",
-                                   f"{pair.candidates[REHEARSAL]:.2f}"] for pair in pairs])
+    text += markdown.table(["Study", "<target", "<source", "gain", "predicted"],
+                           [[pair.study, pair.target, pair.source, f"{pair.gain:.2f}", f"{pair.candidates[REHEARSAL]:.2f}"]
+                            for pair in pairs])
+    return markdown.wrapped(text)

@@ -48,8 +48,8 @@ TEST(AdviceRule, WithoutAttemptsTheProfileDecides) {
   EXPECT_TRUE(advice.recent.empty());
   EXPECT_EQ(
       advice.evidence,
-      "0 guided and 0 control attempts with this profile and these engines, compared from 10 of "
-      "each on: share of the profile");
+      "default; a measured one needs 10 guided and 10 control attempts with this profile and these "
+      "engines, there are 0 and 0");
 }
 
 TEST(AdviceRule, NineAttemptsOfAnArmDecideNothingYet) {

@@ -21,7 +21,7 @@ EXPERIMENTS = HERE.parents[4] / "client" / "experiments"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(EXPERIMENTS))
 
-from analysis import clouds, family, report, statistics, tables, transferability  # noqa: E402: after the path
+from analysis import clouds, family, markdown, report, statistics, tables, transferability  # noqa: E402: after the path
 from analysis.study_folder import Cell, StudyFolder  # noqa: E402
 
 
@@ -179,6 +179,18 @@ class TestFiles(CopiedStudy):
         pair = statistics.compare(cells["planar_5r_a", "uniform"], cells["planar_5r_a", "panda"])
         self.assertEqual(tables.gated_text([pair]), "–")
 
+    def test_a_wide_table_becomes_several_with_the_same_keys(self) -> None:
+        head = ["robot", "<of", *(f"{index:030}" for index in range(5))]
+        text = markdown.table(head, [["arm", "panda", *"12345"], ["bow", "all", *"67890"]])
+        self.assertLessEqual(max(map(len, text.splitlines())), markdown.MAX_LINE)
+        rows = [line for line in text.splitlines() if line.startswith("| arm | panda | ")]
+        self.assertEqual("".join(row.removeprefix("| arm | panda") for row in rows), " | 1 | 2 | 3 | | 4 | 5 |")
+        self.assertEqual(text.count("| --- | --- | ---: |"), 2)
+
+    def test_paragraphs_are_wrapped_and_tables_are_not(self) -> None:
+        text = markdown.wrapped("# " + "head " * 40 + "\n\n" + "word " * 40 + "\n\n| " + "cell " * 40 + "|\n")
+        self.assertEqual([len(line) > markdown.MAX_LINE for line in text.splitlines()], [True, False, False, False, False, True])
+
     def test_a_damaged_file_is_named(self) -> None:
         twin = self.folder / "test.jsonl.zst"
         content = bytearray(twin.read_bytes())
@@ -213,7 +225,7 @@ class TestProgram(CopiedStudy):
         study = json.loads(description.read_text())
         description.write_text(json.dumps(study | {"learning_instances": 20}))
         planned = len(next(iter(StudyFolder(self.folder).cells("test.jsonl").values())).checks)
-        text = report.results_text(StudyFolder(self.folder))
+        text = " ".join(report.results_text(StudyFolder(self.folder)).split())
         self.assertNotEqual(planned, 50)
         self.assertIn("20 learning instances per robot", text)
         self.assertIn(f"{planned} test instances, ", text)
@@ -247,7 +259,9 @@ class TestProgram(CopiedStudy):
         (self.folder / "test.jsonl").write_text("".join(
             json.dumps(row | ({"hand_length": 1.5, "clearance": 0.02} if row["solved"] else {"hand_length": None, "clearance": None})) + "\n"
             for row in rows))
-        self.assertIn(" | 1.50, 1.50 | 1.50, 1.50 | 20.0, 20.0 | 20.0, 20.0 |\n", report.results_text(StudyFolder(self.folder)))
+        text = report.results_text(StudyFolder(self.folder))
+        self.assertIn(" | 1.50, 1.50 | 1.50, 1.50 |\n", text)
+        self.assertIn(" | 20.0, 20.0 | 20.0, 20.0 |\n", text)
 
     def test_calibration(self) -> None:
         text = self.analyse(str(self.folder), "--calibration").stdout

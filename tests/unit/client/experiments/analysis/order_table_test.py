@@ -31,9 +31,11 @@ ROWS = [row(query, 11, 10, "uniform") for query in range(10)] + [row(query, 2, 1
 class OrderTable(unittest.TestCase):
     def test_a_row_tells_all_of_an_order(self):
         text = order_table.order_table(order_table.orders_of(ROWS))
-        self.assertIn("\n| box, arm, seed 3 | 20 / 20 | 0.80 | 1.10 | 0.80 | 18.5 | 8 / 10 | 11 / 10 | 12 / 10 | 16 | 0.50 | 1.9 | "
-                      "10.50 (10.50) / 21.00 (21.00) | 5.25 (5.25) / 10.50 (10.50) | 1.8 (1.0) / 0.9 (0.5) | "
-                      "10 uniform, 8 recalled, 1 ways, 1 control |\n", text)
+        rows = [line.removeprefix("| box, arm, seed 3 ") for line in text.splitlines() if line.startswith("| box, arm, seed 3 ")]
+        self.assertEqual("".join(rows).replace(" || ", " | "),
+                         "| 20 / 20 | 0.80 | 1.10 | 0.80 | 18.5 | 8 / 10 | 11 / 10 | 12 / 10 | 16 | 0.50 | 1.9 | "
+                         "10.50 (10.50) / 21.00 (21.00) | 5.25 (5.25) / 10.50 (10.50) | 1.8 (1.0) / 0.9 (0.5) | "
+                         "10 uniform, 8 recalled, 1 ways, 1 control |")
 
     def test_paths_count_where_both_solved_and_are_nothing_where_rows_are_older(self):
         rows = [row(0, 1, 2, "guided"), row(4, 1, 2, "guided"), row(20, 1, 2, "guided")]
