@@ -10,7 +10,6 @@
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/tables/robots.hpp"
-#include "server/store/tables/settings.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -19,12 +18,10 @@
 namespace kinship::store {
 namespace {
 
-/// The setting of a removed task: the attempts that it had then. Later ones bring it back.
-constexpr std::string_view kRemovedTask = "removed_task:";
-constexpr std::string_view kNotRemoved =
-    "NOT EXISTS (SELECT 1 FROM setting WHERE setting.key = 'removed_task:' || task.name"
-    " AND setting.value = CAST((SELECT coalesce(sum(attempts), 0) FROM experience"
-    " WHERE experience.task_id = task.id) AS text))";
+/// Not removed, or with attempts that came since.
+constexpr std::string_view kIsListed =
+    "(task.removed_attempts IS NULL OR task.removed_attempts < (SELECT coalesce(sum(attempts), 0)"
+    " FROM experience WHERE experience.task_id = task.id))";
 
 /// Deletes the distributions of a task. \return their ids.
 std::vector<Digest> delete_distributions_of(Session& session, std::int64_t task_id) {
@@ -66,7 +63,7 @@ std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
 Page<TaskSummary> read_tasks(Session& session, const std::string& which,
                              std::span<const Parameter> parameters, std::int64_t limit) {
   const std::string intact =
-      session.is_intact("task") + " AND " + std::string(kNotRemoved) + " AND " + which;
+      session.is_intact("task") + " AND " + std::string(kIsListed) + " AND " + which;
   auto robots = robots_of_tasks(session, intact, parameters);
   return read_page<TaskSummary>(
       session.query_with("SELECT id, name FROM task WHERE " + intact, parameters), limit,
@@ -134,8 +131,8 @@ RemovedTask end_task_removal(Session& session, std::int64_t task_id, TaskRemoval
                              const AuditEntry* audit) {
   RemovedTask removed{std::move(removal), delete_distributions_of(session, task_id)};
   removed.removal.distributions = removed.distributions.size();
-  write_setting(session, std::string(kRemovedTask) + removed.removal.task,
-                std::to_string(removed.removal.attempts));
+  session.query("UPDATE task SET removed_attempts = $1 WHERE id = $2", removed.removal.attempts,
+                task_id);
   note_act(session, audit, AuditOutcome::Done, {}, describe_removal(removed.removal));
   return removed;
 }

@@ -65,6 +65,28 @@ TEST_P(StoreConformance, ARemovedTaskIsOnRecordAndListedAgainWithItsNextAttempt)
   EXPECT_EQ(store_->remove_task("nothing").error().code, ErrorCode::NotFound);
 }
 
+TEST_P(StoreConformance, ThatATaskWasRemovedHidesNoOtherOfItsName) {
+  std::uint64_t number = 0;
+  const auto report_more = [&](const std::string& task, int count) {
+    for (int i = 0; i < count; ++i)
+      report(test::make_attempt(panda_.digest, task, ++number));
+  };
+  report_more("lod", 3);
+  ASSERT_TRUE(store_->remove_task("lod"));
+  report_more("lod", 1);
+  ASSERT_TRUE(store_->rename_task("lod", "load"));
+  report_more("lod", 3);
+  ASSERT_TRUE(store_->find_task("lod")) << "as many attempts as the removed one had";
+  ASSERT_TRUE(store_->rename_task("lod", "lode"));
+  report_more("table", 3);
+  ASSERT_TRUE(store_->rename_task("table", "lod"));
+  EXPECT_TRUE(store_->find_task("lod"));
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 3U);
+  ASSERT_TRUE(store_->remove_task("lode"));
+  EXPECT_FALSE(store_->find_task("lode"));
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 2U);
+}
+
 TEST_P(StoreConformance, ReportsAreFoundByTheBeginningOfTheirUuid) {
   test::report(*store_, {solved(1), solved(2), solved(3)});
   const Uuid one = solved(1).report_uuid, three = solved(3).report_uuid;
