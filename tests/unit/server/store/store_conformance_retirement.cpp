@@ -45,6 +45,21 @@ TEST_P(StoreConformance, ARenamedTaskKeepsEverythingButItsName) {
   EXPECT_EQ(store_->find_task("shelf")->paths, 1U);
 }
 
+TEST_P(StoreConformance, AKnownReportIsOfTheTaskOfItsAttemptWhateverItNames) {
+  report(solved(1));
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));
+  // In one batch with a report that begins a task of the old name.
+  const std::vector<Receipt> receipts = test::report(*store_, {solved(1), solved(2), solved(1)});
+  EXPECT_EQ(receipts[0].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(receipts[1].status, ReceiptStatus::Stored);
+  EXPECT_EQ(receipts[2].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->find_task("rack")->attempts, 1U);
+  EXPECT_EQ(store_->find_task("shelf")->attempts, 1U);
+  ASSERT_TRUE(store_->rename_task("shelf", "table"));
+  EXPECT_EQ(test::report(*store_, {solved(2), solved(1)})[0].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 2U);
+}
+
 TEST_P(StoreConformance, ARemovedTaskIsOnRecordAndListedAgainWithItsNextAttempt) {
   test::report(*store_, {solved(1), solved(2)});
   report(test::make_attempt(panda_.digest, "table", 3));

@@ -41,6 +41,19 @@ TEST_F(StoreDamage, AResentReportWhosePathIsDamagedIsStoredAnew) {
   EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
 }
 
+TEST_F(StoreDamage, AResentReportMendsThePathInTheTaskThatWasRenamedSince) {
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));
+  edit(kFlipWaypoints);
+  open();
+  EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Stored);
+  EXPECT_FALSE(store_->find_task("shelf"));
+  EXPECT_EQ(store_->read_paths(robot_.digest, "rack", {.limit = 10}).size(), 3U);
+  EXPECT_EQ(store_->find_attempt(attempt(2).report_uuid)->task, "rack");
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
 TEST_F(StoreDamage, TheSameContentAnewIsStoredAndServesTheFirstReportToo) {
   test::report(*store_, {attempt(1), attempt(2), attempt(3)});
   edit(kFlipWaypoints);
