@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/path_content.hpp"
@@ -38,6 +39,10 @@ constexpr std::string_view kMakeTasks =
     "INSERT INTO task (name) SELECT name FROM unnest($1) AS wanted (name)"
     " WHERE NOT EXISTS (SELECT 1 FROM task WHERE task.name = wanted.name)"
     " ORDER BY name COLLATE \"C\" ON CONFLICT (name) DO NOTHING";
+
+// Until the commit no name of these changes.
+constexpr std::string_view kLockTasks =
+    "SELECT 1 FROM task WHERE name = ANY($1) ORDER BY name FOR KEY SHARE";
 
 constexpr std::string_view kMakePairs =
     "INSERT INTO experience (task_id, robot_id) SELECT task.id, wanted.robot_id"
@@ -205,11 +210,23 @@ void take_reports(const Rows& rows, const Rows& paths, BatchState& state) {
   }
 }
 
+[[noreturn]] void refuse_renamed(const PairName& pair) {
+  constexpr const char* kSerializationFailure = "40001";
+  throw PostgresError(kSerializationFailure, "task '" + pair.second + "' was renamed meanwhile");
+}
+
+Pair& require_pair(BatchState& state, const PairName& name) {
+  const auto pair = state.pairs.find(name);
+  if (pair == state.pairs.end())
+    refuse_renamed(name);
+  return pair->second;
+}
+
 void take_contents(const Rows& rows, BatchState& state) {
   constexpr int kRobot = 8, kTask = 9, kContent = 10;
   for (const Row row : rows) {
-    Pair& pair = state.pairs.at(
-        {id_of<Digest>(row.column_blob(kRobot)), std::string(row.column_text(kTask))});
+    Pair& pair = require_pair(
+        state, {id_of<Digest>(row.column_blob(kRobot)), std::string(row.column_text(kTask))});
     SameContent& same = pair.contents[id_of<Digest>(row.column_blob(kContent))];
     if (has_right_path_crc(row))
       same.readable = row.column_integer(0);
@@ -220,7 +237,7 @@ void take_contents(const Rows& rows, BatchState& state) {
 
 void take_largest(const Rows& rows, BatchState& state) {
   for (const Row row : rows)
-    state.pairs.at({id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
+    require_pair(state, {id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
         .largest.insert({id_of<Digest>(row.column_blob(3)), row.column_integer(2),
                          crc_when_dropped(row.column_blob(4), row.column_blob(5),
                                           row.column_integer(6), row.column_integer(7))});
@@ -236,6 +253,7 @@ void read_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t
       attempts, [](const PreparedAttempt* each) { return each->path.has_value(); });
   std::vector<Request> requests = {
       {kMakeTasks, Parameters(pairs.new_tasks)},
+      {kLockTasks, Parameters(pairs.tasks)},
       {kMakePairs, Parameters(pairs.tasks, pairs.robots)},
       {kLockPairs, Parameters(pairs.tasks, pairs.robots)},
       // Later statements see all commits from before the locks were taken.
@@ -250,17 +268,19 @@ void read_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t
                                              static_cast<std::int64_t>(max_paths),
                                              static_cast<std::int64_t>(kMaxDroppedAtOnce))});
   const std::vector<Rows> rows = connection.query_all(requests);
-  take_pairs(rows[2], state);
-  take_reports(rows[3], rows[4], state);
-  for (const Row row : rows[5])
+  take_pairs(rows[3], state);
+  take_reports(rows[4], rows[5], state);
+  for (const PreparedAttempt* const each : attempts)
+    require_pair(state, pair_name(*each, state));
+  for (const Row row : rows[6])
     state.retired.insert(id_of<Uuid>(row.column_blob(0)));
-  take_contents(rows[6], state);
-  for (const Row row : rows[7])
-    state.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
+  take_contents(rows[7], state);
   for (const Row row : rows[8])
+    state.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
+  for (const Row row : rows[9])
     state.path_ids.push_back(row.column_integer(0));
   if (max_paths > 0)
-    take_largest(rows[9], state);
+    take_largest(rows[10], state);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 #include <memory>
 #include <set>
 
@@ -97,6 +98,25 @@ TEST_F(PostgresPresence, WhatBeganSoonerAndIsCommittedLaterIsTold) {
   changes = look();
   EXPECT_EQ(changes.robots, std::vector{arm_.digest});
   EXPECT_EQ(changes.experience.at(0).now.generation, 2U) << "told twice at worst";
+}
+
+TEST_F(PostgresPresence, ReportsAreStoredAlsoIfTheirTaskIsRenamedMeanwhile) {
+  report(1, "lod");
+  postgres::Connection slow{postgres::ConnectionString(url_)};
+  slow.query("BEGIN");
+  slow.query("INSERT INTO task (name) VALUES ('new')");
+  // Holds them up between the look for their tasks and that for their pairs.
+  auto receipts = std::async(std::launch::async, [&] {
+    return test::report(*one_, {test::make_attempt(robot_.digest, "lod", 2),
+                                test::make_attempt(robot_.digest, "new", 3)});
+  });
+  test::wait_until_true(url_, "SELECT count(*) = 1 FROM pg_locks WHERE NOT granted");
+  ASSERT_TRUE(other_->rename_task("lod", "load"));
+  slow.query("ROLLBACK");
+  for (const Receipt& receipt : receipts.get())
+    EXPECT_EQ(receipt.status, ReceiptStatus::Stored) << receipt.message;
+  EXPECT_EQ(one_->find_task("load")->paths, 1U);
+  EXPECT_EQ(one_->find_task("lod")->paths, 1U) << "named by a report after its renaming";
 }
 
 TEST_F(PostgresPresence, ACursorOfSomethingElseIsRefused) {
