@@ -156,7 +156,7 @@ AdminPage Administration::rename_task(const Call& call) {
     return page_of(no_task(parts_.store, task));
   const std::vector<Digest> gone =
       parts_.store.rename_task(task, name, &call.audit).value_or_throw();
-  forget_tasks({task, name}, gone);
+  drop_tasks({task, name}, gone);
   parts_.on_change(name, "task '" + task + "' is called '" + name + "' now");
   TaskSummary unread;  // another server may have renamed it on
   unread.task = name;
@@ -179,19 +179,19 @@ AdminPage Administration::remove_task(const Call& call) {
     return removed.error().code == ErrorCode::Unavailable ? page_of_unfinished(removed.error())
                                                           : page_of(removed.error());
   }
-  forget_tasks({task}, removed->distributions);
+  drop_tasks({task}, removed->distributions);
   parts_.on_change(task, "removed: " + std::to_string(removed->removal.paths) + " paths retired, " +
                              std::to_string(removed->removal.attempts) +
                              " attempts stay on record");
   return page_of(removed->removal);
 }
 
-void Administration::forget_tasks(std::initializer_list<std::string> tasks,
-                                  const std::vector<Digest>& distributions) {
+void Administration::drop_tasks(std::initializer_list<std::string> tasks,
+                                const std::vector<Digest>& distributions) {
   for (const Digest& distribution : distributions)
     parts_.guidance.forget_distribution(distribution);
   for (const std::string& task : tasks)
-    parts_.guidance.forget_task(task);
+    parts_.guidance.drop_task(task);
 }
 
 AdminPage Administration::rename_robot(const Call& call) {

@@ -242,6 +242,11 @@ void FetchService::forget_task(const std::string& task) {
   catalog_.forget(task);
 }
 
+void FetchService::drop_task(const std::string& task) {
+  forget_task(task);
+  rehearsals_.drop(task);
+}
+
 void FetchService::forget_robot(const Digest& robot) {
   catalog_.forget_robot(robot);
   advice_.forget(robot);

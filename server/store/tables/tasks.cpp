@@ -9,6 +9,7 @@
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
 #include "server/store/tables/pages.hpp"
+#include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
@@ -112,6 +113,8 @@ Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
                           ? "' exists: two tasks cannot become one"
                           : "' was removed, and its attempts stay on record under that name")};
   std::vector<Digest> gone = delete_distributions_of(session, *id);
+  for (const std::string_view either : {task, name})  // one of the new name would be of another task
+    delete_rehearsals_of(session, either);
   session.query("UPDATE task SET name = $1 WHERE id = $2", name, *id);
   note_act(session, audit, AuditOutcome::Done, "'" + std::string(task) + "'",
            "'" + std::string(name) + "'");
@@ -133,6 +136,9 @@ RemovedTask end_task_removal(Session& session, std::int64_t task_id, TaskRemoval
   removed.removal.distributions = removed.distributions.size();
   session.query("UPDATE task SET removed_attempts = $1 WHERE id = $2", removed.removal.attempts,
                 task_id);
+  for (const Row& task : session.query("SELECT name FROM task WHERE id = $1", task_id))
+    removed.removal.task = task.column_text(0);  // it may have been renamed meanwhile
+  delete_rehearsals_of(session, removed.removal.task);
   note_act(session, audit, AuditOutcome::Done, {}, describe_removal(removed.removal));
   return removed;
 }
