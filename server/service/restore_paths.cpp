@@ -89,6 +89,8 @@ void restore_path(store::Store& store, const Uuid& report, Restoration& restored
       return leave_out(restored.in_use, report, "another report has the same path, in use",
                        restored);
     case ReceiptStatus::TryAgain:
+      if (const std::optional<std::string> why = store.why_put_off(next))
+        return leave_out(restored.lost, report, *why, restored);
       throw Failure(ErrorCode::Unavailable,
                     "path " + report.text() + ": not stored now: " + receipt.message + "; " +
                         std::to_string(restored.paths) + " were restored; ask again for the rest");
