@@ -139,12 +139,15 @@ void Administration::restore_listed(const std::optional<Digest>& robot, const st
     cursor = page.next_cursor;
   } while (!cursor.empty());
   std::ranges::reverse(retired);  // the oldest first, as they came
-  for (const Uuid& report : retired) {
+  retired.erase(std::unique(retired.begin(), retired.end()), retired.end());
+  for (std::span<const Uuid> left = retired; !left.empty();) {
     if (parts_.stop.stop_requested())
       throw Failure(ErrorCode::Unavailable, "the server is stopping after " +
                                                 std::to_string(restored.paths) +
                                                 " paths were restored; ask again for the rest");
-    restore_paths(parts_.store, std::span(&report, 1), restored);
+    const std::size_t next = std::min(left.size(), kMaxAttemptsPerBatch);
+    restore_paths(parts_.store, left.first(next), restored);
+    left = left.subspan(next);
   }
 }
 

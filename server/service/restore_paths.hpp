@@ -13,7 +13,7 @@ namespace kinship::service {
 /// from that of the retired report, so that a repetition changes nothing. The copy counts as
 /// planned uniformly: an attempt is evidence once. Waits for the store.
 ///
-/// \param reports   as many as fit into memory, with their paths and scenes.
+/// \param reports   each once; every kMaxAttemptsPerBatch of them are stored at once.
 /// \param restored  in: so far; out: with these, of which each is restored or left out.
 /// \throws Failure(Unavailable) if the store takes none now; those before it are restored. One that it
 ///         does not take by itself, while it takes others, is left out.
