@@ -87,6 +87,18 @@ std::int64_t ensure_task(Session& session, std::string_view task) {
   throw Failure(ErrorCode::Storage, "task '" + std::string(task) + "': its row is damaged");
 }
 
+std::optional<std::int64_t> find_task(Session& session, std::string_view task) {
+  std::string find = "SELECT id FROM task WHERE name = $1 AND " + std::string(kIsListed);
+  const std::optional<std::int64_t> id =
+      session.find_integer(find + " AND " + session.is_intact("task"), task);
+  if (id)
+    return id;
+  session.require_absent("task", "name", Parameter(task));
+  if (session.find_integer(find, task))
+    throw Failure(ErrorCode::Storage, "task '" + std::string(task) + "': its row is damaged");
+  return std::nullopt;
+}
+
 Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
   return read_tasks(session, "name > $1 ORDER BY name LIMIT $2",

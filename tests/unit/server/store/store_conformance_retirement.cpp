@@ -220,6 +220,7 @@ TEST_P(StoreConformance, ReadsOnlyPathsThatArrivedSince) {
 }
 
 TEST_P(StoreConformance, AnEvictedDistributionIsGoneAndItsRevisionsGoOn) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   const Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   store_->put_distribution(distribution);
   store_->put_distribution(distribution);
@@ -237,6 +238,7 @@ TEST_P(StoreConformance, AnEvictedDistributionIsGoneAndItsRevisionsGoOn) {
 }
 
 TEST_P(StoreConformance, KeepsWhatAFitWasAskedForAndWhatItsSourcesGave) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   distribution.selection = {{panda_.digest, iiwa_.digest}, Weighting::Paths, 1'700'000'000'000};
   distribution.sources[0].relation = Relation::SameArm;

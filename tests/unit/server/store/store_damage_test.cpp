@@ -330,6 +330,7 @@ TEST_F(StoreDamage, ADamagedDigestOfARobotIsNotTakenForItsOwn) {
 }
 
 TEST_F(StoreDamage, AnIndexEntryThatLeadsToAnotherDistributionGivesNone) {
+  test::begin_task(*store_, robot_.digest, "shelf");
   const Distribution first = test::make_distribution(robot_.digest, "shelf", 1);
   const Distribution second = test::make_distribution(robot_.digest, "shelf", 2);
   store_->put_distribution(first);

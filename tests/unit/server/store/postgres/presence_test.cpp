@@ -146,6 +146,7 @@ TEST_F(PostgresPresence, OneServerAtATimeMayFitADistribution) {
 }
 
 TEST_F(PostgresPresence, TheRightOfAServerThatDiedIsFreeAndWhatItStoresAfterwardsIsNotTaken) {
+  report(1);
   const FitRight lost = one_->take_fit_right(distribution_.id).value();
   let_servers_die();
   const FitRight right = other_->take_fit_right(distribution_.id).value();
