@@ -221,6 +221,8 @@ void FetchService::take_changes(const store::StoreChanges& changes) {
       retired.insert(pair.task);
     known = pair.now.retired_generation;
   }
+  for (const std::string& task : changes.former_tasks)
+    drop_task(task);
   for (const std::string& task : retired)
     forget_task(task);
   for (const std::string& task : grown)

@@ -8,6 +8,7 @@
 
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
 #include "server/store/tables/pages.hpp"
 #include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
@@ -36,10 +37,6 @@ std::vector<Digest> delete_distributions_of(Session& session, std::int64_t task_
   for (const Digest& id : ids)
     static_cast<void>(delete_distribution(session, id));
   return ids;
-}
-
-Error no_such_task(std::string_view task) {
-  return {ErrorCode::NotFound, "no task '" + std::string(task) + "'"};
 }
 
 /// The robots of some tasks, without removed ones, by task.
@@ -114,20 +111,32 @@ std::optional<TaskSummary> summary_of_task(Session& session, std::string_view ta
 
 Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
                                         std::string_view name, const AuditEntry* audit) {
-  const std::string find = "SELECT id FROM task WHERE name = $1 AND " + session.is_intact("task");
-  const std::optional<std::int64_t> id = session.find_integer(find, task);
-  if (!id || !summary_of_task(session, task))
-    return no_such_task(task);
+  // Waits for reports that name it, which lock its row and then its pairs.
+  const std::optional<std::int64_t> id =
+      session.find_integer("SELECT id FROM task WHERE name = $1 AND " + std::string(kIsListed) +
+                               " AND " + session.is_intact("task") +
+                               std::string(session.dialect().for_update),
+                           task);
+  if (!id)
+    return Error{ErrorCode::NotFound, "no task '" + std::string(task) + "'"};
   if (session.find_integer("SELECT id FROM task WHERE name = $1", name))
     return Error{ErrorCode::Conflict,
                  "task '" + std::string(name) +
-                     (summary_of_task(session, name)
+                     (find_task(session, name)
                           ? "' exists: two tasks cannot become one"
                           : "' was removed, and its attempts stay on record under that name")};
+  lock_pairs_of_task(session, *id);
   std::vector<Digest> gone = delete_distributions_of(session, *id);
-  for (const std::string_view either : {task, name})  // one of the new name would be of another task
+  for (const std::string_view either : {task, name})  // one of the new name is of a former task
     delete_rehearsals_of(session, either);
   session.query("UPDATE task SET name = $1 WHERE id = $2", name, *id);
+  // What memories have of either name is of another task from now on.
+  session.query("UPDATE experience SET generation = generation + 1,"
+                " retired_generation = generation + 1" +
+                    std::string(session.dialect().mark_changed) + " WHERE task_id = $1",
+                *id);
+  if (!session.dialect().note_former_task.empty())
+    session.query(session.dialect().note_former_task, task);
   note_act(session, audit, AuditOutcome::Done, "'" + std::string(task) + "'",
            "'" + std::string(name) + "'");
   return gone;

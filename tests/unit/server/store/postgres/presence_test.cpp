@@ -119,6 +119,24 @@ TEST_F(PostgresPresence, ReportsAreStoredAlsoIfTheirTaskIsRenamedMeanwhile) {
   EXPECT_EQ(one_->find_task("lod")->paths, 1U) << "named by a report after its renaming";
 }
 
+TEST_F(PostgresPresence, ARenamedTaskIsToldUnderBothNames) {
+  report(1, "lod");
+  report(2, "table");
+  static_cast<void>(look());
+  static_cast<void>(look());
+  ASSERT_TRUE(one_->rename_task("lod", "load"));
+  StoreChanges changes = look();
+  EXPECT_EQ(changes.former_tasks, std::vector<std::string>{"lod"});
+  ASSERT_EQ(tasks_of(changes), std::set<std::string>{"load"});
+  EXPECT_EQ(changes.experience[0].now.generation, 2U);
+  EXPECT_EQ(changes.experience[0].now.retired_generation, 2U);
+  EXPECT_TRUE(look().former_tasks.empty());
+  ASSERT_TRUE(one_->rename_task("load", "lod"));
+  ASSERT_TRUE(one_->rename_task("lod", "load"));
+  changes = look();
+  EXPECT_EQ(changes.former_tasks.size(), 2U) << "a name may be given up again";
+}
+
 TEST_F(PostgresPresence, ACursorOfSomethingElseIsRefused) {
   for (const char* const cursor : {"1; DROP", "1", ".", "1.", ".1", "1.1.1", "1.-1"})
     EXPECT_THROW(static_cast<void>(other_->changes_since(cursor)), Failure) << cursor;
