@@ -38,6 +38,13 @@ bool has_role(const Caller& caller, AccessRole least) {
   return static_cast<int>(caller.role) >= static_cast<int>(least);
 }
 
+/// A change of a task reaches all its robots, one of a robot all its tasks.
+bool reaches_beyond(const Caller& caller, const VerbRule& rule) {
+  return rule.is(VerbRule::Changes) &&
+         ((rule.argument == VerbArgument::Task && !caller.robots.empty()) ||
+          (rule.argument == VerbArgument::Robot && !caller.tasks.empty()));
+}
+
 std::optional<Error> refusal_by_place(const Caller& caller, std::string_view act) {
   if (!caller.name.empty())
     return std::nullopt;
@@ -123,9 +130,7 @@ std::optional<Error> refusal_of(const Caller& caller, AdminVerb verb) {
     return refused(caller, rule.act, "needs role " + std::string(to_text(rule.least)));
   if (rule.is(VerbRule::OfAll) && is_narrowed(caller))
     return refused(caller, rule.act, "that is about all tasks and robots, " + scope_of(caller));
-  // Removing a robot reaches into all tasks, resetting a task to all robots.
-  if ((verb == AdminVerb::RemoveRobot && !caller.tasks.empty()) ||
-      (verb == AdminVerb::ResetTask && !caller.robots.empty()))
+  if (reaches_beyond(caller, rule))
     return refused(caller, rule.act, "that reaches beyond what it is for: " + scope_of(caller));
   if (rule.is(VerbRule::Changes) && verb != AdminVerb::CancelJob)
     return refusal_by_place(caller, rule.act);

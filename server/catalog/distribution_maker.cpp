@@ -78,7 +78,7 @@ Distribution DistributionMaker::keep(fitting::FitOutcome outcome,
     distribution.revision = parts_.distributions.put_distribution(distribution, right);
   } catch (const Failure& failure) {
     if (failure.code() == ErrorCode::NotFound || failure.code() == ErrorCode::Unavailable)
-      throw;  // its robot was removed meanwhile, or another server fits it
+      throw;  // its robot or task is gone since, or another server fits it
     distribution.revision = 0;
     distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
                            std::string(failure.what());

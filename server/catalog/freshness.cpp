@@ -74,7 +74,8 @@ bool is_retired(const Distribution& distribution,
         const auto now = std::find_if(
             experience.begin(), experience.end(),
             [&then](const store::ExperienceSummary& other) { return other.robot == then.robot; });
-        return now == experience.end() || then.generation < now->retired_generation;
+        return now == experience.end() || then.generation < now->retired_generation ||
+               then.generation > now->generation;
       });
 }
 

@@ -32,7 +32,8 @@ bool is_behind(const Distribution& distribution,
 
 /// Whether paths that it may have been made of were retired since: such a distribution is neither
 /// served nor kept.
-/// \param experience  all of the task's. A missing source counts as retired.
+/// \param experience  all of the task's. A missing source counts as retired, and so does one with a
+///                    smaller generation: it is of another task, to which the name was given.
 bool is_retired(const Distribution& distribution,
                 const std::vector<store::ExperienceSummary>& experience);
 

@@ -231,6 +231,16 @@ void RehearsalScheduler::forget(std::string_view task) {
     }
 }
 
+void RehearsalScheduler::drop(std::string_view task) {
+  forget(task);
+  const std::lock_guard lock(mutex_);
+  for (auto& [id, entry] : entries_)
+    if (entry.key.distribution.task == task) {
+      entry.known.reset();
+      entry.made_of = {};
+    }
+}
+
 SharedRehearsal RehearsalScheduler::find(const Digest& distribution) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(distribution);
@@ -425,11 +435,13 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, const Count
   entry.known = std::move(known);
 }
 
-/// Writes what was kept into the store.
+/// Writes what was kept into the store, unless paths that it may be made of were retired meanwhile.
 /// \param retired  of the task before its paths were read.
 void RehearsalScheduler::save(const Digest& id, std::uint64_t retired) {
   std::unique_lock lock(mutex_);
   const Entry& entry = entries_[id];
+  if (entry.is_lost)
+    return;
   const fitting::DistributionKey& key = entry.key.distribution;
   store::StoredRehearsal stored{.id = id,
                                 .robot = key.robot,

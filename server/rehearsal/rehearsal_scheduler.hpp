@@ -105,6 +105,7 @@ class RehearsalScheduler {
 
   void new_experience(std::string_view task);  ///< there are new paths
   void forget(std::string_view task);          ///< paths were retired
+  void drop(std::string_view task);            ///< it was renamed or removed: nothing known counts
 
   /// The known library of a robot and task, at this placement or the nearest one; null: none.
   /// Begins nothing.

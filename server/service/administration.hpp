@@ -140,8 +140,8 @@ class Administration {
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
   void forget_tasks_of(const Digest& robot);
-  void forget_tasks(std::initializer_list<std::string> tasks,
-                    const std::vector<Digest>& distributions);
+  void drop_tasks(std::initializer_list<std::string> tasks,
+                  const std::vector<Digest>& distributions);
   void for_each_task(const std::function<void(const TaskSummary&)>& take) const;
   void name_solver(RobotSummary& summary);
   AdminPage retired(Result<Retirement> retirement, const std::string& what);

@@ -145,12 +145,15 @@ void Administration::restore_listed(const std::optional<Digest>& robot, const st
   if (retired.empty() && !task.empty() && !parts_.store.find_task(task))
     throw Failure(no_task(parts_.store, task));
   std::ranges::reverse(retired);  // the oldest first, as they came
-  for (const Uuid& report : retired) {
+  retired.erase(std::unique(retired.begin(), retired.end()), retired.end());
+  for (std::span<const Uuid> left = retired; !left.empty();) {
     if (parts_.stop.stop_requested())
       throw Failure(ErrorCode::Unavailable, "the server is stopping after " +
                                                 std::to_string(restored.paths) +
                                                 " paths were restored; ask again for the rest");
-    restore_paths(parts_.store, std::span(&report, 1), restored);
+    const std::size_t next = std::min(left.size(), kMaxAttemptsPerBatch);
+    restore_paths(parts_.store, left.first(next), restored);
+    left = left.subspan(next);
   }
 }
 
@@ -162,7 +165,7 @@ AdminPage Administration::rename_task(const Call& call) {
     return page_of(no_task(parts_.store, task));
   const std::vector<Digest> gone =
       parts_.store.rename_task(task, name, &call.audit).value_or_throw();
-  forget_tasks({task, name}, gone);
+  drop_tasks({task, name}, gone);
   parts_.on_change(name, "task '" + task + "' is called '" + name + "' now");
   TaskSummary unread;  // another server may have renamed it on
   unread.task = name;
@@ -185,19 +188,19 @@ AdminPage Administration::remove_task(const Call& call) {
     return removed.error().code == ErrorCode::Unavailable ? page_of_unfinished(removed.error())
                                                           : page_of(removed.error());
   }
-  forget_tasks({task}, removed->distributions);
+  drop_tasks({task}, removed->distributions);
   parts_.on_change(task, "removed: " + std::to_string(removed->removal.paths) + " paths retired, " +
                              std::to_string(removed->removal.attempts) +
                              " attempts stay on record");
   return page_of(removed->removal);
 }
 
-void Administration::forget_tasks(std::initializer_list<std::string> tasks,
-                                  const std::vector<Digest>& distributions) {
+void Administration::drop_tasks(std::initializer_list<std::string> tasks,
+                                const std::vector<Digest>& distributions) {
   for (const Digest& distribution : distributions)
     parts_.guidance.forget_distribution(distribution);
   for (const std::string& task : tasks)
-    parts_.guidance.forget_task(task);
+    parts_.guidance.drop_task(task);
 }
 
 AdminPage Administration::rename_robot(const Call& call) {

@@ -221,6 +221,8 @@ void FetchService::take_changes(const store::StoreChanges& changes) {
       retired.insert(pair.task);
     known = pair.now.retired_generation;
   }
+  for (const std::string& task : changes.former_tasks)
+    drop_task(task);
   for (const std::string& task : retired)
     forget_task(task);
   for (const std::string& task : grown)
@@ -240,6 +242,11 @@ void FetchService::forget_task(const std::string& task) {
   experience_.forget(task);
   rehearsals_.forget(task);
   catalog_.forget(task);
+}
+
+void FetchService::drop_task(const std::string& task) {
+  forget_task(task);
+  rehearsals_.drop(task);
 }
 
 void FetchService::forget_robot(const Digest& robot) {

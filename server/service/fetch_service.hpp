@@ -45,6 +45,7 @@ class FetchService final : public ServedGuidance {
   /// An attempt was committed.
   void add(const catalog::AttemptCost& cost) { advice_.add(cost); }
   void forget_task(const std::string& task) override;
+  void drop_task(const std::string& task) override;
   void forget_robot(const Digest& robot) override;
   void forget_distribution(const Digest& id) override { catalog_.evict(id); }
   /// Stops serving from memory data that another server changed in the store. One call at a time.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <future>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,7 +18,7 @@
 namespace kinship::service {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;  // of one report with its scene
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;  // of one batch, with scenes
 
 std::optional<store::ReplicatedReport> read_report(const store::Store& store, const Uuid& report) {
   store::ReplicatedReports read = store.read_reports(std::array{report}, kMaxBytes);
@@ -24,6 +26,12 @@ std::optional<store::ReplicatedReport> read_report(const store::Store& store, co
     return std::nullopt;
   return std::move(read.reports.front());
 }
+
+/// A copy to be stored, and the report that it is of.
+struct Copy {
+  Uuid report;
+  Attempt attempt;
+};
 
 Attempt copy_of(Attempt attempt, const Uuid& report) {
   PlanningRecord& record = attempt.record;
@@ -40,15 +48,18 @@ Attempt copy_of(Attempt attempt, const Uuid& report) {
   return attempt;
 }
 
-Receipt commit(store::Store& store, Attempt attempt) {
-  const auto promise = std::make_shared<std::promise<Receipt>>();
-  std::future<Receipt> receipt = promise->get_future();
+std::vector<Receipt> commit(store::Store& store, std::vector<Copy>& copies) {
+  if (copies.empty())
+    return {};
+  const auto promise = std::make_shared<std::promise<std::vector<Receipt>>>();
+  std::future<std::vector<Receipt>> receipts = promise->get_future();
   std::vector<Attempt> attempts;
-  attempts.push_back(std::move(attempt));
-  store.commit_reports(std::move(attempts), [promise](const std::vector<Receipt>& receipts) {
-    promise->set_value(receipts.at(0));
+  for (Copy& copy : copies)
+    attempts.push_back(std::move(copy.attempt));
+  store.commit_reports(std::move(attempts), [promise](const std::vector<Receipt>& answered) {
+    promise->set_value(answered);
   });
-  return receipt.get();
+  return receipts.get();
 }
 
 void leave_out(std::uint64_t& count, const Uuid& report, const std::string& why,
@@ -57,16 +68,19 @@ void leave_out(std::uint64_t& count, const Uuid& report, const std::string& why,
   restored.reason = cut_text("path " + report.text() + ": " + why, kMaxMessageBytes);
 }
 
-void restore_path(store::Store& store, const Uuid& report, Restoration& restored) {
-  std::optional<store::ReplicatedReport> retired = read_report(store, report);
-  if (!retired || !retired->attempt.path)
-    return leave_out(restored.lost, report,
-                     store.known_reports(std::array{report}).empty()
-                         ? "no such report"
-                         : "it brought no path, its waypoints were not kept, or its robot was "
-                           "removed",
-                     restored);
-  // A restored path may have been retired, too.
+/// The copy of a retired report, or of its last copy, which may have been retired, too. Nothing: it
+/// is left out.
+std::optional<Copy> make_copy(const store::Store& store, const Uuid& report,
+                              std::optional<store::ReplicatedReport> retired,
+                              Restoration& restored) {
+  if (!retired || !retired->attempt.path) {
+    leave_out(restored.lost, report,
+              store.known_reports(std::array{report}).empty()
+                  ? "no such report"
+                  : "it brought no path, its waypoints were not kept, or its robot was removed",
+              restored);
+    return std::nullopt;
+  }
   Uuid next = report;
   while (retired && retired->is_retired) {
     next = restored_report(next);
@@ -74,27 +88,43 @@ void restore_path(store::Store& store, const Uuid& report, Restoration& restored
       break;
     retired = read_report(store, next);
   }
-  if (!retired)
-    return leave_out(restored.lost, next, "cannot be read", restored);
-  if (!retired->is_retired)
-    return leave_out(restored.in_use, next, "is in use", restored);
-  const Receipt receipt = commit(store, copy_of(std::move(retired->attempt), next));
-  switch (receipt.status) {
-    case ReceiptStatus::Stored:
-      ++restored.paths;
-      if (restored.report_uuid == Uuid())
-        restored.report_uuid = next;
-      return;
-    case ReceiptStatus::Duplicate:
-      return leave_out(restored.in_use, report, "another report has the same path, in use",
-                       restored);
-    case ReceiptStatus::TryAgain:
-      throw Failure(ErrorCode::Unavailable,
-                    "path " + report.text() + ": not stored now: " + receipt.message + "; " +
-                        std::to_string(restored.paths) + " were restored; ask again for the rest");
-    default:
-      return leave_out(restored.lost, report, receipt.message, restored);
+  if (retired && retired->is_retired)
+    return Copy{report, copy_of(std::move(retired->attempt), next)};
+  leave_out(retired ? restored.in_use : restored.lost, next,
+            retired ? "is in use" : "cannot be read", restored);
+  return std::nullopt;
+}
+
+void count(const Copy& copy, const Receipt& receipt, Restoration& restored) {
+  if (receipt.status == ReceiptStatus::Duplicate)
+    return leave_out(restored.in_use, copy.report, "another report has the same path, in use",
+                     restored);
+  if (receipt.status != ReceiptStatus::Stored)
+    return leave_out(restored.lost, copy.report, receipt.message, restored);
+  ++restored.paths;
+  if (restored.report_uuid == Uuid())
+    restored.report_uuid = receipt.report_uuid;
+}
+
+/// Stores all copies at once.
+void store_copies(store::Store& store, std::vector<Copy> copies, Restoration& restored) {
+  const std::vector<Receipt> receipts = commit(store, copies);
+  std::optional<std::string> later;
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    Receipt receipt = receipts.at(i);
+    if (receipt.status == ReceiptStatus::TryAgain) {
+      const std::optional<std::string> why = store.why_put_off(receipt.report_uuid);
+      if (!why) {
+        later = "path " + copies[i].report.text() + ": not stored now: " + receipt.message;
+        continue;
+      }
+      receipt.message = *why;
+    }
+    count(copies[i], receipt, restored);
   }
+  if (later)
+    throw Failure(ErrorCode::Unavailable, *later + "; " + std::to_string(restored.paths) +
+                                              " were restored; ask again for the rest");
 }
 
 }  // namespace
@@ -112,8 +142,23 @@ Uuid restored_report(const Uuid& retired) {
 }
 
 void restore_paths(store::Store& store, std::span<const Uuid> reports, Restoration& restored) {
-  for (const Uuid& report : reports)
-    restore_path(store, report, restored);
+  while (!reports.empty()) {
+    store::ReplicatedReports read = store.read_reports(
+        reports.first(std::min(reports.size(), kMaxAttemptsPerBatch)), kMaxBytes);
+    std::map<Uuid, store::ReplicatedReport> found;
+    for (store::ReplicatedReport& report : read.reports)
+      found.emplace(report.attempt.report_uuid, std::move(report));
+    std::vector<Copy> copies;
+    for (const Uuid& report : reports.first(read.looked_at)) {
+      std::optional<store::ReplicatedReport> retired;
+      if (auto node = found.extract(report))
+        retired = std::move(node.mapped());
+      if (auto copy = make_copy(store, report, std::move(retired), restored))
+        copies.push_back(*std::move(copy));
+    }
+    store_copies(store, std::move(copies), restored);
+    reports = reports.subspan(read.looked_at);
+  }
 }
 
 }  // namespace kinship::service

@@ -13,9 +13,10 @@ namespace kinship::service {
 /// from that of the retired report, so that a repetition changes nothing. The copy counts as
 /// planned uniformly: an attempt is evidence once. Waits for the store.
 ///
-/// \param reports   as many as fit into memory, with their paths and scenes.
+/// \param reports   each once; every kMaxAttemptsPerBatch of them are stored at once.
 /// \param restored  in: so far; out: with these, of which each is restored or left out.
-/// \throws Failure(Unavailable) if the store took one in no time; those before it are restored.
+/// \throws Failure(Unavailable) if the store takes none now; those before it are restored. One that it
+///         does not take by itself, while it takes others, is left out.
 void restore_paths(store::Store& store, std::span<const Uuid> reports, Restoration& restored);
 
 /// UUID of the report that restores the path of a retired one.

@@ -25,6 +25,8 @@ class ServedGuidance {
   virtual void forget_distribution(const Digest& id) = 0;
   /// Paths of a task were retired: distributions made of them may not be served.
   virtual void forget_task(const std::string& task) = 0;
+  /// A task was renamed or removed: nothing of it may be served, under this name.
+  virtual void drop_task(const std::string& task) = 0;
   /// Paths of a task were restored.
   virtual void new_experience(std::string_view task) = 0;
   /// A robot was removed: its distributions may not be served, nor announced.

@@ -69,7 +69,8 @@ class AdminStore {
                                         const AuditEntry* audit = nullptr) = 0;
 
   /// Gives a task another name, durable on return: its paths, attempts and retirements are those of
-  /// the new name, its distributions are deleted. A report that names the old task, also one from
+  /// the new name, its distributions and rehearsals are deleted. Raises generation and
+  /// retired_generation of its pairs. A report that names the old task, also one from
   /// another store, begins a task of that name; one that is known already stays known.
   /// \return the deleted distributions; NotFound for an unknown task; Conflict if there is one of
   ///         the new name, also a removed one.

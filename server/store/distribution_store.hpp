@@ -26,7 +26,8 @@ class DistributionStore {
   /// of all distributions (an option of the engine) the least recently used ones are deleted.
   /// \param right  with which it was fitted.
   /// \return the revision, greater than every earlier one of this id.
-  /// \throws Failure(NotFound) if its robot is not registered; Failure(InvalidInput) if a part
+  /// \throws Failure(NotFound) if its robot is not registered, or its task is not there (any more),
+  ///         so that what was fitted for it serves no other of its name; Failure(InvalidInput) if a part
   ///         exceeds its limit; Failure(Unavailable), and nothing is stored, if another server has
   ///         taken the right since.
   virtual std::uint64_t put_distribution(const Distribution& distribution,

@@ -115,6 +115,7 @@ struct Dialect {
   std::string_view lock_experience = {};
   std::string_view mark_changed = {};             ///< of an UPDATE: sets when the row was changed
   std::string_view note_gone_robot = {};          ///< before the robot $1 is deleted
+  std::string_view note_former_task = {};         ///< of a task that was called $1
   std::string_view newest_attempts_first = {};    ///< of an ORDER BY
   std::string_view quarantine_distribution = {};  ///< a damaged one: of row $1, at time $2
   std::string_view by_task_robot = {};            ///< behind table path: reads an index alone

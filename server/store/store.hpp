@@ -28,6 +28,8 @@ struct StoreChanges {
   std::vector<ChangedExperience> experience;  ///< new attempts, paths retired or dropped
   std::vector<Digest> robots;   ///< registered, renamed, with better geometry, or removed
   std::vector<Digest> evicted;  ///< distributions, on request; not for want of room
+  /// Former names of renamed tasks; their new names are in `experience`.
+  std::vector<std::string> former_tasks = {};
 };
 
 /// Keeps robots, attempts, paths, distributions and rehearsals. A part of the server takes the

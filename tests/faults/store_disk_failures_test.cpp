@@ -110,10 +110,10 @@ bool fails_without_loss(const DiskFault& fault, Beginning beginning = Beginning:
   {
     const Reading reading(*store);
     patiently([&] { session.register_robots(*store); });
-    patiently([&] { session.put_distribution(*store, kDistribution); });
     const Clock::time_point start = Clock::now();
     session.report(*store, 2, 9);
     EXPECT_LT(Clock::now() - start, kTooLong);
+    patiently([&] { session.put_distribution(*store, kDistribution); });
   }
   const bool failed = session.disk().failed() > 0;
   session.disk().fail({.count = 0});

@@ -59,6 +59,7 @@ TEST_F(StoreRoom, BelowTheWatermarkReportsWaitAndAreTakenOnceThereIsRoom) {
   options.free_space_watermark_bytes = 2 * kMega;
   open(options);
   EXPECT_TRUE(store_->status().writable);
+  test::begin_task(*store_, test::ledger_robots()[0].digest, "stack");
   leave_free(kMega + 5);
 
   const Receipt refused = report(kFirst);

@@ -43,7 +43,7 @@ inline std::vector<Attempt> golden_attempts() {
   return attempts;
 }
 
-/// Retired; the only one of its task.
+/// Retired; the only one of its task, which is removed in schemas that have removed tasks.
 inline Attempt golden_retired_attempt() {
   return make_attempt(golden_robots()[0].digest, "drawer", 8);
 }

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint64_t kAttempts = 17;
 constexpr std::uint64_t kPaths = 11;
-constexpr int kFirstWithRehearsals = 2, kFirstWithSearches = 3, kFirstWithMeshes = 4;
+constexpr int kFirstWithRehearsals = 2, kFirstWithSearches = 3, kFirstWithMeshes = 4,
+              kFirstWithRemovedTasks = 5;
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -148,6 +149,14 @@ TEST_P(GoldenStore, StillKnowsWhatWasRetiredAndEvicted) {
   EXPECT_EQ(store_->put_distribution(test::golden_evicted_distribution()), 2U);
 }
 
+TEST_P(GoldenStore, StillKnowsWhichTaskWasRemoved) {
+  Attempt next = test::golden_retired_attempt();
+  EXPECT_EQ(store_->find_task(next.task).has_value(), GetParam() < kFirstWithRemovedTasks);
+  next.report_uuid = test::id_from<Uuid>(1003);
+  EXPECT_EQ(test::report(*store_, {next})[0].status, ReceiptStatus::Stored);
+  EXPECT_EQ(store_->find_task(next.task)->attempts, 3U);
+}
+
 TEST_P(GoldenStore, StillHasItsScenesOnce) {
   const auto paths =
       store_->read_paths(test::golden_robots()[1].digest, "table", {.after_id = 0, .limit = 9});
@@ -245,7 +254,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

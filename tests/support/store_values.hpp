@@ -182,6 +182,11 @@ inline std::vector<Receipt> report(store::Store& store, std::vector<Attempt> att
   return done.get_future().get();
 }
 
+/// An attempt of a task, which is there with it: for a distribution of the task.
+inline void begin_task(store::Store& store, const Digest& robot, const std::string& task) {
+  report(store, {make_unsolved(robot, task, 987'654)});
+}
+
 inline std::vector<ReceiptStatus> statuses(const std::vector<Receipt>& receipts) {
   std::vector<ReceiptStatus> found;
   for (const Receipt& receipt : receipts)

@@ -273,7 +273,7 @@ std::vector<MovedTable> all_tables() {
            .columns = {{"robot_id"}, {"ordinal"}, {"link_a", Text}, {"link_b", Text}}},
           {.name = "robot_geometry",
            .columns = {{"robot_id"}, {"revision"}, {"taken_ms"}, {"mesh_solids", Blob}}},
-          {.name = "task", .columns = {{"id"}, {"name", Text}}},
+          {.name = "task", .columns = {{"id"}, {"name", Text}, {"removed_attempts"}}},
           experience(),
           scenes(),
           paths(),

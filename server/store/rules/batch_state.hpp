@@ -32,6 +32,8 @@ struct EarlierReport {
   /// True if the path can be read, or need not be: there is none, or it is retired.
   bool is_path_backed = true;
   bool is_scene_readable = true;  ///< or there is none
+  /// The name of its task in `pairs`, which was renamed since; empty: that of the report.
+  std::string task = {};
 };
 
 /// Paths with the content of a new one, neither retired nor replaced.

@@ -80,7 +80,7 @@ Receipt ReportResolver::resolve(const PreparedAttempt& prepared) {
   if (std::optional<Receipt> refusal = refusal_of(prepared, state_))
     return *std::move(refusal);
   const Attempt& attempt = prepared.attempt;
-  Pair& pair = state_.pairs.at({attempt.robot, attempt.task});
+  Pair& pair = state_.pairs.at(pair_name(prepared, state_));
   const auto earlier = state_.reports.find(attempt.report_uuid);
   return earlier != state_.reports.end() ? resolve_again(prepared, pair, earlier->second)
                                          : resolve_new(prepared, pair);
@@ -280,6 +280,13 @@ std::optional<Receipt> refusal_of(const PreparedAttempt& prepared, const BatchSt
                                             " joints, robot " + attempt.robot.short_hex() +
                                             " has " + std::to_string(robot->second.dof));
   return std::nullopt;
+}
+
+PairName pair_name(const PreparedAttempt& prepared, const BatchState& state) {
+  const Attempt& attempt = prepared.attempt;
+  const auto earlier = state.reports.find(attempt.report_uuid);
+  const bool is_renamed = earlier != state.reports.end() && !earlier->second.task.empty();
+  return {attempt.robot, is_renamed ? earlier->second.task : attempt.task};
 }
 
 std::vector<const PreparedAttempt*> acceptable(PreparedAttempts attempts, const BatchState& state) {

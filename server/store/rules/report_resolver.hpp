@@ -29,6 +29,9 @@ bool is_again(const PreparedAttempt& prepared, const EarlierReport& earlier);
 /// \param state  robots and reports (body and machine) are enough.
 std::optional<Receipt> refusal_of(const PreparedAttempt& prepared, const BatchState& state);
 
+/// The robot and task of an acceptable report; of one that came before, those of its attempt.
+PairName pair_name(const PreparedAttempt& prepared, const BatchState& state);
+
 /// The attempts without the refused ones.
 std::vector<const PreparedAttempt*> acceptable(PreparedAttempts attempts, const BatchState& state);
 

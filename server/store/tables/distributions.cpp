@@ -14,6 +14,7 @@
 #include "server/store/values/columns.hpp"
 #include "server/store/values/crc32c.hpp"
 #include "server/store/values/distribution_blob.hpp"
+#include "server/store/values/experience_key.hpp"
 
 namespace kinship::store {
 namespace {
@@ -76,10 +77,18 @@ std::int64_t require_robot(Session& session, const Distribution& distribution) {
   return *id;
 }
 
+/// It may have been renamed or removed during the fit.
+std::int64_t require_task(Session& session, const Distribution& distribution) {
+  if (const std::optional<std::int64_t> id = find_task(session, distribution.task))
+    return *id;
+  throw Failure(ErrorCode::NotFound, "distribution " + distribution.id.short_hex() +
+                                         ": there is no task '" + distribution.task + "'");
+}
+
 /// Each fit is a row of its own: the greatest id is the newest fit.
 /// \return its row.
 std::int64_t insert_distribution(Session& session, const Distribution& distribution,
-                                 std::int64_t robot_id, std::int64_t revision,
+                                 const ExperienceKey& key, std::int64_t revision,
                                  const std::vector<std::uint8_t>& payload) {
   std::uint64_t paths = 0;
   for (const Source& source : distribution.sources)
@@ -89,7 +98,7 @@ std::int64_t insert_distribution(Session& session, const Distribution& distribut
       "INSERT INTO distribution (digest, revision, task_id, robot_id, profile, state, reason,"
       " components, configurations, paths, fitted_ms, crc32c, payload) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) RETURNING id",
-      distribution.id, revision, ensure_task(session, distribution.task), robot_id,
+      distribution.id, revision, key.task_id, key.robot_id,
       distribution.profile, code_of(distribution.state), distribution.reason, components,
       distribution.configurations, paths, distribution.fitted_ms, crc32c(payload), payload);
   session.query("INSERT INTO distribution_use (id, used_ms, bytes) VALUES ($1, $2, $3)",
@@ -170,6 +179,7 @@ std::uint64_t upsert_distribution(Session& session, const Distribution& distribu
   const bool can_be_read = decode_distribution(payload).has_value();
   lock_distributions(session);
   const std::int64_t robot_id = require_robot(session, distribution);
+  const ExperienceKey key{require_task(session, distribution), robot_id};
   if (!can_be_read)
     throw Failure(ErrorCode::InvalidInput, "distribution " + distribution.id.short_hex() +
                                                ": exceeds a limit and could not be read back");
@@ -177,7 +187,7 @@ std::uint64_t upsert_distribution(Session& session, const Distribution& distribu
   if (revisions.row)
     remove_row(session, *revisions.row);
   const std::int64_t revision = revisions.newest + 1;
-  const std::int64_t row = insert_distribution(session, distribution, robot_id, revision, payload);
+  const std::int64_t row = insert_distribution(session, distribution, key, revision, payload);
   forget_eviction(session, distribution.id);
   if (max_bytes > 0)
     make_room_beside(session, row, max_bytes);

@@ -109,6 +109,10 @@ std::vector<StoredRehearsal> select_rehearsals(Session& session, std::size_t lim
   return rehearsals;
 }
 
+void delete_rehearsals_of(Session& session, std::string_view task) {
+  session.query("DELETE FROM rehearsal WHERE task = $1", task);
+}
+
 bool is_rehearsal_sound(Session& session, std::int64_t row) {
   return with_sound_row(session, row, [](const Row& /*row*/, Bytes /*payload*/) {});
 }

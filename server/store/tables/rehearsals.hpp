@@ -19,6 +19,9 @@ std::vector<std::int64_t> find_surplus_rehearsals(Session& session, const Rehear
 
 std::vector<StoredRehearsal> select_rehearsals(Session& session, std::size_t limit);
 
+/// Deletes all rehearsals of a task.
+void delete_rehearsals_of(Session& session, std::string_view task);
+
 /// Whether a row is there as it was written, maybe by another version.
 bool is_rehearsal_sound(Session& session, std::int64_t row);
 

@@ -8,9 +8,10 @@
 
 #include "server/store/tables/audit.hpp"
 #include "server/store/tables/distributions.hpp"
+#include "server/store/tables/experience.hpp"
 #include "server/store/tables/pages.hpp"
+#include "server/store/tables/rehearsals.hpp"
 #include "server/store/tables/robots.hpp"
-#include "server/store/tables/settings.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -19,12 +20,10 @@
 namespace kinship::store {
 namespace {
 
-/// The setting of a removed task: the attempts that it had then. Later ones bring it back.
-constexpr std::string_view kRemovedTask = "removed_task:";
-constexpr std::string_view kNotRemoved =
-    "NOT EXISTS (SELECT 1 FROM setting WHERE setting.key = 'removed_task:' || task.name"
-    " AND setting.value = CAST((SELECT coalesce(sum(attempts), 0) FROM experience"
-    " WHERE experience.task_id = task.id) AS text))";
+/// Not removed, or with attempts that came since.
+constexpr std::string_view kIsListed =
+    "(task.removed_attempts IS NULL OR task.removed_attempts < (SELECT coalesce(sum(attempts), 0)"
+    " FROM experience WHERE experience.task_id = task.id))";
 
 /// Deletes the distributions of a task. \return their ids.
 std::vector<Digest> delete_distributions_of(Session& session, std::int64_t task_id) {
@@ -38,10 +37,6 @@ std::vector<Digest> delete_distributions_of(Session& session, std::int64_t task_
   for (const Digest& id : ids)
     static_cast<void>(delete_distribution(session, id));
   return ids;
-}
-
-Error no_such_task(std::string_view task) {
-  return {ErrorCode::NotFound, "no task '" + std::string(task) + "'"};
 }
 
 /// The robots of some tasks, without removed ones, by task.
@@ -66,7 +61,7 @@ std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
 Page<TaskSummary> read_tasks(Session& session, const std::string& which,
                              std::span<const Parameter> parameters, std::int64_t limit) {
   const std::string intact =
-      session.is_intact("task") + " AND " + std::string(kNotRemoved) + " AND " + which;
+      session.is_intact("task") + " AND " + std::string(kIsListed) + " AND " + which;
   auto robots = robots_of_tasks(session, intact, parameters);
   return read_page<TaskSummary>(
       session.query_with("SELECT id, name FROM task WHERE " + intact, parameters), limit,
@@ -89,6 +84,18 @@ std::int64_t ensure_task(Session& session, std::string_view task) {
   throw Failure(ErrorCode::Storage, "task '" + std::string(task) + "': its row is damaged");
 }
 
+std::optional<std::int64_t> find_task(Session& session, std::string_view task) {
+  std::string find = "SELECT id FROM task WHERE name = $1 AND " + std::string(kIsListed);
+  const std::optional<std::int64_t> id =
+      session.find_integer(find + " AND " + session.is_intact("task"), task);
+  if (id)
+    return id;
+  session.require_absent("task", "name", Parameter(task));
+  if (session.find_integer(find, task))
+    throw Failure(ErrorCode::Storage, "task '" + std::string(task) + "': its row is damaged");
+  return std::nullopt;
+}
+
 Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
   return read_tasks(session, "name > $1 ORDER BY name LIMIT $2",
@@ -104,18 +111,32 @@ std::optional<TaskSummary> summary_of_task(Session& session, std::string_view ta
 
 Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
                                         std::string_view name, const AuditEntry* audit) {
-  const std::string find = "SELECT id FROM task WHERE name = $1 AND " + session.is_intact("task");
-  const std::optional<std::int64_t> id = session.find_integer(find, task);
-  if (!id || !summary_of_task(session, task))
-    return no_such_task(task);
+  // Waits for reports that name it, which lock its row and then its pairs.
+  const std::optional<std::int64_t> id =
+      session.find_integer("SELECT id FROM task WHERE name = $1 AND " + std::string(kIsListed) +
+                               " AND " + session.is_intact("task") +
+                               std::string(session.dialect().for_update),
+                           task);
+  if (!id)
+    return Error{ErrorCode::NotFound, "no task '" + std::string(task) + "'"};
   if (session.find_integer("SELECT id FROM task WHERE name = $1", name))
     return Error{ErrorCode::Conflict,
                  "task '" + std::string(name) +
-                     (summary_of_task(session, name)
+                     (find_task(session, name)
                           ? "' exists: two tasks cannot become one"
                           : "' was removed, and its attempts stay on record under that name")};
+  lock_pairs_of_task(session, *id);
   std::vector<Digest> gone = delete_distributions_of(session, *id);
+  for (const std::string_view either : {task, name})  // one of the new name is of a former task
+    delete_rehearsals_of(session, either);
   session.query("UPDATE task SET name = $1 WHERE id = $2", name, *id);
+  // What memories have of either name is of another task from now on.
+  session.query("UPDATE experience SET generation = generation + 1,"
+                " retired_generation = generation + 1" +
+                    std::string(session.dialect().mark_changed) + " WHERE task_id = $1",
+                *id);
+  if (!session.dialect().note_former_task.empty())
+    session.query(session.dialect().note_former_task, task);
   note_act(session, audit, AuditOutcome::Done, "'" + std::string(task) + "'",
            "'" + std::string(name) + "'");
   return gone;
@@ -134,8 +155,11 @@ RemovedTask end_task_removal(Session& session, std::int64_t task_id, TaskRemoval
                              const AuditEntry* audit) {
   RemovedTask removed{std::move(removal), delete_distributions_of(session, task_id)};
   removed.removal.distributions = removed.distributions.size();
-  write_setting(session, std::string(kRemovedTask) + removed.removal.task,
-                std::to_string(removed.removal.attempts));
+  session.query("UPDATE task SET removed_attempts = $1 WHERE id = $2", removed.removal.attempts,
+                task_id);
+  for (const Row& task : session.query("SELECT name FROM task WHERE id = $1", task_id))
+    removed.removal.task = task.column_text(0);  // it may have been renamed meanwhile
+  delete_rehearsals_of(session, removed.removal.task);
   note_act(session, audit, AuditOutcome::Done, {}, describe_removal(removed.removal));
   return removed;
 }

@@ -18,6 +18,10 @@ namespace kinship::store {
 /// The task's internal id; makes the task if it is missing.
 std::int64_t ensure_task(Session& session, std::string_view task);
 
+/// The internal id of a task that is listed.
+/// \throws Failure(Storage) if its row is damaged.
+std::optional<std::int64_t> find_task(Session& session, std::string_view task);
+
 /// In order of names. Call it in a snapshot. \param cursor  the name of the last task shown.
 Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::size_t limit);
 

@@ -30,7 +30,9 @@ class TroubledStore final : public store::Store {
       : store_(store), on_paths_read_(std::move(on_paths_read)) {}
 
   bool takes_reports = false;
+  std::atomic<std::size_t> commits = 0;  ///< of reports
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
+    ++commits;
     if (!takes_reports)
       throw std::bad_alloc();
     store_.commit_reports(std::move(attempts), std::move(done));

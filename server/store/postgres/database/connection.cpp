@@ -154,6 +154,9 @@ const Dialect& Connection::dialect() const noexcept {
       .note_gone_robot =
           "INSERT INTO gone_robot (digest) SELECT digest FROM robot WHERE id = $1"
           " ON CONFLICT (digest) DO UPDATE SET changed_in = excluded.changed_in",
+      .note_former_task =
+          "INSERT INTO former_task (name) VALUES ($1)"
+          " ON CONFLICT (name) DO UPDATE SET changed_in = excluded.changed_in",
       .newest_attempts_first = "arrived_in DESC, id DESC"};
   return kDialect;
 }

@@ -9,9 +9,10 @@
 namespace kinship::store::postgres {
 
 /// Reads the state for the rules of reports, under locks that keep other servers from changing it
-/// until the commit: first the robots, then the pairs, each in order of ids, so that writers never
-/// deadlock. In a writing transaction.
+/// until the commit: first the robots, then the tasks' names, then the pairs, each in one order, so
+/// that writers never deadlock. In a writing transaction.
 /// \param max_paths  of a robot and task; 0: no cap.
+/// \throws PostgresError of kind Conflict if a task of the batch was renamed meanwhile.
 BatchState read_state(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths);
 
 /// The checksum of a path's row once it is dropped.

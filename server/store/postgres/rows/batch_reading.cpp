@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/path_content.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 /// The distinct pairs of a batch, as columns.
 struct WantedPairs {
+  std::vector<std::string> new_tasks;  // of new reports; they are there already, or are made
   std::vector<std::string> tasks;
   std::vector<std::int64_t> robots;
   std::vector<std::int64_t> paths;  // that come
@@ -29,12 +31,18 @@ constexpr std::string_view kRobots =
     "SELECT digest, id, dof, label FROM robot WHERE digest = ANY($1) ORDER BY id FOR KEY SHARE";
 
 constexpr std::string_view kBodies =
-    "SELECT report_uuid, body_sha256, machine FROM attempt WHERE report_uuid = ANY($1)";
+    "SELECT report_uuid, body_sha256, machine,"
+    " (SELECT name FROM task WHERE task.id = attempt.task_id)"
+    " FROM attempt WHERE report_uuid = ANY($1)";
 
 constexpr std::string_view kMakeTasks =
     "INSERT INTO task (name) SELECT name FROM unnest($1) AS wanted (name)"
     " WHERE NOT EXISTS (SELECT 1 FROM task WHERE task.name = wanted.name)"
     " ORDER BY name COLLATE \"C\" ON CONFLICT (name) DO NOTHING";
+
+// Until the commit no name of these changes.
+constexpr std::string_view kLockTasks =
+    "SELECT 1 FROM task WHERE name = ANY($1) ORDER BY name FOR KEY SHARE";
 
 constexpr std::string_view kMakePairs =
     "INSERT INTO experience (task_id, robot_id) SELECT task.id, wanted.robot_id"
@@ -52,7 +60,8 @@ constexpr std::string_view kLockPairs =
 
 constexpr std::string_view kReports =
     "SELECT attempt.report_uuid, body_sha256, machine, attempt.received_ms, path_id,"
-    " scene.damaged_ms IS NOT NULL FROM attempt LEFT JOIN scene ON scene.id = attempt.scene_id"
+    " scene.damaged_ms IS NOT NULL, (SELECT name FROM task WHERE task.id = attempt.task_id)"
+    " FROM attempt LEFT JOIN scene ON scene.id = attempt.scene_id"
     " WHERE attempt.report_uuid = ANY($1)";
 
 constexpr std::string_view kRetired =
@@ -124,9 +133,15 @@ std::vector<Bytes> scenes_of(PreparedAttempts attempts) {
 
 WantedPairs pairs_of(PreparedAttempts attempts, const BatchState& state) {
   std::map<std::pair<std::string, std::int64_t>, std::int64_t> paths;
-  for (const PreparedAttempt* const each : attempts)
-    paths[{each->attempt.task, state.robots.at(each->attempt.robot).id}] += each->path ? 1 : 0;
+  std::set<std::string> new_tasks;
+  for (const PreparedAttempt* const each : attempts) {
+    paths[{pair_name(*each, state).second, state.robots.at(each->attempt.robot).id}] +=
+        each->path ? 1 : 0;
+    if (!state.reports.contains(each->attempt.report_uuid))
+      new_tasks.insert(each->attempt.task);
+  }
   WantedPairs pairs;
+  pairs.new_tasks.assign(new_tasks.begin(), new_tasks.end());
   for (const auto& [pair, count] : paths) {
     pairs.tasks.push_back(pair.first);
     pairs.robots.push_back(pair.second);
@@ -139,10 +154,10 @@ WantedContents contents_of(PreparedAttempts attempts, const BatchState& state) {
   std::set<std::pair<PairName, Digest>> distinct;
   WantedContents wanted;
   for (const PreparedAttempt* const each : attempts) {
-    const PairName pair{each->attempt.robot, each->attempt.task};
+    const PairName pair = pair_name(*each, state);
     if (!each->path || !distinct.insert({pair, each->path->content}).second)
       continue;
-    wanted.tasks.push_back(each->attempt.task);
+    wanted.tasks.push_back(pair.second);
     wanted.robots.push_back(state.robots.at(each->attempt.robot).id);
     wanted.contents.emplace_back(each->path->content.bytes);
   }
@@ -161,7 +176,8 @@ void read_robots(Connection& connection, PreparedAttempts attempts, BatchState& 
                                                          row.column_integer(2)};
   for (const Row row : rows[2])
     state.reports[id_of<Uuid>(row.column_blob(0))] = {.body = id_of<Digest>(row.column_blob(1)),
-                                                      .machine = std::string(row.column_text(2))};
+                                                      .machine = std::string(row.column_text(2)),
+                                                      .task = std::string(row.column_text(3))};
 }
 
 void take_pairs(const Rows& rows, BatchState& state) {
@@ -186,18 +202,31 @@ void take_reports(const Rows& rows, const Rows& paths, BatchState& state) {
                          .machine = std::string(row.column_text(2)),
                          .received_ms = row.column_integer(3),
                          .path_id = optional_integer_of(row, 4),
-                         .is_scene_readable = row.column_integer(5) == 0};
+                         .is_scene_readable = row.column_integer(5) == 0,
+                         .task = std::string(row.column_text(6))};
     if (report.path_id)
       report.is_path_backed = is_backed[*report.path_id];
     state.reports.emplace(id_of<Uuid>(row.column_blob(0)), std::move(report));
   }
 }
 
+[[noreturn]] void refuse_renamed(const PairName& pair) {
+  constexpr const char* kSerializationFailure = "40001";
+  throw PostgresError(kSerializationFailure, "task '" + pair.second + "' was renamed meanwhile");
+}
+
+Pair& require_pair(BatchState& state, const PairName& name) {
+  const auto pair = state.pairs.find(name);
+  if (pair == state.pairs.end())
+    refuse_renamed(name);
+  return pair->second;
+}
+
 void take_contents(const Rows& rows, BatchState& state) {
   constexpr int kRobot = 8, kTask = 9, kContent = 10;
   for (const Row row : rows) {
-    Pair& pair = state.pairs.at(
-        {id_of<Digest>(row.column_blob(kRobot)), std::string(row.column_text(kTask))});
+    Pair& pair = require_pair(
+        state, {id_of<Digest>(row.column_blob(kRobot)), std::string(row.column_text(kTask))});
     SameContent& same = pair.contents[id_of<Digest>(row.column_blob(kContent))];
     if (has_right_path_crc(row))
       same.readable = row.column_integer(0);
@@ -208,7 +237,7 @@ void take_contents(const Rows& rows, BatchState& state) {
 
 void take_largest(const Rows& rows, BatchState& state) {
   for (const Row row : rows)
-    state.pairs.at({id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
+    require_pair(state, {id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
         .largest.insert({id_of<Digest>(row.column_blob(3)), row.column_integer(2),
                          crc_when_dropped(row.column_blob(4), row.column_blob(5),
                                           row.column_integer(6), row.column_integer(7))});
@@ -223,7 +252,8 @@ void read_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t
   const auto paths = std::ranges::count_if(
       attempts, [](const PreparedAttempt* each) { return each->path.has_value(); });
   std::vector<Request> requests = {
-      {kMakeTasks, Parameters(pairs.tasks)},
+      {kMakeTasks, Parameters(pairs.new_tasks)},
+      {kLockTasks, Parameters(pairs.tasks)},
       {kMakePairs, Parameters(pairs.tasks, pairs.robots)},
       {kLockPairs, Parameters(pairs.tasks, pairs.robots)},
       // Later statements see all commits from before the locks were taken.
@@ -238,17 +268,19 @@ void read_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t
                                              static_cast<std::int64_t>(max_paths),
                                              static_cast<std::int64_t>(kMaxDroppedAtOnce))});
   const std::vector<Rows> rows = connection.query_all(requests);
-  take_pairs(rows[2], state);
-  take_reports(rows[3], rows[4], state);
-  for (const Row row : rows[5])
+  take_pairs(rows[3], state);
+  take_reports(rows[4], rows[5], state);
+  for (const PreparedAttempt* const each : attempts)
+    require_pair(state, pair_name(*each, state));
+  for (const Row row : rows[6])
     state.retired.insert(id_of<Uuid>(row.column_blob(0)));
-  take_contents(rows[6], state);
-  for (const Row row : rows[7])
-    state.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
+  take_contents(rows[7], state);
   for (const Row row : rows[8])
+    state.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
+  for (const Row row : rows[9])
     state.path_ids.push_back(row.column_integer(0));
   if (max_paths > 0)
-    take_largest(rows[9], state);
+    take_largest(rows[10], state);
 }
 
 }  // namespace

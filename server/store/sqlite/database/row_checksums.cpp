@@ -22,8 +22,8 @@ constexpr std::array<std::string_view, 3> kLargeBlobs = {"waypoints", "scene", "
 /// Part of the checksum of a robot's description. SQLite reads a text to tell its length.
 constexpr std::array<std::string_view, 2> kLargeOfRobot = {"urdf", "mesh_solids"};
 /// An UPDATE of their rows sets some columns and keeps the others.
-constexpr std::array<std::string_view, 4> kUpdatedInPart = {"attempt", "experience", "path",
-                                                            "quarantine"};
+constexpr std::array<std::string_view, 5> kUpdatedInPart = {"attempt", "experience", "path",
+                                                            "quarantine", "task"};
 
 template <typename Names>
 bool contains(const Names& names, std::string_view name) {

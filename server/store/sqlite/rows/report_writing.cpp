@@ -30,7 +30,7 @@ constexpr std::int64_t kNewPathId = 0;
 /// The answers to the rules' questions about one report, read as far as they ask.
 struct ReportReading {
   BatchState state;
-  ExperienceKey key;                                  ///< of an acceptable one
+  ExperienceKey key;                                  ///< of its attempt, or of a new one
   ReportRows rows;                                    ///< of its UUID
   SceneRows scene;                                    ///< of the content of its scene
   std::optional<std::int64_t> earlier_scene_id = {};  ///< of the report that came before
@@ -42,7 +42,8 @@ void read_earlier(Database& database, const Uuid& report_uuid, ReportReading& re
   if (rows.row)
     try {
       const auto query = database.cached(
-          "SELECT body_sha256, machine, received_ms, path_id, scene_id FROM attempt"
+          "SELECT body_sha256, machine, received_ms, path_id, scene_id, task_id, robot_id"
+          " FROM attempt"
           " WHERE id = ? AND report_uuid = ? AND " +
           database.is_intact("attempt"));
       if (!query->bind_all(*rows.row, Bytes(report_uuid.bytes)).step())
@@ -52,6 +53,7 @@ void read_earlier(Database& database, const Uuid& report_uuid, ReportReading& re
                                             .received_ms = query->column_integer(2),
                                             .path_id = optional_integer_of(*query, 3)};
       reading.earlier_scene_id = optional_integer_of(*query, 4);
+      reading.key = {query->column_integer(5), query->column_integer(6)};
     } catch (const SqliteError& error) {
       if (!error.is_damage())
         throw;
@@ -112,18 +114,19 @@ ReportReading read_report(Database& database, const PreparedAttempt& prepared) {
   return reading;
 }
 
-/// The rest, of an acceptable one. Makes its task, and the row of its robot and task.
+/// The rest, of an acceptable one. Makes the task of a new one, and the row of its robot and task.
 /// \param max_paths  of a robot and task; 0: no cap.
 void read_pair(Database& database, const PreparedAttempt& prepared, std::uint64_t max_paths,
                ReportReading& reading) {
   const Attempt& attempt = prepared.attempt;
   BatchState& state = reading.state;
-  reading.key = {ensure_task(database, attempt.task), state.robots.at(attempt.robot).id};
+  const auto earlier = state.reports.find(attempt.report_uuid);
+  const bool is_new = earlier == state.reports.end();
+  if (is_new)
+    reading.key = {ensure_task(database, attempt.task), state.robots.at(attempt.robot).id};
   Pair& pair = state.pairs[{attempt.robot, attempt.task}];
   pair.key = reading.key;
   pair.paths = ensure_experience(database, pair.key);
-  const auto earlier = state.reports.find(attempt.report_uuid);
-  const bool is_new = earlier == state.reports.end();
   if (!is_new && read_what_backs_its_receipt(database, prepared, reading, earlier->second))
     return;
   if (prepared.scene) {

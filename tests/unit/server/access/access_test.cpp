@@ -73,10 +73,10 @@ TEST(VerbRules, ARoleMayWhatItIsForAndWhatTheOneBeforeItMay) {
   std::set<std::string> more = reader;
   for (const char* const name :
        {"evict_distribution", "retire_path", "reset_task", "backup", "list_backups", "hash_backup",
-        "read_backup", "list_jobs", "list_clients", "list_audit"})
+        "read_backup", "list_jobs", "list_clients", "list_audit", "restore_path"})
     more.insert(name);
   EXPECT_EQ(allowed(named("o", AccessRole::Operator)), more);
-  more.insert({"rename_robot", "remove_robot"});
+  more.insert({"rename_robot", "remove_robot", "rename_task", "remove_task"});
   EXPECT_EQ(allowed(named("a", AccessRole::Admin)), more);
   EXPECT_EQ(more.size(), kVerbRules.size());
 }
@@ -185,13 +185,21 @@ TEST(Access, NarrowedItDoesNothingThatReachesBeyondWhatItIsFor) {
   EXPECT_EQ(words(refusal_of(admin, AdminVerb::ListAudit)),
             "root (role admin) may not read the audit log: that is about all tasks and robots, its "
             "certificate is for tasks bin");
-  for (const AdminVerb verb : {AdminVerb::Backup, AdminVerb::ListJobs, AdminVerb::RemoveRobot})
+  for (const AdminVerb verb : {AdminVerb::Backup, AdminVerb::ListJobs, AdminVerb::RemoveRobot,
+                               AdminVerb::RenameRobot})
     EXPECT_TRUE(refusal_of(admin, verb)) << rule_of(verb).name;
-  EXPECT_FALSE(refusal_of(admin, AdminVerb::ResetTask));
+  constexpr auto kOfATask = {AdminVerb::ResetTask, AdminVerb::RenameTask, AdminVerb::RemoveTask};
+  for (const AdminVerb verb : kOfATask)
+    EXPECT_FALSE(refusal_of(admin, verb)) << rule_of(verb).name;
   admin.tasks.clear();
   admin.robots = {"panda"};
-  EXPECT_TRUE(refusal_of(admin, AdminVerb::ResetTask));
-  EXPECT_FALSE(refusal_of(admin, AdminVerb::RemoveRobot));
+  for (const AdminVerb verb : kOfATask)
+    EXPECT_NE(words(refusal_of(admin, verb)).find("that reaches beyond what it is for"),
+              std::string::npos)
+        << rule_of(verb).name;
+  for (const AdminVerb verb : {AdminVerb::RemoveRobot, AdminVerb::RenameRobot})
+    EXPECT_FALSE(refusal_of(admin, verb)) << rule_of(verb).name;
+  EXPECT_FALSE(refusal_of(admin, AdminVerb::RestorePath)) << "with the robot that it names";
 }
 
 TEST(Access, NarrowedItHearsOfWhatNamesATaskAndARobotOfItsOwn) {

@@ -33,7 +33,7 @@ class Offline : public testing::Test {
 
 TEST_F(Offline, TheVerbsDoWhatTheySay) {
   EXPECT_EQ(run(OfflineVerb::Migrate, store_), kDone) << err_.str();
-  EXPECT_EQ(out_.str(), "store '" + store_.string() + "': schema 4 already\n");
+  EXPECT_EQ(out_.str(), "store '" + store_.string() + "': schema 5 already\n");
   EXPECT_EQ(run(OfflineVerb::Backup, store_, copy_), kDone) << err_.str();
   EXPECT_EQ(run(OfflineVerb::Restore, store_, copy_), kDone) << err_.str();
   EXPECT_NE(out_.str().find(store_.string() + ".replaced-"), std::string::npos) << out_.str();

@@ -91,6 +91,7 @@ TEST(Freshness, ADistributionIsRetiredWithAnyOfItsSources) {
   EXPECT_TRUE(is_retired(distribution, {{robot(1), 9, 4, 4}, {robot(2), 10, 7}}));
   EXPECT_TRUE(is_retired(distribution, {{robot(1), 12, 6, 4}, {robot(2), 10, 7}}));
   EXPECT_TRUE(is_retired(distribution, {{robot(1), 10, 3}})) << "robot 2 has no experience left";
+  EXPECT_TRUE(is_retired(distribution, {{robot(1), 10, 3}, {robot(2), 1, 1}})) << "another task";
 }
 
 TEST(Freshness, AMixtureIsBehindByGrowthAndAFailureByAnyChange) {

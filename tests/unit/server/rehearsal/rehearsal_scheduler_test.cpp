@@ -88,6 +88,18 @@ TEST_F(RehearsalSchedulers, ItIsDoneAnewOnceTheExperienceHasGrownMuch) {
   EXPECT_EQ(experience_index.totals().done, 3U) << "a lost path is one";
 }
 
+TEST_F(RehearsalSchedulers, OfATaskThatWasRenamedOrRemovedNothingIsKnown) {
+  report_sweeps(6);
+  RehearsalScheduler experience_index(parts(), quick());
+  wait(experience_index, panda_).get();
+  experience_index.drop("another");
+  ASSERT_TRUE(experience_index.find(identify(key_of(panda_))));
+  experience_index.drop("sweep");
+  EXPECT_FALSE(experience_index.find(identify(key_of(panda_))));
+  EXPECT_FALSE(experience_index.library(rehearsal_key(panda_)));
+  EXPECT_FALSE(experience_index.ask(rehearsal_key(panda_)));
+}
+
 TEST_F(RehearsalSchedulers, AtItsDeadlineAWaiterGetsWhatIsKnownByThen) {
   report_sweeps(6);
   int woken = 0;

@@ -40,6 +40,8 @@ class AdministrationTest : public testing::Test {
     distribution.state = DistributionState::Failed;
     distribution.reason = "nothing";
     distribution.limits = Eigen::Matrix2Xd::Zero(2, 3);
+    if (!store_->find_task(distribution.task))
+      report({fleet::unsolved(teacher_.digest, distribution.task)});
     distribution.revision = store_->put_distribution(distribution);
     return distribution;
   }

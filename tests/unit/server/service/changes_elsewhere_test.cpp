@@ -41,6 +41,17 @@ TEST_F(ChangesElsewhere, NothingIsServedForARobotThatWasRemoved) {
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::UnknownRobot);
 }
 
+TEST_F(ChangesElsewhere, OfATaskThatWasRenamedNothingIsServedUnderItsFormerName) {
+  teach(6);
+  ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
+  ASSERT_TRUE(real_store_->rename_task("shelf", "rack", nullptr));
+  ASSERT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready) << "of memory";
+  store::StoreChanges changes;
+  changes.former_tasks = {"shelf"};
+  service_->fetches().take_changes(changes);
+  EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::NoExperience);
+}
+
 TEST_F(ChangesElsewhere, ARobotThatTheStoreHasLostIsRegisteredAnewByWhoReportsForIt) {
   troubled_->has_others = true;
   ASSERT_EQ(register_robot(fleet::teacher()).status, RegisterStatus::Known);

@@ -21,6 +21,7 @@ class GivenGuidance final : public ServedGuidance {
   std::string trouble_of(const Digest& /*id*/) const override { return {}; }
   void forget_distribution(const Digest& /*id*/) override {}
   void forget_task(const std::string& /*task*/) override {}
+  void drop_task(const std::string& /*task*/) override {}
   void new_experience(std::string_view /*task*/) override {}
   void forget_robot(const Digest& /*robot*/) override {}
 };

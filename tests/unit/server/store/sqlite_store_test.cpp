@@ -73,6 +73,7 @@ class SqliteStoreTest : public testing::Test {
 TEST_F(SqliteStoreTest, ADistributionThatIsUsedOutlivesNewerOnesThatAreNot) {
   store_ = open_sqlite_store(file_, {.max_distribution_bytes = 6000});
   static_cast<void>(store_->register_robot(robot_));
+  test::begin_task(*store_, robot_.digest, "shelf");
   const auto put = [&](std::uint64_t number) {
     store_->put_distribution(test::make_distribution(robot_.digest, "shelf", number));
   };
@@ -198,6 +199,7 @@ TEST_F(SqliteStoreTest, TheChecksumCoversPlacementAndShapeToo) {
 
 TEST_F(SqliteStoreTest, ServesNoDamagedDistribution) {
   open();
+  test::begin_task(*store_, robot_.digest, "shelf");
   const Distribution distribution = test::make_distribution(robot_.digest, "shelf", 1);
   store_->put_distribution(distribution);
   damage("UPDATE distribution SET payload = CAST (payload || x'00' AS BLOB)");

@@ -120,6 +120,7 @@ TEST_P(StoreConformance, NamesTheRobotsWithPathsOfATask) {
 }
 
 TEST_P(StoreConformance, CountsTheRevisionsOfADistribution) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   EXPECT_EQ(store_->put_distribution(distribution), 1U);
   EXPECT_EQ(store_->put_distribution(distribution), 2U);
@@ -130,6 +131,7 @@ TEST_P(StoreConformance, CountsTheRevisionsOfADistribution) {
 }
 
 TEST_P(StoreConformance, GivesTheNewestRevisionBack) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   store_->put_distribution(distribution);
   distribution.state = DistributionState::Failed;
@@ -155,7 +157,31 @@ TEST_P(StoreConformance, ADistributionNeedsItsRobot) {
   }
 }
 
+TEST_P(StoreConformance, ADistributionNeedsItsTask) {
+  const Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
+  const auto is_refused = [&] {
+    try {
+      store_->put_distribution(distribution);
+      return false;
+    } catch (const Failure& failure) {
+      return failure.code() == ErrorCode::NotFound;
+    }
+  };
+  EXPECT_TRUE(is_refused());
+  EXPECT_EQ(store_->status().tasks, 0U);
+  report(solved(1));
+  EXPECT_EQ(store_->put_distribution(distribution), 1U);
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));  // during the next fit
+  EXPECT_TRUE(is_refused());
+  EXPECT_FALSE(store_->find_task("shelf"));
+  report(solved(2));
+  ASSERT_TRUE(store_->remove_task("shelf"));
+  EXPECT_TRUE(is_refused());
+  EXPECT_TRUE(store_->list_distributions({}, "", "", 10).rows.empty());
+}
+
 TEST_P(StoreConformance, TakesNoDistributionOrRobotThatItCouldNotGiveBack) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   distribution.sources.resize(kMaxSources + 1, distribution.sources[0]);
   EXPECT_THROW(store_->put_distribution(distribution), Failure);
@@ -325,6 +351,8 @@ TEST_P(StoreConformance, ListsTheNewestFirstAndNothingTwiceWhileMoreComes) {
 }
 
 TEST_P(StoreConformance, ListsDistributionsUnderEveryFilter) {
+  report(test::make_unsolved(panda_.digest, "shelf", 1));
+  report(test::make_unsolved(panda_.digest, "table", 2));
   for (std::uint64_t i = 1; i <= 3; ++i)
     store_->put_distribution(test::make_distribution(panda_.digest, "shelf", i));
   store_->put_distribution(test::make_distribution(iiwa_.digest, "table", 4));

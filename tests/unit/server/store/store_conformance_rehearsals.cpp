@@ -83,6 +83,24 @@ TEST_P(StoreConformance, TheLastRehearsalOfADistributionCountsAndTheNewestComesF
   EXPECT_EQ(ids_of(store_->read_rehearsals(2)), (std::vector{rehearsals[1].id, rehearsals[2].id}));
 }
 
+TEST_P(StoreConformance, RehearsalsGoWithTheNameOfTheirTask) {
+  const StoredRehearsal other = test::make_rehearsal(panda_.digest, "table", 1);
+  const auto put_all = [&] {
+    store_->put_rehearsal(other);
+    for (std::uint64_t number = 2; number <= 4; ++number)
+      store_->put_rehearsal(
+          test::make_rehearsal(panda_.digest, number < 4 ? "shelf" : "rack", number));
+  };
+  report(solved(1));
+  put_all();
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));
+  EXPECT_EQ(ids_of(store_->read_rehearsals(10)), std::vector{other.id}) << "of a former rack too";
+  report(solved(2));
+  put_all();
+  ASSERT_TRUE(store_->remove_task("shelf"));
+  EXPECT_EQ(store_->read_rehearsals(10).size(), 2U);
+}
+
 TEST_P(StoreConformance, TheOldestRehearsalsMakeRoom) {
   const auto put = [this](std::uint64_t number, const RehearsalLimits& limits) {
     const StoredRehearsal rehearsal = test::make_rehearsal(panda_.digest, "shelf", number);

@@ -123,6 +123,7 @@ TEST_P(StoreRetentionBackup, ABackupHasWhatIsKeptAndKnowsTheOthers) {
 TEST_P(StoreRetention, DistributionsThatWereNotUsedForLongestMakeRoomAndRevisionsGrow) {
   constexpr std::uint64_t kFew = 6000, kDistributions = 9;  // each takes between 1 and 2 KB
   reopen({.distribution_bytes = kFew});
+  test::begin_task(*store_, panda_.digest, "shelf");
   std::vector<Digest> ids;
   for (std::uint64_t number = 1; number <= kDistributions; ++number) {
     const Distribution distribution = test::make_distribution(panda_.digest, "shelf", number);

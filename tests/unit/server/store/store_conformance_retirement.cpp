@@ -45,6 +45,21 @@ TEST_P(StoreConformance, ARenamedTaskKeepsEverythingButItsName) {
   EXPECT_EQ(store_->find_task("shelf")->paths, 1U);
 }
 
+TEST_P(StoreConformance, AKnownReportIsOfTheTaskOfItsAttemptWhateverItNames) {
+  report(solved(1));
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));
+  // In one batch with a report that begins a task of the old name.
+  const std::vector<Receipt> receipts = test::report(*store_, {solved(1), solved(2), solved(1)});
+  EXPECT_EQ(receipts[0].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(receipts[1].status, ReceiptStatus::Stored);
+  EXPECT_EQ(receipts[2].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->find_task("rack")->attempts, 1U);
+  EXPECT_EQ(store_->find_task("shelf")->attempts, 1U);
+  ASSERT_TRUE(store_->rename_task("shelf", "table"));
+  EXPECT_EQ(test::report(*store_, {solved(2), solved(1)})[0].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 2U);
+}
+
 TEST_P(StoreConformance, ARemovedTaskIsOnRecordAndListedAgainWithItsNextAttempt) {
   test::report(*store_, {solved(1), solved(2)});
   report(test::make_attempt(panda_.digest, "table", 3));
@@ -63,6 +78,28 @@ TEST_P(StoreConformance, ARemovedTaskIsOnRecordAndListedAgainWithItsNextAttempt)
   EXPECT_EQ(report(test::make_unsolved(panda_.digest, "shelf", 4)), ReceiptStatus::Recorded);
   EXPECT_EQ(store_->find_task("shelf")->attempts, 3U);
   EXPECT_EQ(store_->remove_task("nothing").error().code, ErrorCode::NotFound);
+}
+
+TEST_P(StoreConformance, ThatATaskWasRemovedHidesNoOtherOfItsName) {
+  std::uint64_t number = 0;
+  const auto report_more = [&](const std::string& task, int count) {
+    for (int i = 0; i < count; ++i)
+      report(test::make_attempt(panda_.digest, task, ++number));
+  };
+  report_more("lod", 3);
+  ASSERT_TRUE(store_->remove_task("lod"));
+  report_more("lod", 1);
+  ASSERT_TRUE(store_->rename_task("lod", "load"));
+  report_more("lod", 3);
+  ASSERT_TRUE(store_->find_task("lod")) << "as many attempts as the removed one had";
+  ASSERT_TRUE(store_->rename_task("lod", "lode"));
+  report_more("table", 3);
+  ASSERT_TRUE(store_->rename_task("table", "lod"));
+  EXPECT_TRUE(store_->find_task("lod"));
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 3U);
+  ASSERT_TRUE(store_->remove_task("lode"));
+  EXPECT_FALSE(store_->find_task("lode"));
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 2U);
 }
 
 TEST_P(StoreConformance, ReportsAreFoundByTheBeginningOfTheirUuid) {
@@ -183,6 +220,7 @@ TEST_P(StoreConformance, ReadsOnlyPathsThatArrivedSince) {
 }
 
 TEST_P(StoreConformance, AnEvictedDistributionIsGoneAndItsRevisionsGoOn) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   const Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   store_->put_distribution(distribution);
   store_->put_distribution(distribution);
@@ -200,6 +238,7 @@ TEST_P(StoreConformance, AnEvictedDistributionIsGoneAndItsRevisionsGoOn) {
 }
 
 TEST_P(StoreConformance, KeepsWhatAFitWasAskedForAndWhatItsSourcesGave) {
+  test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
   distribution.selection = {{panda_.digest, iiwa_.digest}, Weighting::Paths, 1'700'000'000'000};
   distribution.sources[0].relation = Relation::SameArm;

@@ -73,6 +73,7 @@ TEST_P(StoreConformance, AttemptsAreListedOnBehindThoseOfARemovedRobot) {
 }
 
 TEST_P(StoreConformance, ARobotWithoutAttemptsIsDeletedWithItsDistributions) {
+  test::begin_task(*store_, iiwa_.digest, "shelf");
   const Distribution distribution = test::make_distribution(panda_.digest, "shelf", 5);
   EXPECT_EQ(store_->put_distribution(distribution), 1U);
   const RemovedRobot removed = store_->remove_robot(panda_.digest).value_or_throw();

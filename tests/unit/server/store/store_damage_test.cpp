@@ -41,6 +41,19 @@ TEST_F(StoreDamage, AResentReportWhosePathIsDamagedIsStoredAnew) {
   EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
 }
 
+TEST_F(StoreDamage, AResentReportMendsThePathInTheTaskThatWasRenamedSince) {
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  ASSERT_TRUE(store_->rename_task("shelf", "rack"));
+  edit(kFlipWaypoints);
+  open();
+  EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Stored);
+  EXPECT_FALSE(store_->find_task("shelf"));
+  EXPECT_EQ(store_->read_paths(robot_.digest, "rack", {.limit = 10}).size(), 3U);
+  EXPECT_EQ(store_->find_attempt(attempt(2).report_uuid)->task, "rack");
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
 TEST_F(StoreDamage, TheSameContentAnewIsStoredAndServesTheFirstReportToo) {
   test::report(*store_, {attempt(1), attempt(2), attempt(3)});
   edit(kFlipWaypoints);
@@ -317,6 +330,7 @@ TEST_F(StoreDamage, ADamagedDigestOfARobotIsNotTakenForItsOwn) {
 }
 
 TEST_F(StoreDamage, AnIndexEntryThatLeadsToAnotherDistributionGivesNone) {
+  test::begin_task(*store_, robot_.digest, "shelf");
   const Distribution first = test::make_distribution(robot_.digest, "shelf", 1);
   const Distribution second = test::make_distribution(robot_.digest, "shelf", 2);
   store_->put_distribution(first);

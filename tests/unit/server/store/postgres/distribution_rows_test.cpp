@@ -18,6 +18,8 @@ class DistributionRows : public EmptyStore {
   void SetUp() override {
     EmptyStore::SetUp();
     if (!IsSkipped())
+      connection_->query("INSERT INTO task (name) VALUES ('shelf')");
+    if (!IsSkipped())
       connection_->query(
           "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
           " registered_ms, crc32c, urdf) VALUES ($1, 'panda', 7, 'base', 'tip',"

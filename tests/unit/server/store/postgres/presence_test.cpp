@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 #include <memory>
 #include <set>
 
@@ -99,6 +100,43 @@ TEST_F(PostgresPresence, WhatBeganSoonerAndIsCommittedLaterIsTold) {
   EXPECT_EQ(changes.experience.at(0).now.generation, 2U) << "told twice at worst";
 }
 
+TEST_F(PostgresPresence, ReportsAreStoredAlsoIfTheirTaskIsRenamedMeanwhile) {
+  report(1, "lod");
+  postgres::Connection slow{postgres::ConnectionString(url_)};
+  slow.query("BEGIN");
+  slow.query("INSERT INTO task (name) VALUES ('new')");
+  // Holds them up between the look for their tasks and that for their pairs.
+  auto receipts = std::async(std::launch::async, [&] {
+    return test::report(*one_, {test::make_attempt(robot_.digest, "lod", 2),
+                                test::make_attempt(robot_.digest, "new", 3)});
+  });
+  test::wait_until_true(url_, "SELECT count(*) = 1 FROM pg_locks WHERE NOT granted");
+  ASSERT_TRUE(other_->rename_task("lod", "load"));
+  slow.query("ROLLBACK");
+  for (const Receipt& receipt : receipts.get())
+    EXPECT_EQ(receipt.status, ReceiptStatus::Stored) << receipt.message;
+  EXPECT_EQ(one_->find_task("load")->paths, 1U);
+  EXPECT_EQ(one_->find_task("lod")->paths, 1U) << "named by a report after its renaming";
+}
+
+TEST_F(PostgresPresence, ARenamedTaskIsToldUnderBothNames) {
+  report(1, "lod");
+  report(2, "table");
+  static_cast<void>(look());
+  static_cast<void>(look());
+  ASSERT_TRUE(one_->rename_task("lod", "load"));
+  StoreChanges changes = look();
+  EXPECT_EQ(changes.former_tasks, std::vector<std::string>{"lod"});
+  ASSERT_EQ(tasks_of(changes), std::set<std::string>{"load"});
+  EXPECT_EQ(changes.experience[0].now.generation, 2U);
+  EXPECT_EQ(changes.experience[0].now.retired_generation, 2U);
+  EXPECT_TRUE(look().former_tasks.empty());
+  ASSERT_TRUE(one_->rename_task("load", "lod"));
+  ASSERT_TRUE(one_->rename_task("lod", "load"));
+  changes = look();
+  EXPECT_EQ(changes.former_tasks.size(), 2U) << "a name may be given up again";
+}
+
 TEST_F(PostgresPresence, ACursorOfSomethingElseIsRefused) {
   for (const char* const cursor : {"1; DROP", "1", ".", "1.", ".1", "1.1.1", "1.-1"})
     EXPECT_THROW(static_cast<void>(other_->changes_since(cursor)), Failure) << cursor;
@@ -126,6 +164,7 @@ TEST_F(PostgresPresence, OneServerAtATimeMayFitADistribution) {
 }
 
 TEST_F(PostgresPresence, TheRightOfAServerThatDiedIsFreeAndWhatItStoresAfterwardsIsNotTaken) {
+  report(1);
   const FitRight lost = one_->take_fit_right(distribution_.id).value();
   let_servers_die();
   const FitRight right = other_->take_fit_right(distribution_.id).value();
