@@ -48,15 +48,14 @@ typedef enum kinship_code {
   KINSHIP_CODE_WIDTH = 0x7fffffff /**< no code: enumerations are as wide as int everywhere */
 } kinship_code;
 
-/** Version of the library that runs, e.g. "0.1.0"; never freed. */
+/** Version of the library that runs, e.g. "0.2.0"; never freed. */
 KINSHIP_API const char* kinship_version(void);
 
 /** Why the last call of this thread that returned another code than KINSHIP_OK did; "" before there
  * was one. Valid until the next call of this thread that fails. */
 KINSHIP_API const char* kinship_error_text(void);
 
-/** The identity of a robot: a digest of its kinematics and transfer frame, the same on every
- * machine. */
+/** A robot: the digest of its kinematics and transfer frame, the same on every machine. */
 typedef struct kinship_robot {
   uint8_t digest[32];
 } kinship_robot;
@@ -66,8 +65,7 @@ typedef struct kinship_robot {
 
 typedef struct kinship_client kinship_client;
 
-/** The domain that KINSHIP_DOMAIN says, or 0. */
-#define KINSHIP_ENVIRONMENT 0xffffffffu
+#define KINSHIP_ENVIRONMENT 0xffffffffu /**< the domain that KINSHIP_DOMAIN says, or 0 */
 
 typedef struct kinship_client_options {
   size_t size;
@@ -91,8 +89,7 @@ KINSHIP_API void kinship_client_close(kinship_client* client);
  * security, and of NULL. Valid until the next such call of this thread. Waits for nobody. */
 KINSHIP_API const char* kinship_client_warning(const kinship_client* client);
 
-/** A joint beside the chain that stands still. Without a member `size`: it stays as it is, whatever
- * comes in later versions. */
+/** A joint beside the chain that stands still. Has no `size`: later versions leave it as it is. */
 typedef struct kinship_held_joint {
   const char* name;
   double value; /**< rad or m */

@@ -221,24 +221,19 @@ void RehearsalScheduler::new_experience(std::string_view task) {
   versions_.grew(task);
 }
 
-void RehearsalScheduler::forget(std::string_view task) {
+void RehearsalScheduler::forget(std::string_view task, Loss loss) {
   const std::lock_guard lock(mutex_);
   versions_.lost(task);
-  for (auto& [id, entry] : entries_)
-    if (entry.key.distribution.task == task) {
-      entry.is_lost = true;
-      entry.library.reset();
-    }
-}
-
-void RehearsalScheduler::drop(std::string_view task) {
-  forget(task);
-  const std::lock_guard lock(mutex_);
-  for (auto& [id, entry] : entries_)
-    if (entry.key.distribution.task == task) {
-      entry.known.reset();
-      entry.made_of = {};
-    }
+  for (auto& [id, entry] : entries_) {
+    if (entry.key.distribution.task != task)
+      continue;
+    entry.is_lost = true;
+    entry.library.reset();
+    if (loss == Loss::Paths)
+      continue;
+    entry.known.reset();
+    entry.made_of = {};
+  }
 }
 
 SharedRehearsal RehearsalScheduler::find(const Digest& distribution) const {

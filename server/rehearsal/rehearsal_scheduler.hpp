@@ -104,8 +104,8 @@ class RehearsalScheduler {
   void expire(TimePoint now);
 
   void new_experience(std::string_view task);  ///< there are new paths
-  void forget(std::string_view task);          ///< paths were retired
-  void drop(std::string_view task);            ///< it was renamed or removed: nothing known counts
+  enum class Loss { Paths, Task };  ///< retired; renamed or removed: nothing known counts
+  void forget(std::string_view task, Loss loss = Loss::Paths);
 
   /// The known library of a robot and task, at this placement or the nearest one; null: none.
   /// Begins nothing.

@@ -246,7 +246,7 @@ void FetchService::forget_task(const std::string& task) {
 
 void FetchService::drop_task(const std::string& task) {
   forget_task(task);
-  rehearsals_.drop(task);
+  rehearsals_.forget(task, rehearsal::RehearsalScheduler::Loss::Task);
 }
 
 void FetchService::forget_robot(const Digest& robot) {
