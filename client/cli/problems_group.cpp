@@ -15,7 +15,7 @@ void add_problems(CLI::App& app, Session& session) {
       "shelf.problems.jsonl");
   command
       ->add_option("robot", options->robot.source,
-                   "URDF file, or a folder with chain.toml and robot.urdf")
+                   "Folder with a chain.toml, URDF file, or a robot that comes along, e.g. panda")
       ->required()
       ->type_name("FILE");
   arguments::add_robot_options(*command, options->robot);

@@ -22,8 +22,10 @@ namespace {
 
 void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
   command
-      .add_option("robot", robot.source,
-                  "Folder with a chain.toml ('kinship robots init' makes one), or URDF file")
+      .add_option(
+          "robot", robot.source,
+          "Folder with a chain.toml ('kinship robots init' makes one), URDF file, or a robot that "
+          "comes along, e.g. panda")
       ->required()
       ->type_name("FILE");
   arguments::add_robot_options(command, robot);

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "proto/files/installed_place.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/nearest_name.hpp"
@@ -289,6 +290,15 @@ std::string tables_text(const ChainFile& chain) {
 }
 
 }  // namespace
+
+std::filesystem::path place_of_robot(const std::filesystem::path& source) {
+  std::error_code unreadable;  // is for the reader to tell
+  if (source.empty() || source.has_parent_path() || std::filesystem::exists(source, unreadable))
+    return source;
+  const std::filesystem::path brought =
+      files::installed_place("robots", KINSHIP_ROBOTS_DIR) / source;
+  return is_model_folder(brought) ? brought : source;
+}
 
 bool is_model_folder(const std::filesystem::path& source) {
   std::error_code unreadable;  // is for the reader to tell

@@ -40,6 +40,11 @@ struct ChainFile {
   std::optional<double> limit_slack = std::nullopt;
 };
 
+/// \param source  a folder, a file, or the name of a robot that comes along with Kinship, e.g.
+/// "ur10e". \return the folder of such a robot, if there is nothing of that name here; else
+/// `source`.
+std::filesystem::path place_of_robot(const std::filesystem::path& source);
+
 /// Whether a path names a model folder.
 bool is_model_folder(const std::filesystem::path& source);
 

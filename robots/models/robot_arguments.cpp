@@ -197,6 +197,7 @@ XacroInput urdf_input(const RobotArguments& arguments) {
 }
 
 Result<ResolvedArguments> resolve(RobotArguments arguments) {
+  arguments.source = place_of_robot(arguments.source);
   if (!is_model_folder(arguments.source))
     return ResolvedArguments{std::move(arguments), std::nullopt};
   auto chain = read_chain_file(arguments.source);
@@ -240,7 +241,7 @@ Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
 }
 
 bool says_transfer(const RobotArguments& arguments) {
-  return !arguments.transfer.empty() || is_model_folder(arguments.source);
+  return !arguments.transfer.empty() || is_model_folder(place_of_robot(arguments.source));
 }
 
 Result<DescribedRobot> describe_robot(const RobotArguments& arguments) {

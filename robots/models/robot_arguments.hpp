@@ -17,7 +17,7 @@ namespace kinship::models {
 /// A robot as a command line names it: a model folder, or a URDF file with the missing data.
 /// Arguments beside a model folder replace the values of its chain.toml.
 struct RobotArguments {
-  std::filesystem::path source = {};  ///< a folder with chain.toml, or a URDF file
+  std::filesystem::path source = {};  ///< a folder with chain.toml, a URDF file, or a robot's name
   std::string base_link = {};         ///< required for a URDF file
   std::string tip_link = {};          ///< required for a URDF file
   std::string label = {};  ///< empty: the folder's, or the URDF file's name without ending

@@ -49,7 +49,7 @@ void fill_in(const LinksOfFile& links, RobotArguments& arguments) {
 
 /// \throws Failure with the fault.
 LinksOfFile read_links(RobotArguments& arguments) {
-  const bool is_folder = is_model_folder(arguments.source);
+  const bool is_folder = is_model_folder(place_of_robot(arguments.source));
   const RobotArguments resolved = resolve(arguments).value_or_throw().arguments;
   const std::filesystem::path& file = resolved.source;
   const std::string urdf = read_expanded(file, urdf_input(resolved));

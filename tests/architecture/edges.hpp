@@ -106,7 +106,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {tables, {{types}, {}}},
       {files, {{types}, {}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
-      {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
+      {models, {{files, geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},

@@ -13,6 +13,13 @@ namespace {
 
 const std::string kModels = test::source_dir() + "/robots/models/";
 
+TEST(RobotArguments, ARobotThatComesAlongIsNamedByItsFolderAlone) {
+  EXPECT_EQ(describe_robot({.source = "panda"}).value_or_throw().description.label, "panda");
+  EXPECT_TRUE(says_transfer({.source = "panda"}));
+  EXPECT_EQ(describe_robot({.source = "pando"}).error().code, ErrorCode::NotFound);
+  EXPECT_EQ(place_of_robot("./panda"), "./panda");
+}
+
 TEST(ParsePose, TakesSevenNumbers) {
   const auto pose = parse_pose("0.1 -2, 3e-1  0 0 0 1");
   ASSERT_TRUE(pose);
