@@ -63,7 +63,7 @@ struct kinship_follower {
 
 struct kinship_recall {
   kinship_recall(const kinship::kinematics::Chain& chain, const kinship::RecallLibrary& library,
-                 const std::optional<Eigen::Isometry3d>& asked_for)
+                 const std::optional<Eigen::Isometry3d>& asked_for = {})
       : guide(chain, library), T_task_base(asked_for.value_or(Eigen::Isometry3d::Identity())) {}
   const kinship::recall::RecallGuide guide;
   const Eigen::Isometry3d T_task_base;  // that it is for

@@ -86,16 +86,16 @@ TEST_F(NewStore, GetsTheOldReportsAndRobotsOnDemandAlone) {
   plan("panda", 3);
   EXPECT_EQ(attempts(), "3");
   begin_anew();
+  std::ofstream(directory_ / "empty.jsonl");
+  const Answer imported = kinship("paths import " + (directory_ / "empty.jsonl").string());
+  EXPECT_EQ(imported.code, 0) << imported.err;
+  EXPECT_NE(imported.err.find("3 reports of an older store ("), std::string::npos)
+      << "before the outbox had the new one: " << imported.err;
   const Answer first = plan("ur10e", 2);
   EXPECT_TRUE(first.says("outbox: 3 reports of an older store (")) << first.err;
   EXPECT_TRUE(first.says("'kinship outbox resend --all'")) << first.err;
   EXPECT_EQ(attempts(), "2");
   EXPECT_EQ(robots(), "1") << "the panda comes with its reports alone";
-
-  std::ofstream(directory_ / "empty.jsonl");
-  const Answer imported = kinship("paths import " + (directory_ / "empty.jsonl").string());
-  EXPECT_EQ(imported.code, 0) << imported.err;
-  EXPECT_NE(imported.err.find("3 reports of an older store ("), std::string::npos) << imported.err;
   const Answer listed = kinship("outbox list");
   EXPECT_TRUE(listed.says("3 reports of this older store")) << listed.out;
   EXPECT_TRUE(kinship("outbox resend").says("3 reports of an older store")) << "which it leaves";
