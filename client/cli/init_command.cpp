@@ -77,6 +77,12 @@ std::string fault_of(const Result<T>& result) {
   return result ? std::string() : result.error().message;
 }
 
+/// Why arguments make no robot.
+std::string robot_fault(const models::RobotArguments& arguments) {
+  auto described = models::describe_robot(arguments);
+  return described ? fault_of(models::read_model(*std::move(described))) : fault_of(described);
+}
+
 /// NAME of each package://NAME/ in a URDF.
 std::set<std::string> named_packages(const std::string& urdf) {
   constexpr std::string_view kPackage = "package://";
@@ -151,7 +157,7 @@ class Chooser {
         choose_end("tip link", "--tip", has_tip, likely.tip_link, [&](const std::string& name) {
           models::RobotArguments other = arguments_;
           other.tip_link = name;
-          return fault_of(kinship::models::describe_robot(other));
+          return robot_fault(other);
         });
     arguments_.tip_link = tip;
     std::string possible;
@@ -273,9 +279,7 @@ class Chooser {
         [&](const std::string& text) {
           models::RobotArguments other = arguments_;
           other.transfer = text;
-          auto described = models::describe_robot(other);
-          return described ? fault_of(models::read_model(*std::move(described)))
-                           : fault_of(described);
+          return robot_fault(other);
         });
     arguments_.transfer = transfer;
     add("transfer", transfer,

@@ -18,6 +18,7 @@
 #include "robots/collision/edge_prover.hpp"
 #include "robots/geometry/geometry_doubts.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/models/loaded_robot.hpp"
 #include "robots/models/mesh_files.hpp"
 
 namespace kinship::cli {
@@ -101,7 +102,7 @@ Result<collision::Surroundings> read_surroundings(const InverseCommandOptions& o
   if (!*problem)
     return Error{problem->error().code,
                  "--scene '" + options.scene.string() + "': " + problem->error().message};
-  const auto packages = models::parse_packages(options.robot.packages);
+  const auto packages = models::packages_of(options.robot);
   if (!packages)
     return packages.error();
   Problem first = **problem;

@@ -158,7 +158,7 @@ class Run {
         reporter_{robot.chain.digest(), options.machine.empty() ? host_name() : options.machine,
                   options.task},
         meshes_(options.problems.parent_path(),
-                models::parse_packages(options.robot.packages).value_or_throw()),
+                models::packages_of(options.robot).value_or_throw()),
         scenes_(options, robot_.chain, streams.messages) {
     if (const std::string touching = collision::describe_always_touching(robot_.solids);
         !touching.empty())

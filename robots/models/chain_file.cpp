@@ -250,7 +250,7 @@ std::string listed(const Values& values, ToText to_text) {
   std::string text;
   for (const auto& value : values)
     text += (text.empty() ? "" : ", ") + to_text(value);
-  return "[" + text + "]";
+  return '[' + text + ']';
 }
 
 std::string path_text(const std::filesystem::path& path) { return quoted(path.string()); }
@@ -360,7 +360,7 @@ std::string chain_file_text(const ChainFile& chain) {
   if (!chain.never_colliding.empty())
     text += field_text("Pairs of links that are never checked against each other.",
                        "never_colliding", listed(chain.never_colliding, [](const auto& pair) {
-                         return "[" + quoted(pair.first) + ", " + quoted(pair.second) + "]";
+                         return '[' + quoted(pair.first) + ", " + quoted(pair.second) + ']';
                        }));
   if (!chain.mesh_folders.empty())
     text += field_text("Folders in which meshes are looked for that are not where the URDF says.",

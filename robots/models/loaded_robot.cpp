@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "robots/geometry/geometry_doubts.hpp"
-#include "robots/models/mesh_files.hpp"
 
 namespace kinship::models {
 namespace {
@@ -52,6 +51,13 @@ Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
   if (const auto error = excuse(resolved->arguments.without_collision, robot.chain, shapes))
     return *error;
   return shapes;
+}
+
+Result<PackageFolders> packages_of(const RobotArguments& arguments) {
+  const auto resolved = resolve(arguments);
+  if (!resolved)
+    return resolved.error();
+  return parse_packages(resolved->arguments.packages);
 }
 
 Result<std::vector<std::string>> add_meshes(const RobotArguments& arguments,

@@ -8,6 +8,7 @@
 #include "robots/geometry/link_meshes.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "robots/models/mesh_files.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 namespace kinship::models {
@@ -30,6 +31,10 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 /// \return also InvalidInput if such a link is missing or has solids.
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const kinematics::RobotModel& robot);
+
+/// Folders of the packages that the arguments or the folder of a robot name, for problems too.
+/// \return also the errors of resolve() and parse_packages().
+Result<PackageFolders> packages_of(const RobotArguments& arguments);
 
 /// Adds the meshes of a robot's links to its description, for a server; none if the arguments say
 /// so.

@@ -7,7 +7,7 @@
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
-#include "robots/models/mesh_files.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::results {
 namespace {
@@ -30,8 +30,7 @@ void read_each_line(const std::filesystem::path& file, Read read, Use use) {
 
 std::map<std::string, Problem> read_problems(const std::filesystem::path& file,
                                              const models::RobotArguments& robot) {
-  models::SceneMeshes meshes(file.parent_path(),
-                             models::parse_packages(robot.packages).value_or_throw());
+  models::SceneMeshes meshes(file.parent_path(), models::packages_of(robot).value_or_throw());
   std::map<std::string, Problem> problems;
   read_each_line(
       file, [](const std::string& text) { return json::problem_from_json(text); },
