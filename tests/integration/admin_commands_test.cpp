@@ -66,9 +66,13 @@ TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
 
   const Server empty(folder_ / "empty.db");
   const Answer first = empty.ends(0, "paths import " + file("all.jsonl") + " --json");
-  EXPECT_EQ(first.out, "{\"robots\":1,\"stored\":6,\"known\":0,\"recorded\":1,\"refused\":0}\n");
+  EXPECT_EQ(first.out,
+            "{\"format\":\"kinship.path-import/"
+            "1\",\"robots\":1,\"stored\":6,\"known\":0,\"recorded\":1,\"refused\":0}\n");
   const Answer again = empty.ends(0, "paths import " + file("all.jsonl") + " --json");
-  EXPECT_EQ(again.out, "{\"robots\":1,\"stored\":0,\"known\":7,\"recorded\":0,\"refused\":0}\n");
+  EXPECT_EQ(again.out,
+            "{\"format\":\"kinship.path-import/"
+            "1\",\"robots\":1,\"stored\":0,\"known\":7,\"recorded\":0,\"refused\":0}\n");
 
   const Answer copy = empty.ends(0, "paths export");
   EXPECT_EQ(copy.out, test::read_text(folder_ / "all.jsonl"));
@@ -176,7 +180,8 @@ TEST_F(AdminCommands, TheExperienceOfATaskIsListed) {
   const Answer few = server_.kinship("tasks experience sweep --max-bytes " + two);
   expect_has(few.out, "\n2 of 6 paths\n");
   const Answer document = server_.ends(0, "tasks experience sweep --json --max-bytes " + two);
-  EXPECT_EQ(document.out.find("{\"revision\":\""), 0U) << document.out;
+  EXPECT_EQ(document.out.find(R"({"format":"kinship.task-experience/1","revision":")"), 0U)
+      << document.out;
   expect_has(document.out, "\"paths_known\":6,\"paths\":[{\"path\":\"");
   server_.ends(3, "tasks experience dance");
   server_.ends(2, "tasks experience sweep --max-bytes 0");

@@ -57,6 +57,7 @@ class Study:
         self.name = name
         self.options = options
         self.description: dict[str, Any] = checked(json.loads(self._ask("--describe")), "study-description")
+        self.description.pop("format", None)  # of that document
         self.fleet = [Member(robot["label"], kinship.Robot(options.models / robot["label"]), _matrix(robot["T_task_base"]))
                       for robot in self.description["robots"]]
 
