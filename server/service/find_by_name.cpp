@@ -120,8 +120,8 @@ Uuid report_of(const store::ExperienceStore& store, const std::string& text) {
 }
 
 Error no_task(const store::ExperienceStore& store, const std::string& task) {
-  return {ErrorCode::NotFound,
-          not_found("task", task).message + catalog::nearest_task(store, task)};
+  return {ErrorCode::NotFound, not_found("task", task).message +
+                                   catalog::nearest_task(store, task, catalog::Of::AllTasks)};
 }
 
 Error not_found(const std::string& what, const std::string& name) {
