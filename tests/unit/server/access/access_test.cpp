@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <string>
 
@@ -188,7 +189,8 @@ TEST(Access, NarrowedItDoesNothingThatReachesBeyondWhatItIsFor) {
   for (const AdminVerb verb :
        {AdminVerb::Backup, AdminVerb::ListJobs, AdminVerb::RemoveRobot, AdminVerb::RenameRobot})
     EXPECT_TRUE(refusal_of(admin, verb)) << rule_of(verb).name;
-  constexpr auto kOfATask = {AdminVerb::ResetTask, AdminVerb::RenameTask, AdminVerb::RemoveTask};
+  constexpr std::array kOfATask = {AdminVerb::ResetTask, AdminVerb::RenameTask,
+                                   AdminVerb::RemoveTask};
   for (const AdminVerb verb : kOfATask)
     EXPECT_FALSE(refusal_of(admin, verb)) << rule_of(verb).name;
   admin.tasks.clear();
