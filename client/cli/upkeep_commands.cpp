@@ -119,6 +119,8 @@ int restore_paths(link::Client& server, const RestoreOptions& options, std::ostr
       out << " (" << restored->reason << ')';
     out << '\n';
   }
+  if (restored->paths + restored->in_use + restored->lost == 0)
+    return kNotFound;
   return restored->lost > 0 ? kFailed : kDone;
 }
 

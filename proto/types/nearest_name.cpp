@@ -28,15 +28,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
+std::size_t max_edits(std::string_view word) noexcept {
   constexpr std::size_t kShort = 4;  // letters of a word, most of which are other words' too
-  std::size_t least = word.size() <= kShort ? 2 : 3;
+  return word.size() <= kShort ? 1 : 2;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
+  std::size_t least = max_edits(word) + 1;
   const std::string* nearest = nullptr;
-  for (const std::string& candidate : candidates)
+  for (const std::string& candidate : candidates) {
+    const auto [shorter, longer] = std::minmax({word.size(), candidate.size()});
+    if (longer - shorter >= least)
+      continue;
     if (const std::size_t distance = edit_distance(word, candidate); distance < least) {
       least = distance;
       nearest = &candidate;
     }
+  }
   return nearest == nullptr ? "" : std::string(kBefore) + *nearest + "'?)";
 }
 

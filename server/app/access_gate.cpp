@@ -69,6 +69,10 @@ bool keep_allowed(ReportRequest& request, const Caller& caller, const RobotLabel
   return is_postponed;
 }
 
+bool may_know_all_tasks(const Caller& caller) {
+  return !access::is_narrowed(caller) && !access::refusal_of(caller, AdminVerb::ListTasks);
+}
+
 /// A robot that is known already is taken only under a label of the caller's.
 runtime::RobotRegistry::LabelRule rule_for(const Caller& caller) {
   if (caller.robots.empty())
@@ -127,7 +131,7 @@ void fetch(service::FetchService& fetches, service::RegistrationService& robots,
            const std::function<void(const FetchReply&)>& done) {
   if (const auto refusal = access::refusal_of_fetch(caller, request.task, ""))
     return fetches.refuse(refusal->message, done);
-  if (access::is_narrowed(caller) && !access::withholds_sources(caller))
+  if (!may_know_all_tasks(caller) && !access::withholds_sources(caller))
     return fetches.fetch(request, waiter, [done](FetchReply reply) {
       reply.message = without_suggestion(std::move(reply.message));
       done(reply);

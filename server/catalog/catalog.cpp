@@ -38,6 +38,7 @@ Catalog::Catalog(const Parts& parts, Options options)
               .clock = parts.clock,
               .memory = parts.memory},
              options_.fit),
+      nearest_tasks_(parts.store, parts.clock),
       state_(parts.clock, options_.limits, work()) {}
 
 CatalogState::Work Catalog::work() {
@@ -180,8 +181,10 @@ void Catalog::look_up(const Digest& id) {
   if (!input)
     return;
   try {
-    const LookUp found = catalog::look_up(id, input->key, input->in_memory, parts_.store,
-                                          parts_.distributions, parts_.robots);
+    LookUp found = catalog::look_up(id, input->key, input->in_memory, parts_.store,
+                                    parts_.distributions, parts_.robots);
+    if (found.has_no_paths)
+      found.end = no_experience(input->key, nearest_tasks_.find(input->key.task));
     const AdvisedReply known = adviser_.advise(found.known, input->key);
     change([&](Afterwards& after) { state_.resolve(id, found, known, input->version, after); });
   } catch (const std::exception& exception) {

@@ -16,6 +16,7 @@
 #include "server/catalog/adviser.hpp"
 #include "server/catalog/catalog_state.hpp"
 #include "server/catalog/distribution_maker.hpp"
+#include "server/catalog/nearest_task.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
@@ -152,6 +153,7 @@ class Catalog {
   const Options options_;
   const Adviser adviser_;
   const DistributionMaker maker_;
+  NearestTasks nearest_tasks_;
   std::stop_source stop_source_;
   std::atomic<std::uint64_t> fetches_{0}, fetches_from_memory_{0}, fetches_not_from_memory_{0},
       fits_{0};

@@ -8,7 +8,6 @@
 #include "proto/types/failure.hpp"
 #include "server/catalog/fetch_reply.hpp"
 #include "server/catalog/freshness.hpp"
-#include "server/catalog/nearest_task.hpp"
 #include "server/fitting/selected_experience.hpp"
 
 namespace kinship::catalog {
@@ -37,11 +36,6 @@ bool is_of_paths(const std::vector<store::ExperienceSummary>& all) {
   return std::ranges::any_of(all, [](const auto& robot) { return robot.paths > 0; });
 }
 
-/// A task with paths whose name is near.
-std::string suggested_task(const store::ExperienceStore& store, const std::string& task) {
-  return nearest_task(store, task, [](const TaskSummary& other) { return other.paths > 0; });
-}
-
 }  // namespace
 
 LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const SharedReply& in_memory,
@@ -62,8 +56,10 @@ LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const Shar
   if (found.known && is_retired(*found.known->distribution, all))
     found.known = nullptr;
   found.experience = selected_experience(key, all);
-  if (!found.known && fitting::count_paths(found.experience) == 0)
-    found.end = no_experience(key, is_of_paths(all) ? "" : suggested_task(store, key.task));
+  if (!found.known && fitting::count_paths(found.experience) == 0) {
+    found.end = no_experience(key);
+    found.has_no_paths = !is_of_paths(all);
+  }
   return found;
 }
 

@@ -16,6 +16,7 @@ struct LookUp {
   /// The final reply if nothing can be fitted: unknown or unreadable robot, unknown source, no
   /// experience.
   std::optional<FetchReply> end;
+  bool has_no_paths = false;                         ///< no robot has any of the task
   SharedReply known;                                 ///< null: none may be served
   std::vector<store::ExperienceSummary> experience;  ///< of the key's selection
 };

@@ -138,6 +138,7 @@ class Administration {
   AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
   /// The robot that a request's filters name. \throws Failure(NotFound), of its task as well.
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
+  std::optional<Digest> robot_of_restoration(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
   void forget_tasks_of(const Digest& robot);
   void drop_tasks(std::initializer_list<std::string> tasks,

@@ -90,9 +90,7 @@ AdminPage Administration::restore_path(const Call& call) {
         Error{ErrorCode::InvalidInput, "restore_path: takes a path's report, or a task or robot"});
   Restoration restored;
   restored.task = request.task;
-  std::optional<Digest> robot;
-  if (!request.robot.empty())
-    robot = find_robot(parts_.store, request.robot).value_or_throw().robot;
+  const std::optional<Digest> robot = robot_of_restoration(request);
   std::vector<Uuid> one;
   if (!request.argument.empty()) {
     one.push_back(report_of(parts_.store, request.argument));
@@ -126,6 +124,15 @@ AdminPage Administration::restore_path(const Call& call) {
              std::to_string(restored.paths) + " paths restored, " +
                  std::to_string(restored.in_use + restored.lost) + " left out");
   return page_of(std::move(restored));
+}
+
+/// The robot to filter by. \throws Failure(NotFound), also if its task neither is listed nor, being
+/// removed, has paths.
+std::optional<Digest> Administration::robot_of_restoration(const AdminRequest& request) const {
+  AdminRequest known = request;
+  if (!request.task.empty() && !parts_.store.list_paths({}, request.task, {}, 1).rows.empty())
+    known.task.clear();
+  return robot_filter(known);
 }
 
 void Administration::restore_listed(const std::optional<Digest>& robot, const std::string& task,

@@ -96,12 +96,11 @@ Result<Digest> find_distribution_id(const store::DistributionStore& store,
   return *found;
 }
 
-Uuid report_of(const store::ExperienceStore& store, const std::string& text) {
+std::vector<Uuid> reports_like(const store::ExperienceStore& store, const std::string& text,
+                               std::size_t limit) {
   constexpr std::string_view kFirst = "00000000-0000-0000-0000-000000000000";
   constexpr std::string_view kLast = "ffffffff-ffff-ffff-ffff-ffffffffffff";
   constexpr std::size_t kMinUuidPrefix = 8;
-  if (const std::optional<Uuid> report = Uuid::parse(text))
-    return *report;
   const std::size_t length = text.size();
   const auto first =
       Uuid::parse(length < kFirst.size() ? text + std::string(kFirst.substr(length)) : text);
@@ -110,7 +109,13 @@ Uuid report_of(const store::ExperienceStore& store, const std::string& text) {
                   "'" + text + "' is not a report's UUID, nor a prefix of at least " +
                       std::to_string(kMinUuidPrefix) + " of its digits");
   const auto last = Uuid::parse(text + std::string(kLast.substr(length)));
-  const std::vector<Uuid> reports = store.reports_between(*first, *last, 2);
+  return store.reports_between(*first, *last, limit);
+}
+
+Uuid report_of(const store::ExperienceStore& store, const std::string& text) {
+  if (const std::optional<Uuid> report = Uuid::parse(text))
+    return *report;
+  const std::vector<Uuid> reports = reports_like(store, text, 2);
   if (reports.empty())
     throw Failure(not_found("report", text));
   if (reports.size() > 1)
@@ -120,8 +125,8 @@ Uuid report_of(const store::ExperienceStore& store, const std::string& text) {
 }
 
 Error no_task(const store::ExperienceStore& store, const std::string& task) {
-  return {ErrorCode::NotFound,
-          not_found("task", task).message + catalog::nearest_task(store, task)};
+  return {ErrorCode::NotFound, not_found("task", task).message +
+                                   catalog::nearest_task(store, task, catalog::Of::AllTasks)};
 }
 
 Error not_found(const std::string& what, const std::string& name) {

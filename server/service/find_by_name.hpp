@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
@@ -26,6 +28,11 @@ Result<Digest> find_distribution_id(const store::DistributionStore& store, const
 /// no report has it.
 /// \throws Failure(InvalidInput) for an invalid or ambiguous prefix; Failure(NotFound).
 Uuid report_of(const store::ExperienceStore& store, const std::string& text);
+
+/// Reports whose UUIDs begin with a text of at least eight digits, in order, at most `limit`.
+/// \throws Failure(InvalidInput) for another text.
+std::vector<Uuid> reports_like(const store::ExperienceStore& store, const std::string& text,
+                               std::size_t limit);
 
 /// "no task 'lod' (did you mean 'load'?)", with the nearest of all tasks.
 Error no_task(const store::ExperienceStore& store, const std::string& task);

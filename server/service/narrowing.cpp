@@ -98,8 +98,18 @@ void Narrowing::check_argument(const AdminRequest& request) const {
 void Narrowing::check_report(const std::string& uuid) const {
   if (uuid.empty())  // of RestorePath, which then has filters
     return;
-  const std::optional<Attempt> attempt = store_.find_attempt(report_of(store_, uuid));
-  if (attempt && !access::may_see(caller_, attempt->task, label_of(attempt->robot)))
+  constexpr std::size_t kMaxAlike = 100;
+  std::vector<Uuid> reports;
+  if (const std::optional<Uuid> whole = Uuid::parse(uuid))
+    reports.push_back(*whole);
+  else
+    reports = reports_like(store_, uuid, kMaxAlike);
+  const auto is_others = [this](const Uuid& report) {
+    const std::optional<Attempt> attempt = store_.find_attempt(report);
+    return attempt && !access::may_see(caller_, attempt->task, label_of(attempt->robot));
+  };
+  // That several begin alike is said only where all are the caller's.
+  if (std::ranges::any_of(reports, is_others))
     throw Failure(not_found("report", uuid));
 }
 

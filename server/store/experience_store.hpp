@@ -80,6 +80,14 @@ struct WantedAttempts {
   AttemptFilter filter = {};
 };
 
+/// Names of tasks as long as another name, but for some letters.
+struct WantedNames {
+  std::string_view like = {};
+  std::size_t letters = 0;
+  bool with_paths = false;
+  std::size_t limit = 0;
+};
+
 /// Reads attempts, paths and scenes, by robot and task; see Store.
 class ExperienceStore {
  public:
@@ -106,6 +114,8 @@ class ExperienceStore {
 
   virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
   virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
+  /// In order, of listed tasks.
+  virtual std::vector<std::string> task_names(const WantedNames& wanted) const = 0;
   /// The newest first, retired and dropped ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;

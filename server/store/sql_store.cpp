@@ -145,6 +145,11 @@ Result<RemovedTask> SqlStore::remove_task(std::string_view task, const std::stop
   });
 }
 
+std::vector<std::string> SqlStore::task_names(const WantedNames& wanted) const {
+  return read(View::EachStatement,
+              [&](Session& session) { return select_task_names(session, wanted); });
+}
+
 std::vector<Uuid> SqlStore::reports_between(const Uuid& first, const Uuid& last,
                                             std::size_t limit) const {
   return read(View::EachStatement, [&](Session& session) {

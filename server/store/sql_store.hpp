@@ -48,6 +48,7 @@ class SqlStore : public Store {
                                           const AuditEntry* audit) override;
   Result<RemovedTask> remove_task(std::string_view task, const std::stop_token& stop,
                                   const AuditEntry* audit) override;
+  std::vector<std::string> task_names(const WantedNames& wanted) const override;
   std::vector<Uuid> reports_between(const Uuid& first, const Uuid& last,
                                     std::size_t limit) const override;
 

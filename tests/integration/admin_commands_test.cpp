@@ -140,7 +140,9 @@ TEST_F(AdminCommands, ATaskIsRenamedAndRemovedAndAWrongNameIsAnsweredWithTheNear
   expect_has(server_.ends(3, "distributions fetch --task swep --robot panda").err,
              "did you mean 'sweep'");
   expect_has(server_.ends(3, "robots show pandar").err, "did you mean 'panda'");
-  expect_has(server_.ends(0, "tasks rename sweep swipe").out, "is called 'swipe' now, with 6 paths");
+  expect_has(server_.ends(3, "paths restore --task sweep").out, "0 paths of task 'sweep' restored");
+  expect_has(server_.ends(0, "tasks rename sweep swipe").out,
+             "is called 'swipe' now, with 6 paths");
   server_.ends(3, "tasks show sweep");
   server_.ends(0, "distributions fetch --task swipe --robot panda");
   server_.ends(2, "tasks rename swipe no/name");
@@ -149,6 +151,8 @@ TEST_F(AdminCommands, ATaskIsRenamedAndRemovedAndAWrongNameIsAnsweredWithTheNear
   EXPECT_EQ(json::row_from_json<TaskRemoval>(removed.out).value_or_throw().attempts, 7U);
   EXPECT_EQ(server_.ends(0, "tasks list").out, "(none)\n");
   server_.ends(3, "distributions fetch --task swipe --robot panda");
+  expect_has(server_.ends(0, "paths restore --task swipe").out, "6 paths of task 'swipe' restored");
+  server_.ends(0, "tasks show swipe");
   EXPECT_EQ(server_.kinship("status").out.find("admin verb"), std::string::npos);
 }
 

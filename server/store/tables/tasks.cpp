@@ -109,14 +109,27 @@ std::optional<TaskSummary> summary_of_task(Session& session, std::string_view ta
   return std::move(page.rows.front());
 }
 
+std::vector<std::string> select_task_names(Session& session, const WantedNames& wanted) {
+  std::string condition = session.is_intact("task") + " AND " + std::string(kIsListed);
+  if (wanted.with_paths)
+    condition += " AND EXISTS (SELECT 1 FROM experience WHERE task_id = task.id AND paths > 0)";
+  std::vector<std::string> names;
+  for (const Row& row : session.query(
+           "SELECT name FROM task WHERE length(name) BETWEEN length(CAST($1 AS text)) - $2"
+           " AND length(CAST($1 AS text)) + $2 AND " +
+               condition + " ORDER BY name LIMIT $3",
+           wanted.like, wanted.letters, wanted.limit))
+    names.emplace_back(row.column_text(0));
+  return names;
+}
+
 Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
                                         std::string_view name, const AuditEntry* audit) {
   // Waits for reports that name it, which lock its row and then its pairs.
-  const std::optional<std::int64_t> id =
-      session.find_integer("SELECT id FROM task WHERE name = $1 AND " + std::string(kIsListed) +
-                               " AND " + session.is_intact("task") +
-                               std::string(session.dialect().for_update),
-                           task);
+  const std::optional<std::int64_t> id = session.find_integer(
+      "SELECT id FROM task WHERE name = $1 AND " + std::string(kIsListed) + " AND " +
+          session.is_intact("task") + std::string(session.dialect().for_update),
+      task);
   if (!id)
     return Error{ErrorCode::NotFound, "no task '" + std::string(task) + "'"};
   if (session.find_integer("SELECT id FROM task WHERE name = $1", name))
@@ -131,10 +144,11 @@ Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
     delete_rehearsals_of(session, either);
   session.query("UPDATE task SET name = $1 WHERE id = $2", name, *id);
   // What memories have of either name is of another task from now on.
-  session.query("UPDATE experience SET generation = generation + 1,"
-                " retired_generation = generation + 1" +
-                    std::string(session.dialect().mark_changed) + " WHERE task_id = $1",
-                *id);
+  session.query(
+      "UPDATE experience SET generation = generation + 1,"
+      " retired_generation = generation + 1" +
+          std::string(session.dialect().mark_changed) + " WHERE task_id = $1",
+      *id);
   if (!session.dialect().note_former_task.empty())
     session.query(session.dialect().note_former_task, task);
   note_act(session, audit, AuditOutcome::Done, "'" + std::string(task) + "'",

@@ -28,6 +28,9 @@ Page<TaskSummary> page_of_tasks(Session& session, std::string_view cursor, std::
 /// In a snapshot.
 std::optional<TaskSummary> summary_of_task(Session& session, std::string_view task);
 
+/// As ExperienceStore::task_names().
+std::vector<std::string> select_task_names(Session& session, const WantedNames& wanted);
+
 /// As AdminStore::rename_task(), in the caller's transaction.
 Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
                                         std::string_view name, const AuditEntry* audit);

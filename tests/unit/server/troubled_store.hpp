@@ -216,6 +216,11 @@ class TroubledStore final : public store::Store {
                                          const AuditEntry* audit) override {
     return store_.remove_task(task, stop, audit);
   }
+  mutable std::atomic<std::size_t> name_searches = 0;
+  std::vector<std::string> task_names(const store::WantedNames& wanted) const override {
+    ++name_searches;
+    return store_.task_names(wanted);
+  }
   std::vector<Uuid> reports_between(const Uuid& first, const Uuid& last,
                                     std::size_t limit) const override {
     return store_.reports_between(first, last, limit);

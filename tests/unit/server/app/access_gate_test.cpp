@@ -210,6 +210,16 @@ TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
   EXPECT_EQ(fetch(*pupil_, "shelf").status, FetchStatus::Refused);
 }
 
+TEST_F(AccessGate, ANearTaskIsNamedToWhoMayListTasks) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  ASSERT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::Stored);
+  EXPECT_EQ(fetch(*teacher_, "shelv").message, "no paths of task 'shelv'");
+  caller_.role = AccessRole::Reader;
+  EXPECT_EQ(fetch(*teacher_, "shelv").message, "no paths of task 'shelv' (did you mean 'shelf'?)");
+  caller_.tasks = {"sh*"};
+  EXPECT_EQ(fetch(*teacher_, "shelv").message, "no paths of task 'shelv'");
+}
+
 TEST_F(AccessGate, AFetchForSomeRobotsDoesNotSayWhichOthersItIsMadeOf) {
   report({fleet::solved(*teacher_, "shelf", 1), fleet::solved(*pupil_, "shelf", 2)});
   experience_bytes_ = kDefaultExperienceBytes;

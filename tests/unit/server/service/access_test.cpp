@@ -135,6 +135,22 @@ TEST_F(Access, NarrowedToATaskNothingTellsTheNamesOfOthers) {
   EXPECT_EQ(ask(anna, AdminVerb::ListAudit).status, AdminStatus::Refused);
 }
 
+TEST_F(Access, NarrowedToATaskReportsOfOthersThatBeginAlikeAreNoReports) {
+  std::vector<Attempt> attempts = {fleet::solved(*teacher_, "bin", 1),
+                                   fleet::solved(*teacher_, "bin", 2)};
+  attempts[0].report_uuid = Uuid::parse("0abcdef0-0000-4000-8000-000000000001").value();
+  attempts[1].report_uuid = Uuid::parse("0abcdef0-0000-4000-8000-000000000002").value();
+  report(attempts);
+  const std::string prefix = "0abcdef0";
+  const AdminPage none =
+      ask(named("anna", AccessRole::Reader, {"sh*"}), AdminVerb::ShowPath, prefix);
+  EXPECT_EQ(none.status, AdminStatus::NotFound);
+  EXPECT_EQ(none.message, "no report '0abcdef0'");
+  const AdminPage several = ask(named("otto", AccessRole::Reader), AdminVerb::ShowPath, prefix);
+  EXPECT_NE(several.message.find("several reports begin with"), std::string::npos)
+      << several.message;
+}
+
 TEST_F(Access, NarrowedToARobotOnlyThatOneIsSeen) {
   const std::vector<Attempt> attempts = report_some();
   const Caller anna = named("anna", AccessRole::Operator, {}, {"pupil"});

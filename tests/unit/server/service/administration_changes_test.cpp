@@ -180,6 +180,17 @@ TEST_F(AdministrationChanges, ARemovedTaskIsListedAgainOnceItIsReported) {
   EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
 }
 
+TEST_F(AdministrationChanges, ARemovedTaskIsRestoredAndListedAgain) {
+  report(fleet::solved(teacher_, "lod", 2, 1));
+  ASSERT_EQ(ask(AdminVerb::RemoveTask, "lod").status, AdminStatus::Ok);
+  AdminRequest request = fleet::question(AdminVerb::RestorePath);
+  request.task = "lid";
+  EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
+  request.task = "lod";
+  EXPECT_EQ(row<Restoration>(administer(request)).paths, 2U);
+  EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 2U);
+}
+
 TEST_F(AdministrationChanges, AnUnknownNameIsAnsweredWithTheNearest) {
   const std::vector<Attempt> attempts = fleet::solved(teacher_, "load_machine", 1, 1);
   report(attempts);

@@ -10,6 +10,7 @@
 #include "proto/types/names.hpp"
 #include "server/catalog/freshness.hpp"
 #include "server/metrics/exposition.hpp"
+#include "tests/support/store_values.hpp"
 #include "tests/unit/server/service/catalog_fixture.hpp"
 #include "tests/unit/server/troubled_store.hpp"
 
@@ -34,6 +35,20 @@ TEST_F(CatalogTest, SaysWhyThereIsNothing) {
   EXPECT_EQ(reply.status, FetchStatus::Refused);
   EXPECT_EQ(reply.message, "profile 'best': it does not begin with default or paper");
   EXPECT_EQ(gate_.calls(), 0);
+}
+
+TEST_F(CatalogTest, ATaskWithoutPathsIsComparedWithTheNamesOfOthersNowAndThen) {
+  may_trouble_store_ = true;
+  start();
+  test::report(*real_store_, fleet::solved(teacher_, "shelf", 1, 1));
+  FetchRequest request = request_for(teacher_);
+  request.task = "shelv";
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(fetch(request).message, "no paths of task 'shelv' (did you mean 'shelf'?)");
+  EXPECT_EQ(troubled_->name_searches, 1U);
+  advance(catalog::NearestTasks::kRemembered);
+  fetch(request);
+  EXPECT_EQ(troubled_->name_searches, 2U);
 }
 
 TEST_F(CatalogTest, HoweverManyAskThereIsOneFit) {

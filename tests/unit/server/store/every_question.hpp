@@ -81,6 +81,7 @@ class EveryQuestion {
     store_->list_robots("iiwa", 1);
     store_->list_tasks("", 1);
     store_->find_task(task_);
+    store_->task_names({.like = task_, .letters = 2, .with_paths = true, .limit = 9});
     store_->list_audit("", "", 2);
     store_->list_audit("anna", "7", 2);
   }

@@ -119,6 +119,24 @@ TEST_P(StoreConformance, NamesTheRobotsWithPathsOfATask) {
   EXPECT_TRUE(store_->experience("table").empty());
 }
 
+TEST_P(StoreConformance, NamesTasksOfSomeLengths) {
+  std::uint64_t number = 0;
+  for (const char* const task : {"lod", "load", "loader", "bin", "unload"})
+    report(test::make_attempt(panda_.digest, task, ++number));
+  report(test::make_unsolved(panda_.digest, "bind", ++number));
+  ASSERT_TRUE(store_->remove_task("bin"));
+  using Names = std::vector<std::string>;
+  const auto names = [this](std::size_t letters, bool with_paths, std::size_t limit) {
+    return store_->task_names(
+        {.like = "lods", .letters = letters, .with_paths = with_paths, .limit = limit});
+  };
+  EXPECT_EQ(names(0, false, 9), (Names{"bind", "load"}));
+  EXPECT_EQ(names(1, false, 9), (Names{"bind", "load", "lod"}));
+  EXPECT_EQ(names(1, true, 9), (Names{"load", "lod"}));
+  EXPECT_EQ(names(2, true, 9), (Names{"load", "loader", "lod", "unload"}));
+  EXPECT_EQ(names(2, false, 2), (Names{"bind", "load"}));
+}
+
 TEST_P(StoreConformance, CountsTheRevisionsOfADistribution) {
   test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
