@@ -265,6 +265,7 @@ TEST_F(CPlanning, AnObjectThatIsNoneIsRefused) {
   post_.sizes[0] = 0;
   ASSERT_NO_FATAL_FAILURE(expect_refused("voxels are 0 m wide"));
   post_.shape = KINSHIP_BOX;
+  post_.sizes[0] = 0.1;
   query_.dof = 6;
   ASSERT_NO_FATAL_FAILURE(expect_refused("query->dof is 6"));
   query_.dof = kDof;

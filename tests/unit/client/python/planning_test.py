@@ -160,8 +160,10 @@ class Folders(OfAUr10e):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self.assertTrue(kinship.plan(robot, problem).solved)
-            self.assertFalse(kinship.plan(robot, problem, limit_slack=0.01).solved)
-            self.assertFalse(kinship.plan(self.robot, problem).solved)
+            with self.assertRaisesRegex(kinship.InvalidInput, "is outside"):
+                kinship.plan(robot, problem, limit_slack=0.01)
+            with self.assertRaisesRegex(kinship.InvalidInput, "is outside"):
+                kinship.plan(self.robot, problem)
 
 
 class Scenes(unittest.TestCase):

@@ -197,10 +197,8 @@ class Worlds(unittest.TestCase):
     def test_what_is_not_finite_is_refused(self):
         with self.assertRaises(ValueError):
             kinship.World(self.robot).free(np.full(7, np.nan))
-        scene = kinship.Scene()
-        scene.add_sphere("ball", [0, 0, 0], -1)
         with self.assertRaisesRegex(kinship.InvalidInput, "ball"):
-            kinship.World(self.robot, scene)
+            kinship.Scene().add_sphere("ball", [0, 0, 0], np.nan)
 
 
 class Samplers(unittest.TestCase):
