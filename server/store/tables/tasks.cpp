@@ -116,6 +116,9 @@ Result<std::vector<Digest>> rename_task(Session& session, std::string_view task,
                           : "' was removed, and its attempts stay on record under that name")};
   std::vector<Digest> gone = delete_distributions_of(session, *id);
   session.query("UPDATE task SET name = $1 WHERE id = $2", name, *id);
+  // A report that is known, sent again under the old name, makes a task without attempts.
+  write_setting(session, std::string(kRemovedTask) + std::string(task), "0");
+  write_setting(session, std::string(kRemovedTask) + std::string(name), std::nullopt);
   note_act(session, audit, AuditOutcome::Done, "'" + std::string(task) + "'",
            "'" + std::string(name) + "'");
   return gone;
