@@ -130,10 +130,9 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       ->capture_default_str();
   app.add_option("--output", options.output, "file for the results; standard output if missing")
       ->type_name("FILE");
-  app.add_option(
-         "--searches", options.searches,
-         "file for how the trees of each search grew, which kinship results page draws; "
-         "makes planning a little slower")
+  app.add_option("--searches", options.searches,
+                 "file for how the trees of each search grew, which kinship results page draws; "
+                 "makes planning a little slower")
       ->type_name("FILE");
   app.add_flag("--json", options.json,
                "results as JSON Lines also on a terminal; files and pipes get them anyway");
