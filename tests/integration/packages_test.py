@@ -26,6 +26,9 @@ FILES = {
     "libkinship-dev": [r"usr/lib/(\S+/)?cmake/Kinship/KinshipConfig.cmake", r"usr/include/kinship-\S+/kinship/client.hpp",
                        "usr/include/kinship.h", r"usr/lib/(\S+/)?libkinship.so.*", r"usr/lib/(\S+/)?pkgconfig/kinship.pc"],
     "python3-kinship": [r"usr/lib/python3/dist-packages/kinship/\S+\.so", r"usr/lib/python3/dist-packages/kinship/__init__.py"],
+    "kinship-doc": ["usr/share/doc/kinship/README.md", "usr/share/doc/kinship/docs/tutorial.md", "usr/share/doc/kinship/docs/tutorial/problems.py",
+                    "usr/share/doc/kinship/docs/tutorial/my_arm/robot.urdf", "usr/share/doc/kinship/examples",
+                    "usr/share/doc/kinship/client/examples/01_report_a_path.cpp", "usr/share/doc/kinship/robots/models/ur10e"],
 }
 
 
