@@ -58,7 +58,7 @@ class Release(unittest.TestCase):
                 server.start()
                 server.kinship("paths", "import", str(copy / "experience.jsonl"))
                 self.assertEqual(len(json.loads(server.kinship("paths", "list", "--json"))["rows"]), expected["paths"])
-            told = self.run_program("kinship", "results", "compare", "--uniform", copy / "results.jsonl", "--guided", copy / "results.jsonl")
+            told = self.run_program("kinship", "results", "compare", copy / "results.jsonl", copy / "results.jsonl")
             self.assertIn("collision checks", told)
 
 

@@ -34,7 +34,7 @@ class Researcher(walk.WalkTest):
         for guidance, options in (("none", ""), ("always", "--task load_machine --rehearsed")):
             me.run(f"kinship-plan ur10e.problems.jsonl --robot ur10e --planner ompl:RRTConnect --guidance {guidance} {options} "
                    f"--output {guidance}.jsonl")
-        table = me.run("kinship results compare --uniform none.jsonl --guided always.jsonl")
+        table = me.run("kinship results compare none.jsonl always.jsonl")
         self.assertRegex(table, r"24 problems, each planned with both")
         self.assertRegex(table, r"collision checks, mean")
 
