@@ -136,7 +136,8 @@ TEST_F(AdminCommands, ATaskIsRenamedAndRemovedAndAWrongNameIsAnsweredWithTheNear
   expect_has(server_.ends(3, "distributions fetch --task swep --robot panda").err,
              "did you mean 'sweep'");
   expect_has(server_.ends(3, "robots show pandar").err, "did you mean 'panda'");
-  expect_has(server_.ends(0, "tasks rename sweep swipe").out, "is called 'swipe' now, with 6 paths");
+  expect_has(server_.ends(0, "tasks rename sweep swipe").out,
+             "is called 'swipe' now, with 6 paths");
   server_.ends(3, "tasks show sweep");
   server_.ends(0, "distributions fetch --task swipe --robot panda");
   server_.ends(2, "tasks rename swipe no/name");
