@@ -13,7 +13,7 @@ from markdown import Document
 
 with DocumentRun(Document(pathlib.Path("{DOCUMENTS}/docs/tutorial.md")), with_packages=True) as run:
     run.run()
-sys.exit("\\n\\n".join(run.failures))
+sys.exit("\\n\\n".join(run.failures) or 0)
 """
 
 
