@@ -38,7 +38,7 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
   const std::string* nearest = nullptr;
   for (const std::string& candidate : candidates) {
     const auto [shorter, longer] = std::minmax({word.size(), candidate.size()});
-    if (longer - shorter >= least)
+    if (longer - shorter >= least || candidate == word)  // it itself is right, but elsewhere
       continue;
     if (const std::size_t distance = edit_distance(word, candidate); distance < least) {
       least = distance;

@@ -128,6 +128,11 @@ TEST(EditDistance, CountsLettersPutInTakenOutChangedOrSwapped) {
   EXPECT_EQ(edit_distance("list", "list"), 0U);
 }
 
+TEST(NearestName, IsNeverTheWordItself) {
+  EXPECT_EQ(suggestion("--sto", std::vector<std::string>{"--sto", "--store"}),
+            " (did you mean '--store'?)");
+}
+
 TEST(Suggestion, IsTheNearestName) {
   const std::vector<std::string> names = {"register", "list", "show", "check"};
   EXPECT_EQ(suggestion("regsiter", names), " (did you mean 'register'?)");
