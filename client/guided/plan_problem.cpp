@@ -351,8 +351,8 @@ class Planning {
     const Eigen::Isometry3d T_base_tip =
         T_task_base_.inverse() * T_task_wanted * chain.T_tip_transfer().inverse(Eigen::Isometry);
     const std::string why = describe(inverse::find_unreached(chain, T_base_tip), chain);
-    const std::string far = geometry::describe_far_place(
-        chain, (T_base_tip * chain.T_tip_transfer()).translation());
+    const std::string far =
+        geometry::describe_far_place(chain, (T_base_tip * chain.T_tip_transfer()).translation());
     return why.empty() || far.empty() ? why + far : why + "; " + far;
   }
 
