@@ -129,7 +129,7 @@ AdminPage Administration::restore_path(const Call& call) {
 /// removed, has paths.
 std::optional<Digest> Administration::robot_of_restoration(const AdminRequest& request) const {
   AdminRequest known = request;
-  if (!parts_.store.list_paths({}, request.task, {}, 1).rows.empty())
+  if (!request.task.empty() && !parts_.store.list_paths({}, request.task, {}, 1).rows.empty())
     known.task.clear();
   return robot_filter(known);
 }

@@ -15,7 +15,8 @@ namespace kinship::service {
 ///
 /// \param reports   each once; every kMaxAttemptsPerBatch of them are stored at once.
 /// \param restored  in: so far; out: with these, of which each is restored or left out.
-/// \throws Failure(Unavailable) if the store takes none now; those before it are restored. One that it
+/// \throws Failure(Unavailable) if the store takes none now; those before it are restored. One that
+/// it
 ///         does not take by itself, while it takes others, is left out.
 void restore_paths(store::Store& store, std::span<const Uuid> reports, Restoration& restored);
 

@@ -27,9 +27,9 @@ class DistributionStore {
   /// \param right  with which it was fitted.
   /// \return the revision, greater than every earlier one of this id.
   /// \throws Failure(NotFound) if its robot is not registered, or its task is not there (any more),
-  ///         so that what was fitted for it serves no other of its name; Failure(InvalidInput) if a part
-  ///         exceeds its limit; Failure(Unavailable), and nothing is stored, if another server has
-  ///         taken the right since.
+  ///         so that what was fitted for it serves no other of its name; Failure(InvalidInput) if a
+  ///         part exceeds its limit; Failure(Unavailable), and nothing is stored, if another server
+  ///         has taken the right since.
   virtual std::uint64_t put_distribution(const Distribution& distribution,
                                          const FitRight& right = {}) = 0;
   /// Takes the right to fit a distribution. It is free a few seconds after its server died.

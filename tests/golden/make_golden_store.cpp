@@ -47,8 +47,7 @@ int make(const std::filesystem::path& file) {
     const std::unique_ptr<store::Store> store =
         store::open_sqlite_store(file, {.max_paths_per_pair = test::kGoldenCap});
     test::report(*store, test::golden_capped_attempts());
-    static_cast<void>(
-        store->remove_task(test::golden_retired_attempt().task).value_or_throw());
+    static_cast<void>(store->remove_task(test::golden_retired_attempt().task).value_or_throw());
   }
   store::Database(file, store::Access::ReadWrite).execute("PRAGMA journal_mode = DELETE; VACUUM");
   for (const char* const suffix : {".lock", ".high-water-mark"})

@@ -137,7 +137,8 @@ TEST_F(AdminCommands, ATaskIsRenamedAndRemovedAndAWrongNameIsAnsweredWithTheNear
              "did you mean 'sweep'");
   expect_has(server_.ends(3, "robots show pandar").err, "did you mean 'panda'");
   expect_has(server_.ends(3, "paths restore --task sweep").out, "0 paths of task 'sweep' restored");
-  expect_has(server_.ends(0, "tasks rename sweep swipe").out, "is called 'swipe' now, with 6 paths");
+  expect_has(server_.ends(0, "tasks rename sweep swipe").out,
+             "is called 'swipe' now, with 6 paths");
   server_.ends(3, "tasks show sweep");
   server_.ends(0, "distributions fetch --task swipe --robot panda");
   server_.ends(2, "tasks rename swipe no/name");

@@ -73,8 +73,8 @@ StoreChanges changes_since(Connection& connection, std::string_view cursor) {
   changes.evicted =
       digests(connection,
               "SELECT digest FROM evicted_distribution WHERE evicted_in >= $1::text::xid8", since);
-  for (const Row row : connection.query(
-           "SELECT name FROM former_task WHERE changed_in >= $1::text::xid8", since))
+  for (const Row row :
+       connection.query("SELECT name FROM former_task WHERE changed_in >= $1::text::xid8", since))
     changes.former_tasks.emplace_back(row.column_text(0));
   return changes;
 }

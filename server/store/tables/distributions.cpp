@@ -98,9 +98,9 @@ std::int64_t insert_distribution(Session& session, const Distribution& distribut
       "INSERT INTO distribution (digest, revision, task_id, robot_id, profile, state, reason,"
       " components, configurations, paths, fitted_ms, crc32c, payload) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) RETURNING id",
-      distribution.id, revision, key.task_id, key.robot_id,
-      distribution.profile, code_of(distribution.state), distribution.reason, components,
-      distribution.configurations, paths, distribution.fitted_ms, crc32c(payload), payload);
+      distribution.id, revision, key.task_id, key.robot_id, distribution.profile,
+      code_of(distribution.state), distribution.reason, components, distribution.configurations,
+      paths, distribution.fitted_ms, crc32c(payload), payload);
   session.query("INSERT INTO distribution_use (id, used_ms, bytes) VALUES ($1, $2, $3)",
                 row.value(), now_ms(), kRestOfARow + std::ssize(payload));
   return row.value();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <string>
 
@@ -185,10 +186,11 @@ TEST(Access, NarrowedItDoesNothingThatReachesBeyondWhatItIsFor) {
   EXPECT_EQ(words(refusal_of(admin, AdminVerb::ListAudit)),
             "root (role admin) may not read the audit log: that is about all tasks and robots, its "
             "certificate is for tasks bin");
-  for (const AdminVerb verb : {AdminVerb::Backup, AdminVerb::ListJobs, AdminVerb::RemoveRobot,
-                               AdminVerb::RenameRobot})
+  for (const AdminVerb verb :
+       {AdminVerb::Backup, AdminVerb::ListJobs, AdminVerb::RemoveRobot, AdminVerb::RenameRobot})
     EXPECT_TRUE(refusal_of(admin, verb)) << rule_of(verb).name;
-  constexpr auto kOfATask = {AdminVerb::ResetTask, AdminVerb::RenameTask, AdminVerb::RemoveTask};
+  constexpr std::array kOfATask = {AdminVerb::ResetTask, AdminVerb::RenameTask,
+                                   AdminVerb::RemoveTask};
   for (const AdminVerb verb : kOfATask)
     EXPECT_FALSE(refusal_of(admin, verb)) << rule_of(verb).name;
   admin.tasks.clear();
