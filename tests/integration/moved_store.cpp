@@ -52,7 +52,7 @@ std::vector<Attempt> attempts_of_full_store() {
 }
 
 void make_full_store(const std::filesystem::path& file) {
-  std::filesystem::copy_file(test::source_dir() + "/tests/golden/store-5.db", file);
+  std::filesystem::copy_file(test::source_dir() + "/tests/golden/store-4.db", file);
   const AuditEntry audit = golden_audit_entry();
   {
     const auto store = store::open_sqlite_store(file);
@@ -69,6 +69,7 @@ void make_full_store(const std::filesystem::path& file) {
     static_cast<void>(store->remove_robot(gone, {}, &audit).value_or_throw());
     store->put_distribution(make_distribution(robot, "carry", kFirst + 20));
     store->put_distribution(make_distribution(robot, "carry", kFirst + 20));
+    static_cast<void>(store->remove_task(golden_retired_attempt().task).value_or_throw());
   }
   damage(file);
   const auto store = store::open_sqlite_store(file);
