@@ -52,7 +52,7 @@ std::vector<Attempt> attempts_of_full_store() {
 }
 
 void make_full_store(const std::filesystem::path& file) {
-  std::filesystem::copy_file(test::source_dir() + "/tests/golden/store-4.db", file);
+  std::filesystem::copy_file(test::source_dir() + "/tests/golden/store-5.db", file);
   const AuditEntry audit = golden_audit_entry();
   {
     const auto store = store::open_sqlite_store(file);

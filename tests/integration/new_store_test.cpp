@@ -50,7 +50,7 @@ class NewStore : public testing::Test {
   /// Plans and reports `count` problems of a robot.
   Answer plan(const std::string& robot, int count, const std::vector<std::string>& more = {}) {
     const std::string model = test::source_dir() + "/robots/models/" + robot;
-    const std::string problems = directory_ / (robot + ".jsonl");
+    const std::string problems = directory_.path() / (robot + ".jsonl");
     EXPECT_EQ(test::run_to_end("kinship-experiments", {"shelf", "--model", model, "--count",
                                                        std::to_string(count), "--output", problems})
                   .code,

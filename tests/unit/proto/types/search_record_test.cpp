@@ -74,15 +74,19 @@ TEST(SearchRecord, BytesAreCountedAsTheContractSays) {
 TEST(SearchRecord, SaysWhyInFewWords) {
   SearchRecord search = record_of_two_joints();
   EXPECT_EQ(why_text(search),
-            "not solved within 10 s; 'l4' touches 'wall' (60), 'l5' touches 'table' (2); "
+            "not solved within 10 s; 'l5' touches 'wall' (1 of 3 goals), 'l4' touches 'wall' (60), "
+            "'l5' touches 'table' (2); "
             "last free configuration 0.92 from a goal");
   search.reason.clear();
-  EXPECT_EQ(why_text(search),
-            "'l4' touches 'wall' (60), 'l5' touches 'table' (2); "
-            "last free configuration 0.92 from a goal");
+  EXPECT_EQ(
+      why_text(search),
+      "'l5' touches 'wall' (1 of 3 goals), 'l4' touches 'wall' (60), 'l5' touches 'table' (2); "
+      "last free configuration 0.92 from a goal");
   EXPECT_EQ(why_text({}), "");
   search.last_free.resize(0);
-  EXPECT_EQ(why_text(search), "'l4' touches 'wall' (60), 'l5' touches 'table' (2)");
+  EXPECT_EQ(
+      why_text(search),
+      "'l5' touches 'wall' (1 of 3 goals), 'l4' touches 'wall' (60), 'l5' touches 'table' (2)");
   search.reason = "every goal collides: 'l4' touches 'wall'";
   EXPECT_EQ(why_text(search), search.reason) << "no search was begun";
   search.reason = std::string(2000, 'x');

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class Offline : public testing::Test {
  protected:
-  Offline() { fs::copy_file(test::source_dir() + "/tests/golden/store-4.db", store_); }
+  Offline() { fs::copy_file(test::source_dir() + "/tests/golden/store-5.db", store_); }
 
   int run(OfflineVerb verb, const fs::path& store, const fs::path& file = {}, bool json = false) {
     out_.str("");

@@ -56,7 +56,8 @@ TEST(Broadcast, TellsTheStatusAndEventsToAllListeners) {
   broadcast.publish(event("3 stored"));
   for (Listener* each : {&first, &second})
     EXPECT_TRUE(
-        each->hears("event: event\ndata: {\"time_ms\":1,\"kind\":\"report\",\"task\":"
+        each->hears("event: event\ndata: "
+                    "{\"format\":\"kinship.event/1\",\"time_ms\":1,\"kind\":\"report\",\"task\":"
                     "\"shelf\",\"robot\":\"panda\",\"text\":\"3 stored\"}\n\n"))
         << each->text();
   EXPECT_TRUE(first.hears("{\"n\":3}")) << "once a second";

@@ -92,9 +92,9 @@ TEST_F(RehearsalSchedulers, OfATaskThatWasRenamedOrRemovedNothingIsKnown) {
   report_sweeps(6);
   RehearsalScheduler experience_index(parts(), quick());
   wait(experience_index, panda_).get();
-  experience_index.drop("another");
+  experience_index.forget("another", RehearsalScheduler::Loss::Task);
   ASSERT_TRUE(experience_index.find(identify(key_of(panda_))));
-  experience_index.drop("sweep");
+  experience_index.forget("sweep", RehearsalScheduler::Loss::Task);
   EXPECT_FALSE(experience_index.find(identify(key_of(panda_))));
   EXPECT_FALSE(experience_index.library(rehearsal_key(panda_)));
   EXPECT_FALSE(experience_index.ask(rehearsal_key(panda_)));

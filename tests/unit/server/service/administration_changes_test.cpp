@@ -424,7 +424,7 @@ TEST_F(AdministrationChanges, AnExplanationGivesTheAdviceOfNow) {
     attempts[i].record.distribution_id = fetched().id;  // what it does not name is judged weakly
   }
   report(attempts);
-  const Advice advice = advice_without("0 guided");
+  const Advice advice = advice_without("default;");
   EXPECT_EQ(advice.recommended_share, 0) << advice.evidence;
   EXPECT_EQ(advice.guided.value().attempts, 10U);
   EXPECT_EQ(advice.control.value().checks_per_solution, 110);
