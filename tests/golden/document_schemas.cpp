@@ -292,6 +292,8 @@ void add_robot_answers(std::vector<DocumentSchema>& all) {
                                  {"poses_without_solution", count()},
                                  {"solutions_per_pose", number()},
                                  {"time_per_pose_us", number()},
+                                 {"reach_m", number()},
+                                 {"transfer_distance_m", number()},
                                  {"links", list_of(schema_of<CheckedLink>())}}));
   all.push_back(document(json::kRobotRegistrationFormat, "robots register.",
                          Members{{"robot", digest()},

@@ -31,7 +31,6 @@ class Release(unittest.TestCase):
 
     def test_its_store_is_sound_and_says_which_release_wrote_it(self):
         for copy, expected in self.copies():
-            self.assertEqual(copy.name, expected["release"])
             self.run_program("kinshipd", "migrate", "--store", copy / "store.db")
             check = json.loads(self.run_program("kinshipd", "check", "--store", copy / "store.db", "--json"))
             self.assertEqual((check["release"], check["problems"]), (expected["release"], 0))
