@@ -127,8 +127,10 @@ kinship_code kinship_fetch_recall(kinship_client* client, const kinship_request*
     require(client, "client");
     require(recall, "recall");
     *recall = nullptr;
-    kinship::FetchRequest wanted = read_recall_request(*client, read_structure(request, "request"));
-    const kinship::kinematics::Chain chain = client->chain_of(wanted.robot);
+    const kinship_request given = read_structure(request, "request");
+    const kinship::kinematics::Chain chain =
+        client->chain_of(read_robot(given.robot, "request->robot"));
+    kinship::FetchRequest wanted = read_recall_request(*client, given);
     wanted.rehearsed = wanted.deadline.count() > 0;
     const auto reply = client->line.fetch(wanted);
     if (!reply)
@@ -195,8 +197,8 @@ kinship_code kinship_follower_open(kinship_client* client, const kinship_request
       *follower = new kinship_follower{client->line.follow(read_request(*client, given))};
       return KINSHIP_OK;
     }
+    kinship::kinematics::Chain chain = client->chain_of(read_robot(given.robot, "request->robot"));
     const kinship::FetchRequest wanted = read_recall_request(*client, given);
-    kinship::kinematics::Chain chain = client->chain_of(wanted.robot);
     *follower =
         new kinship_follower{client->line.follow(wanted), std::move(chain), wanted.T_task_base};
     return KINSHIP_OK;

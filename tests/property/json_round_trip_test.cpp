@@ -142,7 +142,8 @@ TEST(JsonRoundTrip, ProblemWritesTheSameTextAgain) {
           Shape(CylinderShape{extent, 2}), Shape(CapsuleShape{1, extent})}) {
       const Eigen::Isometry3d T(Eigen::Translation3d(values.share(), values.share(), 0));
       written.attached.push_back({values.printable(9) + "a", "hand", shape, T, {"finger", "palm"}});
-      written.scene.objects.push_back({values.printable(9) + "o", shape, T});
+      written.scene.objects.push_back(
+          {values.printable(9) + "o" + std::to_string(written.scene.objects.size()), shape, T});
     }
     written.allowed_collisions.assign(static_cast<std::size_t>(values.below(4)), {"a", "b"});
     written.time_limit_s = values.share();

@@ -159,6 +159,9 @@ TEST_F(CLibraryOffline, AFetchEndsAtItsDeadlineWithoutADistribution) {
   EXPECT_EQ(kinship_fetch(client_, &request, &distribution), KINSHIP_UNAVAILABLE);
   EXPECT_EQ(distribution, nullptr);
   kinship_follower* follower = nullptr;
+  EXPECT_EQ(kinship_follower_open(client_, &request, &follower), KINSHIP_UNAVAILABLE)
+      << "only a server knows where the robot stood";
+  request.T_task_base = kIdentity;
   ASSERT_EQ(kinship_follower_open(client_, &request, &follower), KINSHIP_OK);
   EXPECT_EQ(kinship_follower_newer(follower, nullptr, 0, &distribution), KINSHIP_UNAVAILABLE);
   kinship_follower_close(follower);
@@ -170,6 +173,7 @@ TEST_F(CLibraryOffline, PathsAreRecalledForARobotThatTheClientRegistered) {
   request.robot = &robot_;
   request.task = "sweep";
   request.deadline_ms = 50;
+  request.T_task_base = kIdentity;
   request.with_recall = 1;
   kinship_recall* recall = nullptr;
   kinship_follower* follower = nullptr;

@@ -139,7 +139,7 @@ TEST(FetchGuidance, AsksForTaskRobotPlacementProfileAndSelection) {
 TEST(FetchGuidance, TellsNobodyFromNothingFromFailure) {
   EXPECT_EQ(answer_to(Error{ErrorCode::Unavailable, "nobody"}).why_not, NoGuidance::NoServer);
   EXPECT_EQ(answer_to(Error{ErrorCode::Internal, "odd"}).why_not, NoGuidance::Failed);
-  EXPECT_EQ(answer_to(status_only(FetchStatus::NoExperience)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::NoExperience)).why_not, NoGuidance::NoExperience);
   EXPECT_EQ(answer_to(status_only(FetchStatus::UnknownRobot)).why_not, NoGuidance::NotFound);
   EXPECT_EQ(answer_to(status_only(FetchStatus::Failed)).why_not, NoGuidance::NotFound);
   EXPECT_EQ(answer_to(status_only(FetchStatus::Pending)).why_not, NoGuidance::Failed);

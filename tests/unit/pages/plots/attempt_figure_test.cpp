@@ -72,7 +72,10 @@ TEST(AttemptFigure, AFailedOneShowsWhatWasInTheWayAndTheHandsOfItsTrees) {
   EXPECT_TRUE(drawn["path"].is_null());
   EXPECT_FALSE(drawn["attempt"].contains("search"));
   const json& shown = drawn["search"];
-  EXPECT_EQ(shown["blockers"], json::parse(R"([{"first": "hand", "second": "wall", "count": 7}])"));
+  EXPECT_EQ(shown["blockers"],
+            json::parse(R"([{"first": "hand", "second": "table", "goals": 1, "count": 0},
+                            {"first": "hand", "second": "wall", "goals": 0, "count": 7}])"))
+      << "what blocks goals first";
   EXPECT_EQ(shown["goal_contacts"][0]["second"], "table");
   EXPECT_EQ(shown["start"].size(), 6U);
   EXPECT_EQ(shown["goals"].size(), 1U);
