@@ -324,7 +324,7 @@ TEST_F(AdminCommands, RobotsAreComparedByWhatExperienceIsWorthToThem) {
   const std::string compare = "robots compare --task sweep --wait 200";
   const Answer panda = server_.ends(0, compare + " --targets panda --progress");
   expect_has(panda.out, "\nTARGET \\ SOURCE  panda\npanda            ");
-  expect_has(panda.out, "answered a query never guides that query again, also on the diagonal");
+  expect_has(panda.out, "originally solved a query is excluded, also on the diagonal");
   expect_has(panda.err, "rehearsing 1 of 1: panda with the experience of panda");
 
   // Nobody knows where the UR10e stands.

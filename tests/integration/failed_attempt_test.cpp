@@ -70,7 +70,8 @@ TEST_F(FailedAttempt, NamesTheBodyInTheWayAndIsPlannedAgainFromOneFile) {
   EXPECT_TRUE(cell_.ask(request).rows.empty());
 
   const std::string id = summary.report_uuid.text();
-  EXPECT_NE(cell_.kinship("attempts list --outcome unsolved").out.find(id), std::string::npos);
+  EXPECT_NE(cell_.kinship("attempts list --outcome unsolved").out.find(id.substr(0, 8)),
+            std::string::npos);
   const test::Answer shown = cell_.kinship("attempts show " + id);
   EXPECT_NE(shown.out.find("why         " + first.reason), std::string::npos) << shown.out;
   EXPECT_NE(shown.out.find("touches 'wall' in "), std::string::npos) << shown.out;

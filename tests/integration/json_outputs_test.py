@@ -134,8 +134,12 @@ class Outputs(unittest.TestCase):
         self.check("distributions evict", distribution["id"])
         self.check("robots rename", "ur10e", "ur10e_2")
         self.check("robots remove", "ur10e_2", "--yes")
-        self.check("paths retire", self.rows("paths list")[0]["report_uuid"])
+        path = self.rows("paths list")[0]["report_uuid"]
+        self.check("paths retire", path, "--yes")
+        self.check("paths restore", path)
         self.check("tasks reset", TASK, "--yes")
+        self.check("tasks rename", TASK, "another")
+        self.check("tasks remove", "another", "--yes")
         self.rows("audit")
         self.rows("outbox list", "--outbox", self.set_aside())
 

@@ -171,7 +171,8 @@ class MoveItData(unittest.TestCase):
         self.make_scene_storage("scenes.sqlite")
         done = self.import_warehouse("scenes.sqlite")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(json.loads(done.stdout), {"robots": 0, "stored": 2, "known": 0, "recorded": 0, "refused": 0})
+        self.assertEqual(json.loads(done.stdout), {"format": "kinship.path-import/1", "robots": 0, "stored": 2, "known": 0, "recorded": 0,
+                                                   "refused": 0})
         self.assertIn("left out: 1 x moveit_robot_states/robot_states of moveit_msgs::msg::RobotState", done.stderr)
         self.assertIn("left out: 2 x the motion of joint 'finger', not of the chain", done.stderr)
         attempts = self.stored("shelf")

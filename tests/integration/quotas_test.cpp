@@ -57,6 +57,7 @@ TEST_F(Quotas, AGreedyClientWaitsAndLosesNothingWhileItsNeighbourIsServed) {
   const auto greedy = server.client(folder_ / "greedy");
   const auto polite = server.client(folder_ / "polite");
   const Digest panda = register_panda(*greedy);
+  static_cast<void>(register_panda(*polite));
   // 100 at once are allowed and 150 are let in as one batch: the next ones are owed for 6 s.
   const auto receipts = greedy->deliver(attempts(panda, 150)).value_or_throw();
   ASSERT_EQ(count(receipts, ReceiptStatus::Stored), 150U);

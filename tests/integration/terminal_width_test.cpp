@@ -77,8 +77,9 @@ TEST_F(TerminalWidth, NoLineIsWiderThanTheTerminal) {
   for (const std::string& told :
        {std::string("robots show panda"), std::string("tasks show sweep"), "paths show " + uuid,
         "attempts show " + uuid, "distributions show " + distribution.hex(),
-        "distributions explain " + distribution.hex(), std::string("tasks experience sweep"),
-        std::string("robots compare --task sweep")})
+        "distributions explain --distribution " + distribution.hex(),
+        std::string("tasks experience sweep"),
+        std::string("robots compare --task sweep --targets panda")})
     expect_fits(0, told);
   for (const std::string& unconfirmed : {"paths retire " + uuid, std::string("tasks remove sweep"),
                                          std::string("robots remove panda")})

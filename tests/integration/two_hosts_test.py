@@ -188,7 +188,7 @@ class TwoHosts(unittest.TestCase):
         token = self.server.folder / "fleet.db.token"
         self.assertEqual(token.stat().st_mode & 0o777, 0o600)
         shutil.copy(token, self.robot.folder / "token")
-        for host, shown, change in zip((self.robot, self.server) * 3, ("token", "fleet.db.token") * 3, changes):
+        for host, shown, change in zip((self.robot, self.server) * 4, ("token", "fleet.db.token") * 4, changes):
             done = host.run(f"KINSHIP_TOKEN={shown} kinship --server 10.77.0.1 {change.replace('remove ur10e', 'remove arm')}")
             self.assertEqual(done.returncode, 0, f"{change}: {done.stdout}")
         self.assertEqual(listed("robots"), [])

@@ -79,6 +79,7 @@ TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
   // Reports under way together may be stored in any order; what follows their receipts, after.
   const auto client = server_.client(folder_ / "newest_outbox");
   const Attempt newest = test::panda_attempt(attempts_.front().robot, "sweep", 100);
+  static_cast<void>(client->register_robot(test::model_description("panda")).value_or_throw());
   client->report(newest);
   ASSERT_EQ(client->flush(seconds(60)).accepted, 1U);
   const std::string rows = server_.kinship("paths list -o json").out;

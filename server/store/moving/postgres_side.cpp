@@ -224,6 +224,7 @@ class PostgresSide : public Side {
           "DROP TABLE IF EXISTS audit, fit_lease, server, mesh, search, rehearsal, "
           "evicted_distribution,"
           " distribution_use, distribution, retired_report, attempt, path, scene, experience, task,"
+          " former_task,"
           " robot_geometry, robot_never_colliding, robot_held_joint, gone_robot, robot, run, epoch,"
           " setting, schema_migration; DROP FUNCTION IF EXISTS audit_is_append_only()");
     });
