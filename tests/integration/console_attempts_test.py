@@ -117,7 +117,11 @@ class Attempts(ConsoleTest):
             self.assertGreaterEqual(self.drawn("blocking")["objects"], len({name for each in contacts for name in (each["first"], each["second"])}))
             self.assertEqual(self.drawn("arm")["objects"] + self.drawn("blocking")["objects"] + self.drawn("scene")["objects"], solids)
         rows = self.browser.run("return [...document.querySelectorAll('#blockers tbody tr')].map(row => [...row.cells].map(cell => cell.textContent))")
-        self.assertEqual(rows, [[f"{each['first']} and {each['second']}", str(each["count"])] for each in search["blockers"]])
+        blocked = {(each["first"], each["second"]): [0, each["count"]] for each in search["blockers"]}
+        for pair in {(each["first"], each["second"], each["goal"]): each for each in search["goal_contacts"]}:
+            blocked.setdefault(pair[:2], [0, 0])[0] += 1
+        first = sorted(blocked.items(), key=lambda each: each[1], reverse=True)  # what blocks goals
+        self.assertEqual(rows, [[" and ".join(pair), f"{of} of {goals}" if of else "\u2013", str(count)] for pair, (of, count) in first])
 
     def test_trees_grow_as_they_were_recorded(self):
         attempt = self.explained(needs_trees=True)
