@@ -10,7 +10,9 @@ endfunction()
 # them by KINSHIP_PACKAGES_DIR. They are hardly compressed: nobody keeps them.
 function(kinship_needs_packages name)
   set(packages ${CMAKE_BINARY_DIR}/tests/packages)
-  if(NOT TEST packages_of_this_build)
+  get_property(is_there GLOBAL PROPERTY KINSHIP_PACKS_FOR_TESTS)  # names of tests are known in their folder alone
+  if(NOT is_there)
+    set_property(GLOBAL PROPERTY KINSHIP_PACKS_FOR_TESTS TRUE)
     add_test(NAME packages_of_this_build COMMAND ${CMAKE_COMMAND} -E env DPKG_DEB_COMPRESSOR_TYPE=gzip DPKG_DEB_COMPRESSOR_LEVEL=1
              ${PROJECT_SOURCE_DIR}/deploy/package --from ${CMAKE_BINARY_DIR} --into ${packages})
     set_tests_properties(packages_of_this_build PROPERTIES LABELS story TIMEOUT 300 FIXTURES_SETUP packages)

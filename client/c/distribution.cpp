@@ -24,8 +24,11 @@ FetchRequest read_request(kinship_client& client, const kinship_request& given) 
   else if (const auto reported =
                link::reported_placement(client.line, request.task, request.robot.hex()))
     request.T_task_base = reported->T_task_base;
-  else if (reported.error().code == ErrorCode::Unavailable)
-    throw Failure(reported.error());
+  else
+    throw Failure(reported.error().code,
+                  "request->T_task_base is NULL, and where the robot last "
+                  "reported the task is not told: " +
+                      reported.error().message);
   if (given.profile != nullptr)
     request.profile = given.profile;
   request.deadline = std::chrono::milliseconds(given.deadline_ms);

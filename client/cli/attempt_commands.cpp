@@ -1,5 +1,6 @@
 #include "client/cli/attempt_commands.hpp"
 
+#include <map>
 #include <ostream>
 #include <set>
 #include <string_view>
@@ -17,6 +18,9 @@
 namespace kinship::cli {
 namespace {
 
+/// Names of the parts of an object, by its own.
+using PartNames = std::map<std::string, std::vector<std::string>>;
+
 constexpr const char* kAttemptExport = "attempts export";
 
 void add_query(const SearchRecord& search, Problem& problem) {
@@ -29,19 +33,49 @@ void add_query(const SearchRecord& search, Problem& problem) {
   problem.seed = search.seed;
 }
 
-void add_scene(const RecordedScene& scene, const kinematics::Chain& chain, Problem& problem) {
+/// A mesh or a cloud was recorded as several solids of its name; a problem's have one each.
+/// \return the names of the parts of each that has several.
+PartNames name_parts(std::vector<SceneObject>& objects) {
+  std::map<std::string, std::vector<SceneObject*>> of_name;
+  for (SceneObject& object : objects)
+    of_name[object.name].push_back(&object);
+  PartNames parts;
+  for (const auto& [name, same] : of_name)
+    for (std::size_t i = 0; same.size() > 1 && i < same.size(); ++i)
+      parts[name].push_back(same[i]->name = name + "/" + std::to_string(i + 1));
+  return parts;
+}
+
+/// Pairs of which a name may stand for several parts.
+std::vector<std::pair<std::string, std::string>> pairs_of_parts(
+    const std::vector<std::pair<std::string, std::string>>& pairs, const PartNames& parts) {
+  const auto named = [&](const std::string& name) {
+    const auto found = parts.find(name);
+    return found == parts.end() ? std::vector{name} : found->second;
+  };
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const auto& [first, second] : pairs)
+    for (const std::string& one : named(first))
+      for (const std::string& other : named(second))
+        all.emplace_back(one, other);
+  return all;
+}
+
+PartNames add_scene(const RecordedScene& scene, const kinematics::Chain& chain, Problem& problem) {
   problem.scene.objects = scene.objects;
   for (SceneObject& object : problem.scene.objects)
     object.approximate = false;  // a problem has shapes alone
+  const PartNames parts = name_parts(problem.scene.objects);
   for (const HeldObject& held : scene.held)
     problem.attached.push_back(
         {held.name, chain.tip_link(), held.shape, chain.T_tip_transfer() * held.T_transfer_object});
-  problem.allowed_collisions = scene.allowed_collisions;
+  problem.allowed_collisions = pairs_of_parts(scene.allowed_collisions, parts);
   problem.constraint = scene.constraint;
+  return parts;
 }
 
 void add_pairs_of_links(const SearchRecord& search, const kinematics::Chain& chain,
-                        Problem& problem) {
+                        const PartNames& parts, Problem& problem) {
   std::set<std::string_view> names;
   for (const SceneObject& object : problem.scene.objects)
     names.insert(object.name);
@@ -50,7 +84,7 @@ void add_pairs_of_links(const SearchRecord& search, const kinematics::Chain& cha
   const auto is_known = [&](const std::string& name) {
     return names.contains(name) || chain.find_link(name) >= 0;
   };
-  for (const auto& [first, second] : search.allowed_collisions)
+  for (const auto& [first, second] : pairs_of_parts(search.allowed_collisions, parts))
     if (is_known(first) && is_known(second))
       problem.allowed_collisions.emplace_back(first, second);
 }
@@ -95,9 +129,10 @@ Result<Problem> problem_of(const Attempt& attempt, const kinematics::Chain& chai
     return Error{ErrorCode::InvalidInput, who + "its record has no start"};
   if (problem.goal_configurations.cols() == 0 && !problem.T_task_goal)
     return Error{ErrorCode::InvalidInput, who + "its record has no goal"};
+  PartNames parts;
   if (attempt.scene)
-    add_scene(*attempt.scene, chain, problem);
-  add_pairs_of_links(*attempt.search, chain, problem);
+    parts = add_scene(*attempt.scene, chain, problem);
+  add_pairs_of_links(*attempt.search, chain, parts, problem);
   if (attempt.record.time_limit_s > 0)
     problem.time_limit_s = attempt.record.time_limit_s;
   return problem;

@@ -104,7 +104,7 @@ const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey&
   const Entry* found = nullptr;
   std::pair<bool, double> least{true, kNear_m};  // nothing could be planned there; distance
   for (const auto& [id, entry] : entries_) {
-    if (!entry.known || !entry.known->is_complete || entry.is_lost || entry.kind != kind ||
+    if (!entry.known || !entry.known->is_complete || entry.lost || entry.kind != kind ||
         id == own)
       continue;
     const bool is_empty = entry.known->queries == 0;
@@ -123,7 +123,7 @@ const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey&
 SharedLibrary RehearsalScheduler::library(const RehearsalKey& key) const {
   const std::lock_guard lock(mutex_);
   const auto own = entries_.find(identify(key.distribution));
-  if (own != entries_.end() && own->second.library && !own->second.is_lost)
+  if (own != entries_.end() && own->second.library && !own->second.lost)
     return own->second.library;
   const Entry* const near = nearest(key);
   return near != nullptr ? near->library : nullptr;
@@ -184,7 +184,7 @@ bool RehearsalScheduler::is_compared(const Entry& entry) const {
 
 /// Compares it with the experience, which may rehearse it, unless that was done or is under way.
 void RehearsalScheduler::begin(const Digest& id, Entry& entry) {
-  if (!entry.is_working && !(entry.known && !entry.is_lost && is_compared(entry)))
+  if (!entry.is_working && !(entry.known && !entry.lost && is_compared(entry)))
     entry.is_working = pool_.submit(runtime::WorkerPool::Priority::Background,
                                     {.run = [this, id] { work(id); }, .abandon = {}});
 }
@@ -227,12 +227,10 @@ void RehearsalScheduler::forget(std::string_view task, Loss loss) {
   for (auto& [id, entry] : entries_) {
     if (entry.key.distribution.task != task)
       continue;
-    entry.is_lost = true;
+    entry.lost = std::max(entry.lost.value_or(loss), loss);
     entry.library.reset();
-    if (loss == Loss::Paths)
-      continue;
-    entry.known.reset();
-    entry.made_of = {};
+    if (loss == Loss::Task)
+      entry.known.reset();
   }
 }
 
@@ -260,8 +258,8 @@ void RehearsalScheduler::work(const Digest& id) {
     before.known = entry.known;
     before.library = entry.library;
     before.made_of = entry.made_of;
-    before.is_lost = entry.is_lost;
-    entry.is_lost = false;
+    before.lost = entry.lost;
+    entry.lost.reset();
     changes = versions_.of(entry.key.distribution.task).changes;
   }
   try {
@@ -297,7 +295,7 @@ RehearsalScheduler::Counts RehearsalScheduler::count_selected(
 }
 
 bool RehearsalScheduler::is_out_of_date(const RehearsalKey& key, const Entry& entry) const {
-  if (!entry.known || entry.is_lost)
+  if (!entry.known || entry.lost)
     return true;
   const Counts now = count_selected(key.distribution);
   const Counts& then = entry.made_of;
@@ -413,7 +411,7 @@ SharedLibrary RehearsalScheduler::make_library(const Digest& id, const Subject& 
   SharedLibrary library = made ? std::make_shared<const RecallLibrary>(*std::move(made)) : nullptr;
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[id];
-  if (!entry.is_lost)  // else it was made of paths that were retired meanwhile
+  if (!entry.lost)  // else it was made of paths that were retired meanwhile
     entry.library = library;
   return entry.library;
 }
@@ -422,6 +420,8 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, const Count
   auto known = std::make_shared<const Rehearsal>(std::move(rehearsal));
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[id];
+  if (entry.lost == Loss::Task)
+    return;
   entry.made_of = paths;
   if (known->is_complete) {
     totals_.processor_time_s += known->processor_time_s;
@@ -435,7 +435,7 @@ void RehearsalScheduler::keep(const Digest& id, Rehearsal rehearsal, const Count
 void RehearsalScheduler::save(const Digest& id, std::uint64_t retired) {
   std::unique_lock lock(mutex_);
   const Entry& entry = entries_[id];
-  if (entry.is_lost)
+  if (entry.lost)
     return;
   const fitting::DistributionKey& key = entry.key.distribution;
   store::StoredRehearsal stored{.id = id,

@@ -142,7 +142,7 @@ class RehearsalScheduler {
     Counts made_of;
     /// Changes of the task's experience when it was last compared; nothing: by no request yet.
     std::optional<std::uint64_t> looked_at;
-    bool is_lost = false;  // paths were retired since
+    std::optional<Loss> lost;  // since it began
     bool is_working = false;
     std::vector<Waiter> waiters;
     mutable std::uint64_t last_used = 0;

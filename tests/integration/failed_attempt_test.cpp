@@ -99,6 +99,34 @@ TEST_F(FailedAttempt, NamesTheBodyInTheWayAndIsPlannedAgainFromOneFile) {
   EXPECT_TRUE(plan("open.jsonl", "").solved);
 }
 
+TEST_F(FailedAttempt, WithAMeshThatWasRecordedAsSeveralSolidsIsPlannedAgainToo) {
+  cell_.start();
+  const Problem turn = turn_through_a_wall();
+  Attempt attempt = test::panda_attempt(cell_.register_model("panda").robot, "turn", 1);
+  attempt.path.reset();
+  attempt.record.outcome = Outcome::Failed;
+  RecordedScene& scene = attempt.scene.emplace();
+  scene.objects = turn.scene.objects;
+  scene.objects[1].name = scene.objects[2].name = "bin";
+  scene.allowed_collisions = {{"bin", "palm"}};
+  SearchRecord& search = attempt.search.emplace();
+  search.start = turn.start;
+  search.goals = turn.goal_configurations;
+  ASSERT_TRUE(cell_.client().deliver({attempt}).has_value());
+
+  const std::string file = (directory_ / "again.jsonl").string();
+  const test::Answer exported =
+      cell_.kinship("attempts export " + attempt.report_uuid.text() + " --output " + file);
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  const Problem again =
+      json::problem_from_json(test::read_text(file).substr(0, test::read_text(file).find('\n')))
+          .value_or_throw();
+  EXPECT_EQ(again.scene.objects[1].name, "bin/1");
+  EXPECT_EQ(again.scene.objects[2].name, "bin/2");
+  using Pairs = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(again.allowed_collisions, (Pairs{{"bin/1", "palm"}, {"bin/2", "palm"}}));
+}
+
 TEST_F(FailedAttempt, IsReportedBareIfTheUserWantsSo) {
   cell_.start();
   write("problem.jsonl", turn_through_a_wall());

@@ -109,10 +109,11 @@ MeshesPut insert_meshes(Session& session, const Digest& robot, const ReadMeshes&
                   digest, content->bytes, crc32c(content->zlib), content->zlib);
     used += content->zlib.size();
     ++put.stored;
-    has_new_collision = has_new_collision ||
-                        std::ranges::any_of(record->description.meshes, [&](const LinkMesh& each) {
-                          return each.content == digest && is_collision(each);
-                        });
+    has_new_collision =
+        has_new_collision ||
+        std::ranges::any_of(record->description.meshes, [&of = digest](const LinkMesh& each) {
+          return each.content == of && is_collision(each);
+        });
   }
   if (has_new_collision && is_complete(session, record->description)) {
     RobotRecord complete = *record;

@@ -371,6 +371,10 @@ void Salvager::make_experience() const {
       "),"
       " attempts = (SELECT count(*) FROM attempt WHERE attempt.task_id = experience.task_id"
       " AND attempt.robot_id = experience.robot_id)");
+  // A removed task is listed again with the next attempt, also if some of those before it are lost.
+  target_->execute(
+      "UPDATE task SET removed_attempts = min(removed_attempts, (SELECT coalesce(sum(attempts), 0)"
+      " FROM experience WHERE experience.task_id = task.id)) WHERE removed_attempts IS NOT NULL");
   for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)}) {
     const std::string name(mode);
     target_->execute(
