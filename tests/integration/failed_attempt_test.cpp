@@ -108,11 +108,13 @@ TEST_F(FailedAttempt, WithAMeshThatWasRecordedAsSeveralSolidsIsPlannedAgainToo) 
   RecordedScene& scene = attempt.scene.emplace();
   scene.objects = turn.scene.objects;
   scene.objects[1].name = scene.objects[2].name = "bin";
-  scene.allowed_collisions = {{"bin", "palm"}};
+  scene.allowed_collisions = {{"bin", "table"}};
   SearchRecord& search = attempt.search.emplace();
   search.start = turn.start;
   search.goals = turn.goal_configurations;
-  ASSERT_TRUE(cell_.client().deliver({attempt}).has_value());
+  search.allowed_collisions = {{"palm", "bin"}};
+  const Receipt receipt = cell_.client().deliver({attempt}).value_or_throw().at(0);
+  ASSERT_EQ(receipt.status, ReceiptStatus::Recorded) << receipt.message;
 
   const std::string file = (directory_ / "again.jsonl").string();
   const test::Answer exported =
@@ -124,7 +126,8 @@ TEST_F(FailedAttempt, WithAMeshThatWasRecordedAsSeveralSolidsIsPlannedAgainToo) 
   EXPECT_EQ(again.scene.objects[1].name, "bin/1");
   EXPECT_EQ(again.scene.objects[2].name, "bin/2");
   using Pairs = std::vector<std::pair<std::string, std::string>>;
-  EXPECT_EQ(again.allowed_collisions, (Pairs{{"bin/1", "palm"}, {"bin/2", "palm"}}));
+  EXPECT_EQ(again.allowed_collisions,
+            (Pairs{{"bin/1", "table"}, {"bin/2", "table"}, {"palm", "bin/1"}, {"palm", "bin/2"}}));
 }
 
 TEST_F(FailedAttempt, IsReportedBareIfTheUserWantsSo) {

@@ -34,7 +34,7 @@ class Integrator(walk.WalkTest):
                       "--output mine.jsonl")
         self.assertRegex(told, r"planned 4 of 4 problems, 4 solved; [1-4] guided")
         mine = [json.loads(line) for line in me.read("mine.jsonl").splitlines()]
-        self.assertTrue(all(result["path"] for result in mine))
+        self.assertTrue(all(result["waypoints"] for result in mine))
 
         me.run("kinship paths export --task load_machine --robots arm --moveit trajectories.yaml")
         trajectories = me.read("trajectories.yaml")
