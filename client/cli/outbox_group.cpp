@@ -106,7 +106,7 @@ std::size_t for_each_chosen(const Chosen& chosen, const link::Outbox& outbox,
   if (chosen.named.empty())
     for (const Uuid& report :
          chosen.is_rejected ? outbox.reports_rejected() : outbox.reports_set_aside())
-      count += act(report) ? 1 : 0;
+      count += act(report) ? 1U : 0U;
   return count;
 }
 
