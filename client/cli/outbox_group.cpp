@@ -195,10 +195,9 @@ void tell_of_older_reports(const Session& session, link::Client& server) {
 }
 
 void add_outbox(CLI::App& app, Session& session) {
-  CLI::App* group =
-      add_group(app, session, "outbox",
-                "Reports on this host that have no receipt, or one of an older store; "
-                "alone it lists them, and asks on a terminal (no server)");
+  CLI::App* group = add_group(app, session, "outbox",
+                              "Reports on this host without a receipt or of an older store; "
+                              "alone: list them, ask on a terminal");
   const auto folder = std::make_shared<std::filesystem::path>();
   group->add_option("--outbox", *folder, kOutboxHelp)->type_name("FOLDER");
   group->require_subcommand(0, 1);
