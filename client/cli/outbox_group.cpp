@@ -46,11 +46,11 @@ int list_outbox(const Session& session, const link::Outbox& outbox) {
 struct Chosen {
   std::vector<std::string> named;  ///< UUIDs
   bool is_rejected = false;        ///< none named: those that are rejected, not those set aside
-  bool is_all = false;             ///< with those that were acknowledged
+  bool is_all = false;             ///< instead those that were acknowledged, or of older stores
   std::filesystem::path outbox;    ///< its folder; empty: that of the server
 };
 
-/// \param all  what --all adds.
+/// \param all  what --all is about.
 std::shared_ptr<Chosen> add_choice(CLI::App& command, const std::string& all) {
   auto chosen = std::make_shared<Chosen>();
   command
@@ -106,40 +106,53 @@ std::size_t for_each_chosen(const Chosen& chosen, const link::Outbox& outbox,
   if (chosen.named.empty())
     for (const Uuid& report :
          chosen.is_rejected ? outbox.reports_rejected() : outbox.reports_set_aside())
-      count += act(report) ? 1 : 0;
+      count += act(report) ? 1U : 0U;
   return count;
+}
+
+void tell_resent(const Session& session, std::size_t reports) {
+  session.out << count_text(reports, "report")
+              << " pending again; the next program with this outbox sends them\n";
 }
 
 int resend(const Session& session, const Chosen& chosen) {
   link::Outbox outbox = open_outbox(session, chosen.outbox);
-  std::size_t sent =
-      for_each_chosen(chosen, outbox, [&](const Uuid& report) { return outbox.resend(report); });
   if (chosen.is_all)
-    sent += outbox.resend_acknowledged();
-  session.out << count_text(sent, "report")
-              << " pending again; the next program with this outbox sends them\n";
+    tell_resent(session, outbox.resend_acknowledged());
+  else
+    tell_resent(session, for_each_chosen(chosen, outbox, [&](const Uuid& report) {
+                  return outbox.resend(report);
+                }));
   if (const std::string kept = describe(outbox.kept_of_older_stores()); !kept.empty())
     session.err << "outbox: " << kept << '\n';
   return kDone;
 }
 
-std::size_t count_of_older_stores(const link::Outbox& outbox) {
+std::size_t count_of(const std::vector<link::KeptReports>& stores) {
   std::size_t count = 0;
-  for (const link::KeptReports& kept : outbox.kept_of_older_stores())
-    count += kept.reports;
+  for (const link::KeptReports& each : stores)
+    count += each.reports;
   return count;
+}
+
+void tell_dropped(const Session& session, std::size_t reports, bool is_confirmed) {
+  session.out << count_text(reports, "report")
+              << (is_confirmed ? " deleted\n" : " would be deleted for good: say --yes\n");
 }
 
 int drop(const Session& session, const Chosen& chosen, bool is_confirmed) {
   link::Outbox outbox = open_outbox(session, chosen.outbox);
+  if (chosen.is_all) {
+    const std::vector<link::KeptReports> stores = outbox.kept_of_older_stores();
+    tell_dropped(session, is_confirmed ? outbox.drop_of_older_stores(stores) : count_of(stores),
+                 is_confirmed);
+    return kDone;
+  }
   const std::vector<Uuid> kept = kept_in(outbox);
-  std::size_t dropped = for_each_chosen(chosen, outbox, [&](const Uuid& report) {
+  const std::size_t dropped = for_each_chosen(chosen, outbox, [&](const Uuid& report) {
     return is_confirmed ? outbox.drop(report) : std::ranges::count(kept, report) > 0;
   });
-  if (chosen.is_all)
-    dropped += is_confirmed ? outbox.drop_of_older_stores() : count_of_older_stores(outbox);
-  session.out << count_text(dropped, "report")
-              << (is_confirmed ? " deleted\n" : " would be deleted for good: say --yes\n");
+  tell_dropped(session, dropped, is_confirmed);
   return kDone;
 }
 
@@ -147,21 +160,20 @@ int drop(const Session& session, const Chosen& chosen, bool is_confirmed) {
 int look(const Session& session, const std::filesystem::path& folder) {
   link::Outbox outbox = open_outbox(session, folder);
   list_outbox(session, outbox);
-  const std::string kept = describe(outbox.kept_of_older_stores());
+  const std::vector<link::KeptReports> stores = outbox.kept_of_older_stores();
+  const std::string kept = describe(stores);
   if (kept.empty() || !is_terminal(session.out) || isatty(STDIN_FILENO) != 1)
     return kDone;
   session.out << kept << ".\nSend them, delete them, or leave them there? [send/delete/leave] "
               << std::flush;
   std::string answer;
   std::getline(std::cin, answer);
-  Chosen all;
-  all.outbox = folder;
-  all.is_all = true;
   if (answer == "send")
-    return resend(session, all);
-  if (answer == "delete")
-    return drop(session, all, true);
-  session.out << "They are left there.\n";
+    tell_resent(session, outbox.resend_acknowledged());
+  else if (answer == "delete")
+    tell_dropped(session, outbox.drop_of_older_stores(stores), true);
+  else
+    session.out << "They are left there.\n";
   return kDone;
 }
 
@@ -183,9 +195,9 @@ void tell_of_older_reports(const Session& session, link::Client& server) {
 }
 
 void add_outbox(CLI::App& app, Session& session) {
-  CLI::App* group =
-      add_group(app, session, "outbox",
-                "Reports on this host without a receipt, or with that of an older store (no server)");
+  CLI::App* group = add_group(app, session, "outbox",
+                              "Reports on this host without a receipt or of an older store; "
+                              "alone: list them, ask on a terminal");
   const auto folder = std::make_shared<std::filesystem::path>();
   group->add_option("--outbox", *folder, kOutboxHelp)->type_name("FOLDER");
   group->require_subcommand(0, 1);
@@ -208,16 +220,16 @@ void add_outbox(CLI::App& app, Session& session) {
                   "  kinship outbox resend --all          to a store that lost them\n"
                   "  kinship outbox resend 11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77");
   const auto again_chosen = add_choice(
-      *again, "Also all that were acknowledged and are kept, by this store or an older one");
+      *again, "Instead all that are kept of older stores or were acknowledged by this one");
   on_run(*again, session, [&session, again_chosen] { return resend(session, *again_chosen); });
   CLI::App* away =
       add_command(*group, "drop", "Delete reports that are set aside, rejected or of older stores",
                   "kinship outbox drop --rejected --yes\n"
-                  "  kinship outbox drop --all --yes\n"
+                  "  kinship outbox drop --all --yes      of a store that was given up\n"
                   "  kinship outbox drop 11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77 --yes");
   const auto is_confirmed = std::make_shared<bool>(false);
   away->add_flag("--yes", *is_confirmed, "Delete them; without it only said");
-  const auto away_chosen = add_choice(*away, "Also all that are kept of older stores");
+  const auto away_chosen = add_choice(*away, "Instead all that are kept of older stores");
   on_run(*away, session, [&session, away_chosen, is_confirmed] {
     return drop(session, *away_chosen, *is_confirmed);
   });

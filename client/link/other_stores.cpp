@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kKeptIn[] = {"sent_before", "sent", kPending};
+constexpr std::string_view kKeptIn[] = {kSentBefore, kSent, kPending};
 
 bool is_there(const fs::path& path) {
   std::error_code error;
@@ -75,15 +75,11 @@ void OtherStores::put_away(const Uuid& epoch) const {
   });
 }
 
-void OtherStores::hold_back(const Uuid& epoch, fs::file_time_type before) const {
+void OtherStores::hold_back(const Uuid& epoch, const std::set<Uuid>& reports) const {
   const fs::path held = folder_of(epoch) / kPending;
   make_folder_durably(held);
-  for_each_entry(outbox_ / kPending, [&](const fs::directory_entry& entry) {
-    std::error_code error;
-    const fs::file_time_type written = entry.last_write_time(error);
-    if (!error && report_uuid_of(entry.path()) && written < before)
-      move_file(entry.path(), held / entry.path().filename());
-  });
+  for (const Uuid& report : reports)
+    move_file(outbox_ / kPending / report_file_name(report), held / report_file_name(report));
 }
 
 std::optional<Uuid> OtherStores::known_epoch(const Uuid& epoch) const {
@@ -110,9 +106,10 @@ std::size_t OtherStores::offer_again() const {
   return offered;
 }
 
-std::size_t OtherStores::drop() const {
+std::size_t OtherStores::drop(const std::vector<KeptReports>& stores) const {
   std::size_t dropped = 0;
-  for (const fs::path& folder : folders()) {
+  for (const KeptReports& each : stores) {
+    const fs::path folder = outbox_ / kFolder / each.store;
     dropped += count_kept(folder);
     std::error_code error;
     fs::remove_all(folder, error);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "client/link/kept_reports.hpp"
@@ -27,8 +28,8 @@ class OtherStores {
 
   /// Puts away what the outbox keeps for the store that it has.
   void put_away(const Uuid& epoch) const;
-  /// Puts away what was pending before a moment, too.
-  void hold_back(const Uuid& epoch, std::filesystem::file_time_type before) const;
+  /// Puts away those of some reports that are still pending, too.
+  void hold_back(const Uuid& epoch, const std::set<Uuid>& reports) const;
 
   /// The epoch in which a store was known last; empty: it was never seen, or nothing is kept of it.
   std::optional<Uuid> known_epoch(const Uuid& epoch) const;
@@ -37,8 +38,8 @@ class OtherStores {
 
   /// Makes all that is kept pending. \return how many reports.
   std::size_t offer_again() const;
-  /// Deletes all that is kept, for good. \return how many reports.
-  std::size_t drop() const;
+  /// Deletes all that is kept of some stores, for good. \return how many reports.
+  std::size_t drop(const std::vector<KeptReports>& stores) const;
 
   std::vector<KeptReports> kept() const;  ///< of each store of which something is kept
 

@@ -78,13 +78,12 @@ bool is_missing(const fs::path& path) {
 }  // namespace
 
 Outbox::Outbox(fs::path folder, Resend resend)
-    : folder_(std::move(folder)),
-      resend_(resend),
-      opened_(fs::file_time_type::clock::now()),
-      sent_(folder_),
-      others_(folder_) {
+    : folder_(std::move(folder)), resend_(resend), sent_(folder_), others_(folder_) {
   for (const std::string_view part : {kPending, kRejected, kRobots})
     make_folder_durably(folder_ / part);
+  if (resend_ == Resend::None)
+    for (const Uuid& report : reports_in(kPending))
+      reported_before_.insert(report);
 }
 
 fs::path Outbox::file(std::string_view part, const Uuid& report_uuid) const {
@@ -247,7 +246,7 @@ void Outbox::forget_meshes(const Digest& robot) {
   const Result<RobotDescription> known = this->robot(robot);
   if (!known || known->meshes.empty())
     return;
-  drop_contents(*known);
+  drop_contents_of({robot});
   RobotDescription kept = *known;
   kept.meshes.clear();
   write_durably(folder_ / kRobots / (robot.hex() + std::string(kSuffix)),
@@ -274,16 +273,35 @@ std::vector<Digest> Outbox::robots_with_contents() const {
   std::error_code error;
   if (is_missing(folder_ / kMeshes) || fs::is_empty(folder_ / kMeshes, error))
     return robots;
-  for_each_entry(folder_ / kRobots, [&](const fs::directory_entry& entry) {
-    const auto digest = Digest::from_hex(entry.path().stem().string());
-    const auto description =
-        digest ? robot(*digest) : Result<RobotDescription>(Error{ErrorCode::NotFound, ""});
-    if (description && std::ranges::any_of(description->meshes, [&](const LinkMesh& mesh) {
+  for (const auto& [robot, description] : kept_robots())
+    if (std::ranges::any_of(description.meshes, [&](const LinkMesh& mesh) {
           return fs::exists(folder_ / kMeshes / mesh.content.hex(), error);
         }))
-      robots.push_back(*digest);
+      robots.push_back(robot);
+  return robots;
+}
+
+/// Those whose files can be read.
+std::map<Digest, RobotDescription> Outbox::kept_robots() const {
+  std::map<Digest, RobotDescription> robots;
+  for_each_entry(folder_ / kRobots, [&](const fs::directory_entry& entry) {
+    if (const auto digest = Digest::from_hex(entry.path().stem().string()))
+      if (auto description = robot(*digest))
+        robots.emplace(*digest, std::move(description).value());
   });
   return robots;
+}
+
+/// But not what a robot names that is none of them.
+void Outbox::drop_contents_of(const std::set<Digest>& robots) const {
+  std::set<Digest> dropped, kept;
+  for (const auto& [robot, description] : kept_robots())
+    for (const LinkMesh& mesh : description.meshes)
+      (robots.contains(robot) ? dropped : kept).insert(mesh.content);
+  std::error_code error;  // what stays is offered again
+  for (const Digest& content : dropped)
+    if (!kept.contains(content))
+      fs::remove(folder_ / kMeshes / content.hex(), error);
 }
 
 Result<RobotDescription> Outbox::robot(const Digest& robot) const {
@@ -308,7 +326,7 @@ std::optional<Uuid> Outbox::change_store(const Uuid& from, const Uuid& to) const
   others_.put_away(from);
   const std::optional<Uuid> known = others_.known_epoch(to);
   if (!known && resend_ == Resend::None)
-    others_.hold_back(from, opened_);
+    others_.hold_back(from, reported_before_);
   if (!known)
     drop_contents_without_reports();
   write_durably(folder_ / kEpoch, known.value_or(to).text() + "\n");
@@ -317,16 +335,14 @@ std::optional<Uuid> Outbox::change_store(const Uuid& from, const Uuid& to) const
 
 /// Of robots that a store never seen is not to get: sending contents registers them.
 void Outbox::drop_contents_without_reports() const {
-  const std::vector<Digest> robots = robots_with_contents();
-  if (robots.empty())
+  const std::vector<Digest> with_contents = robots_with_contents();
+  if (with_contents.empty())
     return;
-  std::set<Digest> reported;
+  std::set<Digest> robots(with_contents.begin(), with_contents.end());
   for (const Uuid& uuid : pending())
     if (const Result<Attempt> attempt = read(uuid))
-      reported.insert(attempt->robot);
-  for (const Digest& each : robots)
-    if (const auto description = robot(each); description && !reported.contains(each))
-      drop_contents(*description);
+      robots.erase(attempt->robot);
+  drop_contents_of(robots);
 }
 
 std::size_t Outbox::resend_sent() const {
@@ -360,6 +376,15 @@ bool Outbox::note_store(const Uuid& epoch, const ConsistencyToken& token) {
 }
 
 std::size_t Outbox::resend_acknowledged() { return others_.offer_again() + resend_sent(); }
+
+std::size_t Outbox::drop_of_older_stores(const std::vector<KeptReports>& stores) {
+  const auto lock = try_to_become_sender(folder_);
+  if (!lock)
+    throw Failure(ErrorCode::Unavailable, "outbox '" + folder_.string() + "': process " +
+                                              sender_of(folder_) +
+                                              " sends from it; end it first, nothing was deleted");
+  return others_.drop(stores);
+}
 
 std::vector<KeptReports> Outbox::kept_beside(const Uuid& epoch) const {
   std::vector<KeptReports> kept = others_.kept();

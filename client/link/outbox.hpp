@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -63,18 +64,22 @@ class Outbox {
   /// Reports that wait or are kept apart, by folder and file. Reads all pending ones.
   std::vector<OutboxEntry> entries() const;
 
-  /// Makes all acknowledged reports that are kept pending again, also those of older stores.
+  /// Makes all acknowledged reports that are kept pending again, those of older stores and those of
+  /// the store that is there.
   /// \return how many.
   std::size_t resend_acknowledged();
   std::vector<KeptReports> kept_of_older_stores() const { return others_.kept(); }
   /// What would be kept of older stores if the server had the store of an epoch.
   std::vector<KeptReports> kept_beside(const Uuid& epoch) const;
-  std::size_t drop_of_older_stores() { return others_.drop(); }  ///< for good; \return how many
+  /// Deletes, for good, what is kept of some stores, as kept_of_older_stores() lists them. Takes
+  /// the sender lock. \return how many. \throws Failure(Unavailable) if a process sends.
+  std::size_t drop_of_older_stores(const std::vector<KeptReports>& stores);
 
   /// Durably, with the contents of its meshes that come with it. Without meshes those that are
   /// known stay.
   void keep_robot(const Digest& robot, const RobotDescription& description);
-  /// Forgets the meshes of a robot, which are to stay here, and their contents.
+  /// Forgets the meshes of a robot, which are to stay here, and their contents but those that
+  /// another robot names, too.
   void forget_meshes(const Digest& robot);
 
   /// Nothing also if its file is damaged.
@@ -111,11 +116,13 @@ class Outbox {
   std::vector<Uuid> reports_in(std::string_view part) const;
   std::optional<Uuid> change_store(const Uuid& from, const Uuid& to) const;
   std::size_t resend_sent() const;
+  std::map<Digest, RobotDescription> kept_robots() const;
+  void drop_contents_of(const std::set<Digest>& robots) const;
   void drop_contents_without_reports() const;
 
   const std::filesystem::path folder_;
   const Resend resend_;
-  const std::filesystem::file_time_type opened_;
+  std::set<Uuid> reported_before_;  // pending at the opening, for Resend::None
   SentReports sent_;
   OtherStores others_;
 };

@@ -11,6 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kReportSuffix = ".json";
+constexpr const char* kSenderLock = "sender.lock";
 
 void require_done(const std::error_code& error, const fs::path& path, const char* what) {
   if (error)
@@ -25,6 +26,18 @@ std::optional<Uuid> noted_epoch(const fs::path& folder) {
   if (!fs::exists(folder / kEpoch, error))
     return std::nullopt;
   return Uuid::parse(read_file(folder / kEpoch, 1024).substr(0, kUuidTextBytes));
+}
+
+std::optional<files::LockFile> try_to_become_sender(const fs::path& outbox) {
+  try {
+    return files::LockFile::try_acquire(outbox / kSenderLock, 0644);
+  } catch (const files::FileError& error) {
+    fail_on(error);
+  }
+}
+
+std::string sender_of(const fs::path& outbox) {
+  return files::LockFile::holder(outbox / kSenderLock);
 }
 
 std::string report_file_name(const Uuid& report_uuid) {

@@ -4,8 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "client/link/durable_file.hpp"
-#include "proto/files/lock_file.hpp"
+#include "client/link/outbox_files.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::link {
@@ -27,16 +26,6 @@ constexpr std::chrono::milliseconds kPoll = 50ms;    // for reports that another
 bool is_taken(ReceiptStatus status) {
   return status == ReceiptStatus::Stored || status == ReceiptStatus::Duplicate ||
          status == ReceiptStatus::Recorded;
-}
-
-/// The right to send from an outbox; empty if another owner on this machine has it.
-/// \throws Failure(Storage) if the lock file cannot be opened.
-std::optional<files::LockFile> try_to_become_sender(const std::filesystem::path& outbox) {
-  try {
-    return files::LockFile::try_acquire(outbox / "sender.lock", 0644);
-  } catch (const files::FileError& error) {
-    fail_on(error);
-  }
 }
 
 }  // namespace
@@ -223,7 +212,15 @@ bool ReportSender::notes_store_first() {
   if (probed_ || !outbox_.holds_back())
     return true;
   ReportRequest probe;
-  return exchange(probe) && probed_;
+  const Result<ReportReply> reply = exchange(probe);
+  std::string problem;
+  if (!reply)
+    problem = reply.error().message;
+  else if (!probed_)
+    problem =
+        reply->message.empty() ? "the server does not say which store it has" : reply->message;
+  report_problem(problem);
+  return problem.empty();
 }
 
 /// Tells a server that came, and every server now and then, how far its store is known here, for

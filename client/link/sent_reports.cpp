@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -16,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-constexpr const char* kNewer = "sent";
-constexpr const char* kOlder = "sent_before";
 constexpr const char* kAge = "sent_age_ms";
 constexpr milliseconds kMaxAge = std::chrono::hours(7 * 24);
 constexpr std::size_t kMaxReports = 250'000;
@@ -45,16 +44,16 @@ std::size_t count_entries(const fs::path& folder) {
 SentReports::SentReports(fs::path outbox) : outbox_(std::move(outbox)) { make_folders(); }
 
 void SentReports::make_folders() const {
-  for (const char* const folder : {kNewer, kOlder})
+  for (const std::string_view folder : {kSent, kSentBefore})
     make_folder_durably(outbox_ / folder);
 }
 
 fs::path SentReports::file(const Uuid& report_uuid) const {
-  return outbox_ / kNewer / report_file_name(report_uuid);
+  return outbox_ / kSent / report_file_name(report_uuid);
 }
 
 void SentReports::for_each(const std::function<void(const fs::path&)>& visit) const {
-  for (const char* const folder : {kOlder, kNewer})
+  for (const std::string_view folder : {kSentBefore, kSent})
     for_each_entry(outbox_ / folder, [&](const fs::directory_entry& entry) {
       if (report_uuid_of(entry.path()))
         visit(entry.path());
@@ -63,7 +62,7 @@ void SentReports::for_each(const std::function<void(const fs::path&)>& visit) co
 
 void SentReports::age(milliseconds sending) const {
   const milliseconds age = read_age(outbox_ / kAge) + sending;
-  if (age >= kMaxAge || count_entries(outbox_ / kNewer) >= kMaxReports)
+  if (age >= kMaxAge || count_entries(outbox_ / kSent) >= kMaxReports)
     return rotate();
   if (sending.count() > 0)
     write_whole(outbox_ / kAge, std::to_string(age.count()) + "\n");
@@ -73,9 +72,9 @@ void SentReports::age(milliseconds sending) const {
 void SentReports::rotate() const {
   write_durably(outbox_ / kAge, "0\n");
   std::error_code error;
-  fs::remove_all(outbox_ / kOlder, error);
+  fs::remove_all(outbox_ / kSentBefore, error);
   if (!error)
-    move_file(outbox_ / kNewer, outbox_ / kOlder);
+    move_file(outbox_ / kSent, outbox_ / kSentBefore);
   make_folders();
 }
 

@@ -63,6 +63,15 @@ class NewStore : public testing::Test {
     EXPECT_EQ(answer.code, 0) << answer.err;
     return answer;
   }
+  /// \return the file of a report that the server put off.
+  fs::path set_one_aside() const {
+    const fs::path outbox =
+        fs::directory_iterator(directory_ / "state" / "kinship" / "outbox")->path();
+    const fs::path file = outbox / "set_aside" / "11d0b6f0-3b1c-4b7e-9f2a-0b7de01c5a77.json";
+    fs::create_directory(file.parent_path());
+    std::ofstream(file) << "{}\n";
+    return file;
+  }
   std::string attempts() const { return value_of("attempts"); }
   std::string robots() const { return value_of("robots"); }
   /// Of the status, as JSON says it.
@@ -100,8 +109,10 @@ TEST_F(NewStore, GetsTheOldReportsAndRobotsOnDemandAlone) {
   EXPECT_TRUE(listed.says("3 reports of this older store")) << listed.out;
   EXPECT_TRUE(kinship("outbox resend").says("3 reports of an older store")) << "which it leaves";
 
+  const fs::path put_away = set_one_aside();
   const Answer again = kinship("outbox resend --all");
   EXPECT_TRUE(again.says("5 reports pending again")) << again.out << again.err;
+  EXPECT_TRUE(fs::exists(put_away));
   const Answer second = plan("ur10e", 1);
   EXPECT_FALSE(second.says("older store")) << second.err;
   EXPECT_TRUE(second.says("6 acknowledged, 0 pending, 0 refused")) << second.err;
@@ -120,8 +131,10 @@ TEST_F(NewStore, IsTakenForOneAtTheFirstRunOrNever) {
   const Answer none = plan("ur10e", 1, {"--resend", "none"});
   EXPECT_TRUE(none.says("4 reports of an older store")) << none.err;
   EXPECT_EQ(attempts(), "1");
+  const fs::path put_away = set_one_aside();
   const Answer away = kinship("outbox drop --all --yes");
   EXPECT_TRUE(away.says("4 reports deleted")) << away.out << away.err;
+  EXPECT_TRUE(fs::exists(put_away)) << "no store has acknowledged it";
   EXPECT_FALSE(plan("ur10e", 1).says("older store"));
   EXPECT_EQ(attempts(), "2");
 }
@@ -166,10 +179,18 @@ TEST_F(NewStore, IsAskedAboutOnATerminal) {
   const Answer left = answer_with("leave");
   EXPECT_TRUE(left.says("[send/delete/leave]")) << left.out;
   EXPECT_TRUE(left.says("They are left there.")) << left.out;
+  const fs::path put_away = set_one_aside();
+  EXPECT_TRUE(kinship("outbox drop --all").says("2 reports would be deleted"));
   const Answer sent = answer_with("send");
   EXPECT_TRUE(sent.says("3 reports pending again")) << sent.out;
+  EXPECT_TRUE(fs::exists(put_away)) << "no store has acknowledged it";
   plan("ur10e", 1);
   EXPECT_EQ(attempts(), "4");
+  begin_anew();
+  plan("ur10e", 1);
+  const Answer deleted = answer_with("delete");
+  EXPECT_TRUE(deleted.says("4 reports deleted")) << deleted.out;
+  EXPECT_TRUE(fs::exists(put_away)) << "the question was not about it";
   EXPECT_FALSE(kinship("outbox").says("[send/")) << "no terminal, no question";
 }
 

@@ -36,7 +36,7 @@ class Integrator(walk.WalkTest):
         mine = [json.loads(line) for line in me.read("mine.jsonl").splitlines()]
         self.assertTrue(all(result["waypoints"] for result in mine))
 
-        me.run("kinship paths export --task load_machine --robots arm --moveit trajectories.yaml")
+        me.run("kinship paths export --task load_machine --robot arm --moveit trajectories.yaml")
         trajectories = me.read("trajectories.yaml")
         self.assertEqual(len(re.findall(r"^ *joint_names:", trajectories, re.M)), 4, trajectories[:2000])
         self.assertLessEqual(self.walk.commands, 14)

@@ -42,7 +42,7 @@ class Researcher(walk.WalkTest):
         me.run(f"cp -r {DOCUMENTS}/client/examples mine && cmake -S mine -B build && "
                "cmake --build build --target 01_report_a_path 03_guide_an_ompl_planner")
         me.run(f"for seed in 0 1 2 3; do build/01_report_a_path {DOCUMENTS}/robots/models $seed; done")
-        self.assertRegex(me.run(f"build/03_guide_an_ompl_planner {DOCUMENTS}/robots/models"), "^solved with")
+        self.assertRegex(me.run(f"build/03_guide_an_ompl_planner {DOCUMENTS}/robots/models"), r"(?m)^solved with")
         self.assertLessEqual(self.walk.commands, 11)
 
 

@@ -170,7 +170,8 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     repaired.damaged_places = salvaged.damaged_places;
     repaired.lost = std::move(salvaged.lost);
     repaired.tables = std::move(salvaged.tables);
-    epoch_ = write_new_epoch(*target, copy_, epoch_at(file_));
+    epoch_ = write_new_epoch(*target, copy_,
+                             salvaged.epoch != Uuid{} ? salvaged.epoch : epoch_at(file_));
     insert_audit(*target, entry_of_maintenance("repair", file_.string(), "",
                                                "epoch " + epoch_.text() + ", " +
                                                    std::to_string(repaired.damaged_places) +

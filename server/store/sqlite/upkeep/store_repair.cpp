@@ -59,6 +59,7 @@ class Salvager {
   /// Copies rows from an id on. \return the first id that could not be read.
   std::optional<std::int64_t> copy_from(const std::string& name, std::int64_t first);
   std::optional<std::int64_t> next_readable(const std::string& name, std::int64_t id) const;
+  std::optional<std::string> setting_of_source(const std::string& key) const;
   void keep_revision(Bytes digest, std::int64_t revision) const;
   void quarantine_bad_content() const;
   void add_placeholder_tasks() const;
@@ -389,6 +390,15 @@ void Salvager::make_experience() const {
   }
 }
 
+/// Empty if there is none or its row is damaged.
+std::optional<std::string> Salvager::setting_of_source(const std::string& key) const {
+  std::optional<std::string> value;
+  for_each_of_source(
+      "SELECT value FROM setting WHERE key = '" + key + "' AND " + source_->is_intact("setting"),
+      [&](const Statement& row) { value = row.column_text(0); });
+  return value;
+}
+
 Salvaged Salvager::run(const Progress& progress) {
   target_->execute("PRAGMA foreign_keys = OFF");
   Transaction transaction(*target_, Transaction::Kind::Write);
@@ -428,13 +438,11 @@ Salvaged Salvager::run(const Progress& progress) {
   count_lost("attempt", "attempt_by_task_robot");
   note_lost_attempts(*target_);
   make_experience();
-  for_each_of_source(
-      "SELECT value FROM setting WHERE key = 'revision_floor' AND " + source_->is_intact("setting"),
-      [&](const Statement& row) {
-        target_->cached("INSERT OR REPLACE INTO setting (key, value) VALUES ('revision_floor', ?)")
-            ->bind(1, row.column_text(0))
-            .run();
-      });
+  if (const auto floor = setting_of_source("revision_floor"))
+    target_->cached("INSERT OR REPLACE INTO setting (key, value) VALUES ('revision_floor', ?)")
+        ->bind(1, *floor)
+        .run();
+  salvaged_.epoch = Uuid::parse(setting_of_source("epoch").value_or("")).value_or(Uuid{});
   for_each_of_source(
       "SELECT digest, revision FROM evicted_distribution UNION ALL"
       " SELECT digest, revision FROM distribution ORDER BY digest",

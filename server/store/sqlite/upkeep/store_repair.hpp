@@ -9,6 +9,7 @@ namespace kinship::store {
 
 /// The result of a salvage from a damaged store.
 struct Salvaged {
+  Uuid epoch;                        ///< of the damaged store; zeros: it cannot be read
   std::uint64_t damaged_places = 0;  ///< as Repaired has them
   std::vector<Repaired::Lost> lost;
   std::vector<Repaired::Table> tables;

@@ -165,21 +165,45 @@ TEST(MeshOutbox, ForgetsMeshesThatAreToStayHere) {
   EXPECT_TRUE(outbox.robot(digest)->meshes.empty());
 }
 
+/// Keeps a robot with one mesh.
+void keep(Outbox& outbox, const Digest& digest, double size_m) {
+  RobotDescription description = robot();
+  description.meshes.resize(1);
+  description.meshes.front().content = mesh_of(size_m).digest();
+  description.contents = {mesh_of(size_m).content()};
+  outbox.keep_robot(digest, description);
+}
+
+TEST(MeshOutbox, AContentThatAnotherRobotNamesStays) {
+  const test::TemporaryDirectory directory;
+  Outbox outbox(directory.path());
+  outbox.note_store(next_epoch({}), {});
+  test::RandomValues values(kSeed);
+  const Attempt attempt = values.attempt(5);
+  const Digest twin = values.digest(), other = values.digest(), third = values.digest();
+  keep(outbox, attempt.robot, 1);
+  keep(outbox, twin, 1);
+  outbox.forget_meshes(twin);
+  EXPECT_TRUE(outbox.content(mesh_of(1).digest()));
+  EXPECT_EQ(outbox.robots_with_contents(), std::vector<Digest>{attempt.robot});
+
+  keep(outbox, twin, 1);
+  keep(outbox, other, 2);
+  keep(outbox, third, 2);
+  outbox.add(attempt);
+  outbox.note_store(next_epoch({}), {});  // a store never seen
+  EXPECT_TRUE(outbox.content(mesh_of(1).digest())) << "of a robot with a report";
+  EXPECT_FALSE(outbox.content(mesh_of(2).digest())) << "of two robots without";
+}
+
 TEST(MeshOutbox, AStoreNeverSeenGetsContentsOfRobotsWithReportsAlone) {
   const test::TemporaryDirectory directory;
   Outbox outbox(directory.path());
   outbox.note_store(next_epoch({}), {});
   test::RandomValues values(kSeed);
   const Attempt attempt = values.attempt(5);
-  const auto keep = [&](const Digest& digest, double size_m) {
-    RobotDescription description = robot();
-    description.meshes.resize(1);
-    description.meshes.front().content = mesh_of(size_m).digest();
-    description.contents = {mesh_of(size_m).content()};
-    outbox.keep_robot(digest, description);
-  };
-  keep(attempt.robot, 1);
-  keep(values.digest(), 2);
+  keep(outbox, attempt.robot, 1);
+  keep(outbox, values.digest(), 2);
   outbox.add(attempt);
   outbox.note_store(next_epoch({}), {});
   EXPECT_EQ(outbox.robots_with_contents(), std::vector<Digest>{attempt.robot});

@@ -1,14 +1,19 @@
 // An outbox whose server has another store than before: what is sent to it, and what is kept.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <future>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include "client/link/durable_file.hpp"
 #include "client/link/report_sender.hpp"
+#include "proto/files/lock_file.hpp"
+#include "proto/types/failure.hpp"
 #include "proto/types/store_epoch.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -124,6 +129,9 @@ TEST_F(OtherStoresTest, NoneOfThoseBeforeAreSentOnDemand) {
   open(Resend::None);
   EXPECT_TRUE(outbox->holds_back());
   const Uuid now = add();
+  // Clocks of files are coarse, and those of robots are put right while they run.
+  fs::last_write_time(folder.path() / "pending" / (now.text() + ".json"),
+                      fs::file_time_type::clock::now() - 1h);
   EXPECT_FALSE(outbox->note_store(second, {}));
   EXPECT_EQ(pending(), std::set{now});
   EXPECT_EQ(kept(), 3U);
@@ -143,9 +151,42 @@ TEST_F(OtherStoresTest, AllThatIsAcknowledgedCanBeSentAgainOrDeleted) {
   EXPECT_EQ(outbox->resend_acknowledged(), 2U) << "of an older one";
   outbox->mark_sent(older);
   outbox->note_store(next_epoch({}), {});
-  EXPECT_EQ(outbox->drop_of_older_stores(), 1U);
+  EXPECT_EQ(outbox->drop_of_older_stores(outbox->kept_of_older_stores()), 1U);
   EXPECT_EQ(outbox->resend_acknowledged(), 0U);
   EXPECT_EQ(pending(), std::set{newer});
+}
+
+TEST_F(OtherStoresTest, ADeletionIsOfTheStoresThatWereListedAndLeavesWhatNoneAcknowledged) {
+  acknowledge_two();
+  outbox->note_store(second, {});
+  const auto listed = outbox->kept_of_older_stores();
+  send();
+  const Uuid put_away = add();
+  outbox->set_aside(put_away, "a constraint");
+  outbox->note_store(next_epoch({}), {});
+  EXPECT_EQ(kept(), 3U);
+  EXPECT_EQ(outbox->drop_of_older_stores(listed), 2U);
+  ASSERT_EQ(outbox->kept_of_older_stores().size(), 1U);
+  EXPECT_EQ(outbox->kept_of_older_stores()[0].store, store_name(second));
+  EXPECT_EQ(outbox->reports_set_aside(), std::vector{put_away});
+  EXPECT_EQ(outbox->drop_of_older_stores(listed), 0U) << "twice";
+}
+
+TEST_F(OtherStoresTest, NothingIsDeletedWhileAProcessSends) {
+  acknowledge_two();
+  outbox->note_store(second, {});
+  const auto lock = files::LockFile::try_acquire(folder.path() / "sender.lock", 0644);
+  ASSERT_TRUE(lock);
+  try {
+    outbox->drop_of_older_stores(outbox->kept_of_older_stores());
+    ADD_FAILURE() << "deleted";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.error().code, ErrorCode::Unavailable);
+    EXPECT_NE(failure.error().message.find("process " + std::to_string(getpid()) + " sends"),
+              std::string::npos)
+        << failure.what();
+  }
+  EXPECT_EQ(kept(), 2U);
 }
 
 TEST_F(OtherStoresTest, ReportsOfOlderStoresAge) {
@@ -202,6 +243,48 @@ TEST_F(OtherStoresTest, NothingIsSentBeforeTheStoreIsKnownIfNoneIsToBeSent) {
   const std::lock_guard lock(mutex);
   EXPECT_EQ(sizes.at(0), 0U);
   EXPECT_EQ(received, std::set{now}) << "and not " << waited.text();
+}
+
+TEST_F(OtherStoresTest, WhyTheStoreIsNotKnownIsTold) {
+  acknowledge_two();
+  add();
+  ReportReply refusal;
+  refusal.message = "the batch cannot be read";
+  for (const auto& [reply, why] : std::vector<std::pair<Result<ReportReply>, std::string>>{
+           {Error{ErrorCode::Unavailable, "no server"}, "no server"},
+           {refusal, refusal.message},
+           {ReportReply{}, "the server does not say which store it has"}}) {
+    open(Resend::None);
+    std::atomic<int> calls = 0;
+    std::promise<void> called_twice;
+    ReportSender sender(*outbox, [&, answer = reply](const ReportRequest&) {
+      if (++calls == 2)
+        called_twice.set_value();
+      return answer;
+    });
+    called_twice.get_future().wait();
+    EXPECT_EQ(sender.counts().problem, why);
+  }
+}
+
+TEST_F(OtherStoresTest, WhyTheStoreWasNotKnownIsForgottenOnceItIs) {
+  acknowledge_two();
+  open(Resend::None);
+  std::atomic<int> calls = 0;
+  std::promise<void> called_thrice;
+  ReportSender sender(
+      *outbox,
+      [&](const ReportRequest&) -> Result<ReportReply> {
+        if (++calls == 3)
+          called_thrice.set_value();
+        if (calls == 1)
+          return Error{ErrorCode::Unavailable, "no server"};
+        return ReportReply{second, {}};
+      },
+      {}, [] { return std::chrono::steady_clock::now(); },
+      [&] { return static_cast<std::uint64_t>(calls.load()); });  // one more server each time
+  called_thrice.get_future().wait();
+  EXPECT_EQ(sender.counts().problem, "");
 }
 
 }  // namespace

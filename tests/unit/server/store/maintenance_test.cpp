@@ -5,7 +5,9 @@
 #include <fstream>
 #include <string>
 
+#include "proto/types/store_epoch.hpp"
 #include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/opening/high_water_mark_file.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "server/store/tables/settings.hpp"
@@ -283,6 +285,21 @@ TEST_F(Maintenance, ARestoreRefusesADamagedBackupAndChangesNothing) {
   EXPECT_EQ(names(), before);
   EXPECT_EQ(open_sqlite_store(file_)->epoch(), epoch);
   EXPECT_EQ(refusal([&] { restore_store(file_, file_, ignore); }).code, ErrorCode::InvalidInput);
+}
+
+TEST_F(Maintenance, ARepairedStoreHasItsNameFromItsSettingsOrElseFromItsMark) {
+  const Uuid before = open_sqlite_store(file_)->epoch();
+  fs::remove(HighWaterMarkFile::name_of(file_));
+  repair_store(file_, ignore);
+  const Uuid repaired = open_sqlite_store(file_)->epoch();
+  EXPECT_NE(repaired, before);
+  EXPECT_TRUE(is_same_store(repaired, before)) << "clients send again what the damage took";
+  ASSERT_TRUE(fs::exists(HighWaterMarkFile::name_of(file_)));
+  edit("UPDATE setting SET value = '" + next_epoch({}).text() + "' WHERE key = 'epoch'");
+  repair_store(file_, ignore);
+  const Uuid again = open_sqlite_store(file_)->epoch();
+  EXPECT_NE(again, repaired);
+  EXPECT_TRUE(is_same_store(again, before)) << "the row is damaged";
 }
 
 TEST_F(Maintenance, ARestoreReplacesAStoreThatNobodyCanReadAndKeepsIt) {
