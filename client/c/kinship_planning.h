@@ -36,7 +36,8 @@ typedef struct kinship_region {
 
 /** Sets the bounds of a region, and nothing else of it, for an orientation to be kept as MoveIt has
  * it: bounded are Rx(a) Ry(b) Rz(c), or a rotation vector. Beside a free turn the others get bounds
- * under which every tilt of the region is one of the tolerances; no position is bounded.
+ * under which every tilt of the region is one of the tolerances; without one all three are made
+ * smaller, so that every orientation of the region is. No position is bounded.
  * \param tolerances  of a, b and c, rad; pi or more: free.
  * \return KINSHIP_INVALID_INPUT if they bound no tilt: two are free, or b alone. */
 KINSHIP_API kinship_code kinship_region_keep_orientation(const double* tolerances,

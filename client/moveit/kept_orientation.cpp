@@ -40,7 +40,8 @@ std::optional<TaskSpaceRegion> read_kept_orientation(const YamlValue& constraint
     constraint.refuse(kept.error().message);
   if (!kept->bounds_any())
     return std::nullopt;
-  left_out.push_back(kept->difference);
+  if (!kept->difference.empty())
+    left_out.push_back(kept->difference);
   TaskSpaceRegion region;
   region.T_task_region.linear() = frames.T_task_header(constraint).linear() *
                                   read_rotation(constraint["orientation"]).toRotationMatrix();

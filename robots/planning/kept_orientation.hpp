@@ -19,7 +19,8 @@ struct KeptOrientation {
 /// moveit_msgs/OrientationConstraint bounds Rx(a) Ry(b) Rz(c) or a rotation vector, a region
 /// Rz(yaw) Ry(pitch) Rx(roll). With a turn about x or z free, the region's box turns with it: the
 /// other two then get bounds under which every tilt that the region allows is allowed by the
-/// message. With none free the orders differ by the product of two tolerances.
+/// message. With none free all three bounds are the tolerances made smaller by one factor, under
+/// which every orientation that the region allows is within them; they are at most 1.5 rad.
 ///
 /// \param tolerances  about x, y and z, rad, not negative; pi or more is no bound.
 /// \return  InvalidInput if two are free, or the turn about y alone: the message's angles then

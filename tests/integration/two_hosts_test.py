@@ -57,6 +57,10 @@ class Host:
         if done.returncode != 0:
             raise RuntimeError(done.stdout)
 
+    def wait_for_link(self) -> None:
+        """The kernel notes up to a second late that a cable is there. A node of Fast DDS that starts before never uses it."""
+        self.run("until ip -brief link show eth0 | grep -q ' UP '; do sleep 0.02; done", timeout=30)
+
     def end(self) -> None:
         self.holder.stdin.close()
         self.holder.wait()
@@ -113,8 +117,10 @@ class TwoHosts(unittest.TestCase):
         self.addCleanup(self.robot.end)
         subprocess.run(["ip", "link", "add", "eth0", "netns", str(self.server.holder.pid), "type", "veth", "peer", "name",
                         "eth0", "netns", str(self.robot.holder.pid)], check=True)
-        self.server.configure_network()
-        self.robot.configure_network()
+        for host in (self.server, self.robot):
+            host.configure_network()
+        for host in (self.server, self.robot):
+            host.wait_for_link()
         self.of_server, self.of_robot = commands_of_hosts()
 
     def start_server(self) -> None:

@@ -39,6 +39,14 @@ class KINSHIP_FIXTURE : public PluginCell {
     }));
     return response;
   }
+  static void set_orientation(const Eigen::Matrix3d& R,
+                              moveit_msgs::msg::OrientationConstraint& constraint) {
+    const Eigen::Quaterniond turn(R);
+    constraint.orientation.x = turn.x();
+    constraint.orientation.y = turn.y();
+    constraint.orientation.z = turn.z();
+    constraint.orientation.w = turn.w();
+  }
   bool is_past_the_post(MotionPlanResponse& response) const { return is_past(response, post()); }
   bool is_past(MotionPlanResponse& response, const collision::Surroundings& surroundings) const {
     if (trajectory_of(response) == nullptr)
@@ -155,6 +163,48 @@ TEST_F(KINSHIP_FIXTURE, MatrixAndAttachedBodiesCount) {
   EXPECT_NE(said.find("does not move with 'panda_link8'"), std::string::npos) << said;
 }
 
+TEST_F(KINSHIP_FIXTURE, AnObjectOfSeveralShapesIsPlannedForAndReported) {
+  const auto planner = this->planner(node());
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.6, 0, 0.4));
+  const auto make_table = [](planning_scene::PlanningScene& scene) {
+    // A foot and the post, in one object of two primitives.
+    collision_detection::World::Object table;
+    table.shapes_ = {std::make_shared<shapes::Cylinder>(0.05, 0.02),
+                     std::make_shared<shapes::Box>(0.05, 0.05, 0.8)};
+    table.global_shape_poses_ = {Eigen::Isometry3d(Eigen::Translation3d(0.6, 0, 0.01)),
+                                 Eigen::Isometry3d(Eigen::Translation3d(0.6, 0, 0.4))};
+    scene.world->objects["table"] =
+        std::make_shared<const collision_detection::World::Object>(std::move(table));
+    scene.world->objects.erase("post");
+    moveit::core::AttachedBody tool;  // of two shapes as well
+    tool.name = "tool";
+    tool.link = scene.getRobotModel()->getLinkModel("hand");
+    for (const double z_m : {0.12, 0.16}) {
+      tool.shapes.push_back(std::make_shared<shapes::Sphere>(0.01));
+      tool.T_link_shapes.push_back(Eigen::Isometry3d(Eigen::Translation3d(0, 0, z_m)));
+    }
+    tool.touch_links = {"panda_link7"};
+    scene.state.attached.push_back(tool);
+  };
+  const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
+  auto answer = plan_past(*planner, box, T, make_table);
+  EXPECT_TRUE(is_past_the_post(answer));
+  // Both of its shapes may touch what the object may touch.
+  answer = plan_past(*planner, box, T, [&](planning_scene::PlanningScene& scene) {
+    make_table(scene);
+    for (const std::string& link : model_->links_with_geometry)
+      scene.matrix.entries[std::minmax<std::string>("table", link)] =
+          collision_detection::AllowedCollision::ALWAYS;
+    scene.matrix.entries[{"table", "tool"}] = collision_detection::AllowedCollision::ALWAYS;
+  });
+  ASSERT_NE(trajectory_of(answer), nullptr);
+  EXPECT_FALSE(is_past_the_post(answer));
+  const auto pending = directory_ / "outbox/pending";
+  EXPECT_TRUE(comes_true([&] {
+    return std::filesystem::is_directory(pending) && !std::filesystem::is_empty(pending);
+  }));
+}
+
 TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptAlongThePathAndOtherConstraintsAreRefusedByName) {
   const auto planner = this->planner(node());
   const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
@@ -168,11 +218,7 @@ TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptAlongThePathAndOtherConstraintsAreRef
   auto& kept = upright.path_constraints.orientation_constraints.front();
   kept.link_name = "hand";  // which panda_link8 holds
   const Eigen::Matrix3d R_world_hand = scene->state.getGlobalLinkTransform("hand").linear();
-  const Eigen::Quaterniond turn(R_world_hand);
-  kept.orientation.x = turn.x();
-  kept.orientation.y = turn.y();
-  kept.orientation.z = turn.z();
-  kept.orientation.w = turn.w();
+  set_orientation(R_world_hand, kept);
   kept.absolute_x_axis_tolerance = kept.absolute_y_axis_tolerance = 0.2;
   kept.absolute_z_axis_tolerance = 3.2;
   answer = solve(*planner, scene, upright);
@@ -201,6 +247,35 @@ TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptAlongThePathAndOtherConstraintsAreRef
   MotionPlanRequest joints = request(turned(0.7));
   joints.path_constraints.joint_constraints.emplace_back();
   EXPECT_NE(refusal(joints).find("a path constraint on joints"), std::string::npos);
+}
+
+TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptWithinThreeTolerances) {
+  const auto planner = this->planner(node());
+  const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
+  const Eigen::Isometry3d T(Eigen::Translation3d(0.6, 0, 0.4));
+  auto answer = plan_past(*planner, box, T, {});
+  ASSERT_NE(trajectory_of(answer), nullptr) << "the robot is read";
+  const auto scene = empty_scene(turned(-0.7));
+  add(*scene, "post", box, T);
+  moveit::core::RobotState middle = scene->state;  // the base turns by 0.7 rad to either side
+  middle.q = turned(0);
+  const Eigen::Matrix3d R_world_middle = middle.getGlobalLinkTransform("hand").linear();
+  MotionPlanRequest asked = request(turned(0.7));
+  auto& kept = asked.path_constraints.orientation_constraints.emplace_back();
+  kept.link_name = "hand";
+  set_orientation(R_world_middle, kept);
+  kept.absolute_x_axis_tolerance = kept.absolute_y_axis_tolerance = 0.3;
+  kept.absolute_z_axis_tolerance = 1.4;
+  answer = solve(*planner, scene, asked);
+  ASSERT_TRUE(is_past_the_post(answer));
+  for (std::size_t i = 0; i < trajectory_of(answer)->getWayPointCount(); ++i) {
+    const Eigen::Matrix3d R =
+        R_world_middle.transpose() *
+        trajectory_of(answer)->getWayPoint(i).getGlobalLinkTransform("hand").linear();
+    EXPECT_LE(std::abs(std::atan2(-R(1, 2), R(2, 2))), 0.3) << i;
+    EXPECT_LE(std::abs(std::asin(R(0, 2))), 0.3) << i;
+    EXPECT_LE(std::abs(std::atan2(-R(0, 1), R(0, 0))), 1.4) << i;
+  }
 }
 
 TEST_F(KINSHIP_FIXTURE, WhatTheSceneRefusesIsNoAnswer) {

@@ -4,7 +4,7 @@
 #include <octomap/octomap.h>
 
 #include <algorithm>
-#include <set>
+#include <iterator>
 
 namespace kinship_moveit {
 namespace {
@@ -63,6 +63,11 @@ bool is_always_allowed(const collision_detection::AllowedCollisionMatrix& matrix
          type == collision_detection::AllowedCollision::ALWAYS;
 }
 
+/// The name of one shape of an object: names of objects are unique.
+std::string part_name(const std::string& id, std::size_t index, std::size_t count) {
+  return count == 1 ? id : id + "/" + std::to_string(index + 1);
+}
+
 }  // namespace
 
 SceneObjects::SceneObjects(const planning_scene::PlanningScene& scene,
@@ -72,7 +77,8 @@ SceneObjects::SceneObjects(const planning_scene::PlanningScene& scene,
   for (const std::string& id : scene.getWorld()->getObjectIds()) {
     const auto object = scene.getWorld()->getObject(id);
     for (std::size_t i = 0; object && i < object->shapes_.size(); ++i)
-      add(id, *object->shapes_[i], T_task_world * object->global_shape_poses_[i], false);
+      add(id, part_name(id, i, object->shapes_.size()), *object->shapes_[i],
+          T_task_world * object->global_shape_poses_[i], false);
   }
   using moveit::core::RobotModel;
   const RobotModel& model = *scene.getRobotModel();
@@ -89,13 +95,15 @@ SceneObjects::SceneObjects(const planning_scene::PlanningScene& scene,
       continue;
     }
     const auto& T_world_shapes = body->getGlobalCollisionBodyTransforms();
+    const std::string& id = body->getName();
     for (std::size_t i = 0; i < body->getShapes().size(); ++i)
-      add(body->getName(), *body->getShapes()[i], T_transfer_world * T_world_shapes[i], true);
+      add(id, part_name(id, i, body->getShapes().size()), *body->getShapes()[i],
+          T_transfer_world * T_world_shapes[i], true);
   }
   allow_pairs(scene, attached);
 }
 
-void SceneObjects::add(const std::string& name, const shapes::Shape& shape,
+void SceneObjects::add(const std::string& id, const std::string& name, const shapes::Shape& shape,
                        const Eigen::Isometry3d& T, bool is_held) {
   auto object = sized<kinship_object>();
   object.is_held = is_held ? 1 : 0;
@@ -149,6 +157,7 @@ void SceneObjects::add(const std::string& name, const shapes::Shape& shape,
     return;  // an octomap without an occupied cell
   names_.push_back(name);
   object.name = names_.back().c_str();
+  parts_[id].push_back(object.name);
   const PoseNumbers pose = to_numbers(T_frame_object);
   std::copy(pose.begin(), pose.end(), object.pose);
   objects_.push_back(object);
@@ -160,39 +169,40 @@ void SceneObjects::add_points(std::vector<double> points, kinship_object& object
   object.point_count = points_.back().size() / 3;
 }
 
-void SceneObjects::allow(const std::string& first, const std::string& second, bool are_objects) {
-  for (const std::string& name : {first, second}) {
-    names_.push_back(name);
-    allowed_.push_back(names_.back().c_str());
-    if (are_objects)
-      allowed_objects_.push_back(names_.back().c_str());
-  }
+void SceneObjects::allow(const Parts& first, const Parts& second, bool are_objects) {
+  for (const char* one : first)
+    for (const char* other : second)
+      for (const char* name : {one, other}) {
+        allowed_.push_back(name);
+        if (are_objects)
+          allowed_objects_.push_back(name);
+      }
 }
 
 void SceneObjects::allow_pairs(const planning_scene::PlanningScene& scene,
                                const std::vector<const moveit::core::AttachedBody*>& attached) {
-  std::set<std::string> objects;
-  for (const kinship_object& object : objects_)
-    objects.insert(object.name);
   const auto& links = scene.getRobotModel()->getLinkModelNamesWithCollisionGeometry();
   const auto& matrix = scene.getAllowedCollisionMatrix();
-  for (auto first = objects.begin(); first != objects.end(); ++first) {
+  const auto part = [this](const std::string& link) {
+    return Parts{names_.emplace_back(link).c_str()};
+  };
+  for (auto first = parts_.begin(); first != parts_.end(); ++first) {
     for (const std::string& link : links)
-      if (is_always_allowed(matrix, *first, link))
-        allow(*first, link, false);
-    for (auto second = std::next(first); second != objects.end(); ++second)
-      if (is_always_allowed(matrix, *first, *second))
-        allow(*first, *second, true);
+      if (is_always_allowed(matrix, first->first, link))
+        allow(first->second, part(link), false);
+    for (auto second = std::next(first); second != parts_.end(); ++second)
+      if (is_always_allowed(matrix, first->first, second->first))
+        allow(first->second, second->second, true);
   }
   for (auto first = links.begin(); first != links.end(); ++first)
     for (auto second = std::next(first); second != links.end(); ++second)
       if (is_always_allowed(matrix, *first, *second))
-        allow(*first, *second, false);
+        allow(part(*first), part(*second), false);
   for (const moveit::core::AttachedBody* body : attached)
-    for (const std::string& link : body->getTouchLinks())
-      if (objects.count(body->getName()) != 0 &&
-          std::find(links.begin(), links.end(), link) != links.end())
-        allow(body->getName(), link, false);
+    if (const auto parts = parts_.find(body->getName()); parts != parts_.end())
+      for (const std::string& link : body->getTouchLinks())
+        if (const auto known = std::find(links.begin(), links.end(), link); known != links.end())
+          allow(parts->second, part(*known), false);
 }
 
 }  // namespace kinship_moveit

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,8 @@
 namespace kinship_moveit {
 
 /// A planning scene as libkinship takes it: obstacles with their shapes, attached bodies, and the
-/// pairs that the allowed collision matrix always allows. Owns what its structures point to.
+/// pairs that the allowed collision matrix always allows. An object of several shapes becomes one
+/// object each, id/1, id/2 and so on. Owns what its structures point to.
 class SceneObjects {
  public:
   /// \param state         of the query's start, up to date.
@@ -33,14 +35,19 @@ class SceneObjects {
   const std::string& untold() const { return untold_; }
 
  private:
-  void add(const std::string& name, const shapes::Shape& shape, const Eigen::Isometry3d& T,
-           bool is_held);
+  using Parts = std::vector<const char*>;  // names
+
+  /// One shape of the object `id`. \param name  its own.
+  void add(const std::string& id, const std::string& name, const shapes::Shape& shape,
+           const Eigen::Isometry3d& T, bool is_held);
   void add_points(std::vector<double> points, kinship_object& object);
   void allow_pairs(const planning_scene::PlanningScene& scene,
                    const std::vector<const moveit::core::AttachedBody*>& attached);
-  void allow(const std::string& first, const std::string& second, bool are_objects);
+  /// Each of the first with each of the second.
+  void allow(const Parts& first, const Parts& second, bool are_objects);
 
   std::deque<std::string> names_;
+  std::map<std::string, Parts> parts_;  // of each object that libkinship is told of
   std::deque<std::vector<double>> points_;
   std::vector<kinship_object> objects_;
   std::vector<const char*> allowed_, allowed_objects_;
