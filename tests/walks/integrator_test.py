@@ -38,7 +38,7 @@ class Integrator(walk.WalkTest):
 
         me.run("kinship paths export --task load_machine --robot arm --moveit trajectories.yaml")
         trajectories = me.read("trajectories.yaml")
-        self.assertEqual(len(re.findall(r"^ *joint_names:", trajectories, re.M)), 4, trajectories[:2000])
+        self.assertEqual(len(re.findall(r"^ *model_id:", trajectories, re.M)), 4, trajectories[:2000])
         self.assertLessEqual(self.walk.commands, 14)
 
     def starts(self, me) -> "list[list[float]]":
