@@ -104,8 +104,7 @@ const RehearsalScheduler::Entry* RehearsalScheduler::nearest(const RehearsalKey&
   const Entry* found = nullptr;
   std::pair<bool, double> least{true, kNear_m};  // nothing could be planned there; distance
   for (const auto& [id, entry] : entries_) {
-    if (!entry.known || !entry.known->is_complete || entry.lost || entry.kind != kind ||
-        id == own)
+    if (!entry.known || !entry.known->is_complete || entry.lost || entry.kind != kind || id == own)
       continue;
     const bool is_empty = entry.known->queries == 0;
     if (worth == Worth::Enough && (is_empty || (!entry.library && !is_compared(entry))))
