@@ -21,14 +21,11 @@ FILES = {
                        "usr/share/kinship/results/compare.py", "usr/share/kinship/results/kinship_results/comparison.py",
                        "usr/share/kinship/schemas/problem-1.schema.json"],
     "kinship-doc": ["usr/share/doc/kinship/README.md", "usr/share/doc/kinship/docs/tutorial.md", "usr/share/doc/kinship/docs/tutorial/problems.py",
-                    "usr/share/doc/kinship/docs/tutorial/my_arm/robot.urdf", "usr/share/doc/kinship/examples",
+                    "usr/share/doc/kinship/docs/tutorial/my_arm/robot.urdf", "usr/share/doc/kinship/examples/CMakeLists.txt",
                     "usr/share/doc/kinship/client/examples/01_report_a_path.cpp", "usr/share/doc/kinship/robots/models/ur10e"],
     "libkinship-dev": [r"usr/lib/(\S+/)?cmake/Kinship/KinshipConfig.cmake", r"usr/include/kinship-\S+/kinship/client.hpp",
                        "usr/include/kinship.h", r"usr/lib/(\S+/)?libkinship.so.*", r"usr/lib/(\S+/)?pkgconfig/kinship.pc"],
     "python3-kinship": [r"usr/lib/python3/dist-packages/kinship/\S+\.so", r"usr/lib/python3/dist-packages/kinship/__init__.py"],
-    "kinship-doc": ["usr/share/doc/kinship/README.md", "usr/share/doc/kinship/docs/tutorial.md", "usr/share/doc/kinship/docs/tutorial/problems.py",
-                    "usr/share/doc/kinship/docs/tutorial/my_arm/robot.urdf", "usr/share/doc/kinship/examples",
-                    "usr/share/doc/kinship/client/examples/01_report_a_path.cpp", "usr/share/doc/kinship/robots/models/ur10e"],
 }
 
 

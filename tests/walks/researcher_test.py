@@ -39,7 +39,7 @@ class Researcher(walk.WalkTest):
         self.assertRegex(table, r"collision checks, mean")
 
         # A planner of OMPL in a program of his own: the examples are where he begins.
-        me.run(f"cp -r {DOCUMENTS}/client/examples mine && cmake -S mine -B build && "
+        me.run(f"cp -r {DOCUMENTS}/examples mine && cmake -S mine -B build && "
                "cmake --build build --target 01_report_a_path 03_guide_an_ompl_planner")
         me.run(f"for seed in 0 1 2 3; do build/01_report_a_path {DOCUMENTS}/robots/models $seed; done")
         self.assertRegex(me.run(f"build/03_guide_an_ompl_planner {DOCUMENTS}/robots/models"), r"(?m)^solved with")
