@@ -252,7 +252,7 @@ DocumentSchema recorded_search() {
                           {"path", list_of(count())}});
 }
 
-void add_robot_answers(std::vector<DocumentSchema>& all) {
+void add_kinematics(std::vector<DocumentSchema>& all) {
   all.push_back(document(json::kInverseKinematicsFormat, "robots ik; a line for each pose.",
                          Members{{"solver", text()},
                                  {"solutions", configurations()},
@@ -265,6 +265,9 @@ void add_robot_answers(std::vector<DocumentSchema>& all) {
                        {"frame", words(std::initializer_list<std::string_view>{"task", "base"})},
                        {"tip", pose()},
                        {"transfer", pose()}}));
+}
+
+void add_robot_answers(std::vector<DocumentSchema>& all) {
   const Schema guide = or_null(words(Words<Guide>::kWords));
   const Schema pair = object_of({{"target", digest()},
                                  {"target_label", text()},
@@ -383,6 +386,7 @@ std::vector<DocumentSchema> document_schemas() {
                        {"known", count()},
                        {"recorded", count()},
                        {"refused", count()}})};
+  add_kinematics(all);
   add_robot_answers(all);
   add_rows(all);
   return all;

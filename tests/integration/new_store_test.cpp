@@ -95,7 +95,7 @@ TEST_F(NewStore, GetsTheOldReportsAndRobotsOnDemandAlone) {
   plan("panda", 3);
   EXPECT_EQ(attempts(), "3");
   begin_anew();
-  std::ofstream(directory_ / "empty.jsonl");
+  const std::ofstream empty(directory_ / "empty.jsonl");
   const Answer imported = kinship("paths import " + (directory_ / "empty.jsonl").string());
   EXPECT_EQ(imported.code, 0) << imported.err;
   EXPECT_NE(imported.err.find("3 reports of an older store ("), std::string::npos)

@@ -20,6 +20,9 @@ using Words = std::vector<std::string>;
 
 /// A server with certificates of Kinship for its clients, and an enclave for ROS nodes.
 class SecuredRos2 : public testing::Test {
+ public:
+  ~SecuredRos2() override { use_no_enclave(); }
+
  protected:
   SecuredRos2() {
     make_keystore(keystore_, {"kinship=rt/kinship/*,rr/kinship/*", "arm=*", "onlooker=rt/rosout"});
@@ -34,7 +37,6 @@ class SecuredRos2 : public testing::Test {
         .arguments = {"--security", fleet_, "--ros2", "--ros2-domain", ros_domain(),
                       "--ros2-enclave", keystore_ + "/enclaves/kinship"}});
   }
-  ~SecuredRos2() override { use_no_enclave(); }
 
   void make_keystore(const std::string& folder, const Words& enclaves) const {
     Words arguments = {folder, ros_domain()};
