@@ -179,7 +179,8 @@ TEST_F(CPlanning, APathKeepsToItsRegion) {
   EXPECT_NE(std::string(info_.reason).find("does not keep to a constraint"), std::string::npos);
   query_.algorithm = nullptr;
   region.lower[3] = 1;
-  EXPECT_EQ(kinship_plan_find(planner_, &query_, &plan_), KINSHIP_INVALID_INPUT);
+  kinship_plan* none = nullptr;
+  EXPECT_EQ(kinship_plan_find(planner_, &query_, &none), KINSHIP_INVALID_INPUT);
   EXPECT_EQ(std::string(kinship_error_text()).find("query->region: "), 0U) << kinship_error_text();
   const double rolling[] = {0.2, 4, 0.2};
   EXPECT_EQ(kinship_region_keep_orientation(rolling, 0, &region), KINSHIP_INVALID_INPUT);

@@ -96,7 +96,7 @@ TEST_F(MeshRobotFolder, SaysPackagesAndSrdfItself) {
   EXPECT_EQ(robot.description.label, "a");
   ASSERT_EQ(robot.shapes.shapes.size(), 1U);
   EXPECT_EQ(robot.shapes.never_colliding.size(), 1U);
-  kinematics::RobotModel model = robot;
+  kinematics::RobotModel model(static_cast<const kinematics::RobotModel&>(robot));
   EXPECT_EQ(add_meshes(arguments_, model).value_or_throw().size(), 1U) << "of the base, not there";
   EXPECT_EQ(model.description.meshes.size(), 1U);
   EXPECT_EQ(model.description.contents.size(), 1U);
