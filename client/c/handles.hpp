@@ -96,13 +96,14 @@ struct kinship_world {
 
 struct kinship_planner {
   explicit kinship_planner(const kinship::models::LoadedRobot& loaded)
-      : robot(loaded.chain, loaded.shapes), limit_slack(loaded.limit_slack) {}
-  const kinship::guided::PlannedRobot robot;
+      : robot(std::make_shared<const kinship::guided::PlannedRobot>(loaded.chain, loaded.shapes)),
+        limit_slack(loaded.limit_slack) {}
+  const std::shared_ptr<const kinship::guided::PlannedRobot> robot;
   const std::optional<double> limit_slack;  // of the robot's files
 };
 
 struct kinship_plan {
-  kinship::kinematics::Chain chain;
+  std::shared_ptr<const kinship::guided::PlannedRobot> robot;
   kinship::Problem problem;
   kinship::guided::PlanSettings settings;
   kinship::guided::PlannedProblem planned;

@@ -8,6 +8,7 @@
 #include "client/c/errors.hpp"
 #include "client/c/handles.hpp"
 #include "client/guided/attempt_record.hpp"
+#include "client/guided/path_measures.hpp"
 #include "client/guided/planner_choice.hpp"
 #include "client/guided/query_sampler.hpp"
 #include "client/guided/scene_record.hpp"
@@ -171,12 +172,12 @@ kinship_code kinship_plan_find(const kinship_planner* planner, const kinship_que
     require(plan, "plan");
     *plan = nullptr;
     const kinship_query given = read_structure(query, "query");
-    const kinship::kinematics::Chain& chain = planner->robot.chain;
+    const kinship::kinematics::Chain& chain = planner->robot->chain;
     kinship::Problem problem = read_problem(given, chain);
     const auto guidance = read_guidance(given, chain);
     const auto settings = read_settings(*planner, given);
     auto planned = kinship::guided::plan_problem(
-        planner->robot, problem, choose(guidance, given), settings,
+        *planner->robot, problem, choose(guidance, given), settings,
         [&] { return given.stop != nullptr && given.stop(given.user) != 0; });
     if (!planned.interrupted && planned.result.not_planned == kinship::NotPlanned::Error)
       return remember(KINSHIP_INVALID_INPUT, planned.result.reason);
@@ -184,7 +185,7 @@ kinship_code kinship_plan_find(const kinship_planner* planner, const kinship_que
       const std::scoped_lock lock(given.recall->mutex);
       given.recall->trust.add(planned.recall_expected, is_recalled(planned));
     }
-    *plan = new kinship_plan{chain, std::move(problem), settings, std::move(planned)};
+    *plan = new kinship_plan{planner->robot, std::move(problem), settings, std::move(planned)};
     return KINSHIP_OK;
   });
 }
@@ -199,7 +200,7 @@ kinship_code kinship_plan_describe(const kinship_plan* plan, kinship_plan_info* 
     told.is_solved = result.solved ? 1 : 0;
     told.is_recalled = is_recalled(plan->planned) ? 1 : 0;
     told.is_stopped = plan->planned.interrupted ? 1 : 0;
-    told.dof = static_cast<size_t>(plan->chain.dof());
+    told.dof = static_cast<size_t>(plan->robot->chain.dof());
     if (result.waypoints)
       told.waypoint_count = static_cast<size_t>(result.waypoints->cols());
     told.collision_checks = result.collision_checks + result.goal_checks + result.shortcut_checks;
@@ -235,10 +236,12 @@ kinship_code kinship_plan_report(kinship_client* client, const kinship_plan* pla
           KINSHIP_INVALID_INPUT,
           "nothing was planned: " + (plan->planned.interrupted ? std::string("it was stopped")
                                                                : plan->planned.result.reason));
-    kinship::Attempt attempt =
-        kinship::guided::make_attempt({plan->chain.digest(), text_or_empty(machine), task},
-                                      plan->problem, plan->planned, plan->settings);
-    attempt.scene = kinship::guided::record_scene(plan->chain, plan->problem).value_or_throw();
+    const auto& chain = plan->robot->chain;
+    kinship::guided::PlannedProblem measured = plan->planned;
+    kinship::guided::measure_path(*plan->robot, plan->problem, measured.result);
+    kinship::Attempt attempt = kinship::guided::make_attempt(
+        {chain.digest(), text_or_empty(machine), task}, plan->problem, measured, plan->settings);
+    attempt.scene = kinship::guided::record_scene(chain, plan->problem).value_or_throw();
     client->line.report(attempt);
     return KINSHIP_OK;
   });

@@ -1,5 +1,6 @@
 #include "client/cli/show_commands.hpp"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -77,6 +78,15 @@ std::string checks_text(const std::optional<ModeEvidence>& mode) {
   return mode && mode->solved > 0 ? number_text(mode->checks_per_solution, 0) : "-";
 }
 
+/// A row of a sampling mode's means.
+void add_means(std::string_view mode, const TaskRobotSummary& robot,
+               const std::optional<PathMeans>& means, Table& table) {
+  if (means)
+    table.add_row({robot.label, std::string(mode), std::to_string(means->attempts),
+                   number_text(means->time_s, 3), number_text(means->length, 2),
+                   number_text(means->hand_length_m, 2), number_text(means->least_clearance_m, 3)});
+}
+
 void print_task(const TaskSummary& task, std::ostream& out) {
   out << "task        " << task.task << '\n'
       << "experience  " << kept_text(task.paths, task.dropped) << " paths, " << task.attempts
@@ -93,6 +103,23 @@ void print_task(const TaskSummary& task, std::ostream& out) {
                    std::to_string(robot.attempts), checks_text(robot.guided),
                    checks_text(robot.control), std::to_string(robot.generation)});
   table.print(out);
+  if (std::ranges::none_of(task.robots, [](const TaskRobotSummary& robot) {
+        return robot.guided_means || robot.control_means;
+      }))
+    return;
+  Table means({{"MEANS OF SOLVED", Fit::Cut},
+               "MODE",
+               "SOLVED",
+               "TIME_S",
+               "LENGTH",
+               "HAND_M",
+               "CLEARANCE_M"});
+  for (const TaskRobotSummary& robot : task.robots) {
+    add_means("guided", robot, robot.guided_means, means);
+    add_means("uniform", robot, robot.control_means, means);
+  }
+  out << '\n';
+  means.print(out);
 }
 
 void print_attempt(const Attempt& attempt, std::ostream& out) {
@@ -135,7 +162,11 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
   out << "waypoints   " << waypoints.cols() << ", "
       << number_text(
              (waypoints.rightCols(steps) - waypoints.leftCols(steps)).colwise().norm().sum(), 2)
-      << " long in joint space\n";
+      << " long in joint space";
+  if (record.hand_length_m > 0)
+    out << ", hand " << number_text(record.hand_length_m, 2) << " m, least clearance "
+        << number_text(record.least_clearance_m, 3) << " m";
+  out << '\n';
   for (Eigen::Index waypoint = 0; waypoint < attempt.path->size(); ++waypoint) {
     for (Eigen::Index joint = 0; joint < attempt.path->dof(); ++joint)
       out << (joint == 0 ? "  " : " ") << number_text(waypoints(joint, waypoint), kDigits);
@@ -214,6 +245,10 @@ void print_status(const ServerStatus& status, bool is_wide, std::ostream& out) {
       << count_text(status.followed, "distribution") << " followed\n"
       << "rehearsals     " << status.rehearsals << " done, " << status.queued_rehearsals
       << " queued, " << number_text(status.rehearsal_time_s, 1) << " s of processor time\n";
+  if (status.guided_means)
+    out << "guided         " << means_text(*status.guided_means) << '\n';
+  if (status.control_means)
+    out << "uniform        " << means_text(*status.control_means) << '\n';
   if (status.scrubbed_ms > 0 || status.scrub_part > 0)  // a database reads its own pages
     out << "scrub          "
         << (status.scrubbed_ms > 0 ? "all read at " + time_text(status.scrubbed_ms) + ", then "

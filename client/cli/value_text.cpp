@@ -60,6 +60,13 @@ std::string gain_text(const std::vector<GuideCost>& costs, const GuideCost& cost
 
 }  // namespace
 
+std::string means_text(const PathMeans& means) {
+  return number_text(means.time_s, 3) + " s, " + number_text(means.length, 2) + " long, hand " +
+         number_text(means.hand_length_m, 2) + " m, clearance " +
+         number_text(means.least_clearance_m, 3) + " m (mean of " + std::to_string(means.attempts) +
+         ")";
+}
+
 std::string worth_text(const Worth& worth) {
   constexpr int kDigits = 2;
   return (worth.by_time ? number_text(*worth.by_time, kDigits) + " by time, " : std::string()) +

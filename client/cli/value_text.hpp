@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "proto/types/advice.hpp"
 #include "proto/types/recorded_scene.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/robot_description.hpp"
@@ -29,6 +30,9 @@ void print_scene(const RecordedScene& scene, std::ostream& out);
 /// What explains an attempt: why it was not solved, the bodies in the way, what its goals touch;
 /// one line each, values from the 13th column on.
 void print_search(const SearchRecord& search, std::ostream& out);
+
+/// "0.031 s, 4.21 long, hand 1.62 m, clearance 0.034 m (mean of 12)".
+std::string means_text(const PathMeans& means);
 
 /// "1.40 by time, 2.10 by checks (best without experience none, with it ways)".
 std::string worth_text(const Worth& worth);

@@ -314,7 +314,9 @@ std::string guidance_text(const std::string& task, const TaskRobotSummary& robot
                                    : guided->checks_per_solution / control->checks_per_solution;
   return robot.label + " on " + task + ": " + number_text(guided->checks_per_solution, 0) +
          " checks a solution guided, " + number_text(control->checks_per_solution, 0) +
-         " uniform: " + number_text(ratio, kDigits) + " times " + (is_worth_it ? "fewer" : "more");
+         " uniform: " + number_text(ratio, kDigits) + " times " + (is_worth_it ? "fewer" : "more") +
+         (robot.guided_means ? "; guided: " + means_text(*robot.guided_means) : "") +
+         (robot.control_means ? "; uniform: " + means_text(*robot.control_means) : "");
 }
 
 }  // namespace kinship::cli

@@ -47,6 +47,8 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   record.distribution_revision = result.distribution_revision;
   record.processor_time_s = result.processor_time_s;
   record.machine_speed = evidence::machine_speed();
+  record.hand_length_m = result.hand_length_m.value_or(0);
+  record.least_clearance_m = result.least_clearance_m.value_or(0);
   if (result.waypoints)
     attempt.path = Path(*result.waypoints);
   attempt.search = planned.search;

@@ -142,8 +142,14 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
   return made;
 }
 
-json::NamedAttempt attempt_for(const Plan& self, const std::string& task,
-                               const std::string& machine) {
+/// What is measured of the path when it is first needed.
+void measure(Plan& self) {
+  if (!self.planned.result.path_length)
+    guided::measure_path(*self.robot->planned(), self.problem, self.planned.result);
+}
+
+json::NamedAttempt attempt_for(Plan& self, const std::string& task, const std::string& machine) {
+  measure(self);
   json::NamedAttempt named;
   named.attempt = guided::make_attempt({self.robot->digest(), machine, task}, self.problem,
                                        self.planned, self.settings);
@@ -161,13 +167,10 @@ auto result(Value ProblemResult::*member) {
   return [member](const Plan& self) { return self.planned.result.*member; };
 }
 
-/// What is measured of the path when it is first asked for.
 auto measured(std::optional<double> ProblemResult::*member) {
   return [member](Plan& self) {
-    ProblemResult& result = self.planned.result;
-    if (!result.path_length)
-      guided::measure_path(*self.robot->planned(), self.problem, result);
-    return result.*member;
+    measure(self);
+    return self.planned.result.*member;
   };
 }
 

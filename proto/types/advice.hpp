@@ -27,6 +27,21 @@ inline constexpr std::tuple kFieldsOf<ModeEvidence>{
     Field{"attempts", &ModeEvidence::attempts}, Field{"solved", &ModeEvidence::solved},
     Field{"checks_per_solution", &ModeEvidence::checks_per_solution, {.min = 0}}};
 
+/// Means over the solved attempts of a sampling mode of which time and path were measured.
+struct PathMeans {
+  std::uint64_t attempts = 0;
+  double time_s = 0;  ///< processor time of everything, on a machine of speed 1 (PlanningRecord)
+  double length = 0;  ///< joint units
+  double hand_length_m = 0, least_clearance_m = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<PathMeans>{
+    Field{"attempts", &PathMeans::attempts}, Field{"time_s", &PathMeans::time_s, {.min = 0}},
+    Field{"length", &PathMeans::length, {.min = 0}},
+    Field{"hand_length_m", &PathMeans::hand_length_m, {.min = 0}},
+    Field{"least_clearance_m", &PathMeans::least_clearance_m, {.min = 0}}};
+
 inline constexpr std::size_t kJudgedAttemptsPerMode =
     128;  ///< the newest ones; older are forgotten
 

@@ -52,6 +52,9 @@ struct PlanningRecord {
   double processor_time_s = 0;
   /// Of the machine that planned, as evidence::machine_speed() measures it; 0: unknown.
   double machine_speed = 0;
+  /// Of the solution: way of the transfer frame, and least clearance from obstacles (at most 0.1 m
+  /// is looked for); 0: not measured.
+  double hand_length_m = 0, least_clearance_m = 0;
 };
 
 template <>
@@ -77,7 +80,13 @@ inline constexpr std::tuple kFieldsOf<PlanningRecord>{
           {.min = 0, .max = 1e9, .may_be_missing = true, .mark = "processor_time_s"}},
     Field{"machine_speed",
           &PlanningRecord::machine_speed,
-          {.min = 0, .max = 1e6, .may_be_missing = true, .mark = "machine_speed"}}};
+          {.min = 0, .max = 1e6, .may_be_missing = true, .mark = "machine_speed"}},
+    Field{"hand_length_m",
+          &PlanningRecord::hand_length_m,
+          {.min = 0, .max = 1e9, .may_be_missing = true, .mark = "hand_length_m"}},
+    Field{"least_clearance_m",
+          &PlanningRecord::least_clearance_m,
+          {.min = 0, .max = 1e9, .may_be_missing = true, .mark = "least_clearance_m"}}};
 
 /// One planning query of a client: solved (with a path) or not (without).
 struct Attempt {

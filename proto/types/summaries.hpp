@@ -18,6 +18,7 @@
 #include "proto/types/field.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/rehearsal.hpp"
+#include "proto/types/removals.hpp"
 #include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
 
@@ -75,6 +76,7 @@ struct TaskRobotSummary {
   std::uint64_t dropped = 0;  ///< paths beyond the cap
   /// Costs of all guided and control attempts; missing: none, or an older server.
   std::optional<ModeEvidence> guided = {}, control = {};
+  std::optional<PathMeans> guided_means = {}, control_means = {};  ///< missing: none
 };
 
 template <>
@@ -86,7 +88,9 @@ inline constexpr std::tuple kFieldsOf<TaskRobotSummary>{
     Field{"generation", &TaskRobotSummary::generation},
     Field{"dropped", &TaskRobotSummary::dropped, {.may_be_missing = true}},
     Field{"guided", &TaskRobotSummary::guided},
-    Field{"control", &TaskRobotSummary::control}};
+    Field{"control", &TaskRobotSummary::control},
+    Field{"guided_means", &TaskRobotSummary::guided_means, {.may_be_missing = true}},
+    Field{"control_means", &TaskRobotSummary::control_means, {.may_be_missing = true}}};
 
 struct TaskSummary {
   std::string task;
@@ -217,78 +221,6 @@ inline constexpr std::tuple kFieldsOf<Explanation::Now>{
     Field{"robot", &Explanation::Now::robot},
     Field{"label", &Explanation::Now::label, {.limit = kMaxLabelBytes}},
     Field{"paths", &Explanation::Now::paths}, Field{"generation", &Explanation::Now::generation}};
-
-/// Paths that no fit uses any more. They are kept for the record.
-struct Retirement {
-  std::string task;
-  std::uint64_t paths = 0;  ///< retired by this request; 0: all were retired before
-  std::vector<Digest> robots;
-};
-
-template <>
-inline constexpr std::tuple kFieldsOf<Retirement>{
-    Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
-    Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
-
-/// Retired paths that were stored anew, each under a UUID of its own.
-struct Restoration {
-  std::string task;          ///< of one path, or as asked for; empty: of all
-  std::uint64_t paths = 0;   ///< in use again by this request
-  std::uint64_t in_use = 0;  ///< left out: their content is in use
-  std::uint64_t lost = 0;    ///< left out: waypoints not kept, or not taken by the store
-  Uuid report_uuid = {};     ///< of the first restored path; zero: none
-  std::string reason = {};   ///< of the last one that was left out
-};
-
-template <>
-inline constexpr std::tuple kFieldsOf<Restoration>{
-    Field{"task", &Restoration::task, {.limit = kMaxTaskBytes}},
-    Field{"paths", &Restoration::paths},
-    Field{"in_use", &Restoration::in_use},
-    Field{"lost", &Restoration::lost},
-    Field{"report_uuid", &Restoration::report_uuid},
-    Field{"reason", &Restoration::reason, {.limit = kMaxMessageBytes}}};
-
-/// A task that is listed no more, and data removed with it.
-struct TaskRemoval {
-  std::string task;
-  std::uint64_t paths = 0;          ///< retired now
-  std::uint64_t attempts = 0;       ///< kept for the record, with their paths and UUIDs
-  std::uint64_t distributions = 0;  ///< of it, deleted
-};
-
-template <>
-inline constexpr std::tuple kFieldsOf<TaskRemoval>{
-    Field{"task", &TaskRemoval::task, {.limit = kMaxTaskBytes}},
-    Field{"paths", &TaskRemoval::paths}, Field{"attempts", &TaskRemoval::attempts},
-    Field{"distributions", &TaskRemoval::distributions}};
-
-/// A distribution that was removed from the store.
-struct Eviction {
-  Digest id;
-};
-
-template <>
-inline constexpr std::tuple kFieldsOf<Eviction>{Field{"evicted", &Eviction::id}};
-
-/// A removed robot, and data removed with it.
-struct RobotRemoval {
-  Digest robot;
-  std::string label;                ///< its former label; another robot may have it now
-  std::uint64_t paths = 0;          ///< retired now
-  std::uint64_t attempts = 0;       ///< kept for the record, with their paths and UUIDs
-  std::uint64_t distributions = 0;  ///< for it, deleted
-  bool is_deleted = false;          ///< it had no attempts and was deleted completely
-};
-
-template <>
-inline constexpr std::tuple kFieldsOf<RobotRemoval>{
-    Field{"robot", &RobotRemoval::robot},
-    Field{"label", &RobotRemoval::label, {.limit = kMaxLabelBytes}},
-    Field{"paths", &RobotRemoval::paths},
-    Field{"attempts", &RobotRemoval::attempts},
-    Field{"distributions", &RobotRemoval::distributions},
-    Field{"is_deleted", &RobotRemoval::is_deleted}};
 
 enum class JobState { Queued, Running, Done, Failed, Cancelled };
 
@@ -427,8 +359,9 @@ struct ServerStatus {
   std::vector<ReplicaUse> replicas = {};        ///< hosts of a database that fits may read
   /// Goes into the proof that a change needs (AdminRequest::proof); empty: none is needed.
   std::string challenge = {};
-  std::uint64_t meshes = 0;      ///< contents of robots' meshes
-  std::uint64_t mesh_bytes = 0;  ///< of them, compressed
+  std::uint64_t meshes = 0;                                        ///< contents of robots' meshes
+  std::uint64_t mesh_bytes = 0;                                    ///< of them, compressed
+  std::optional<PathMeans> guided_means = {}, control_means = {};  ///< of all robots and tasks
 };
 
 template <>
@@ -469,7 +402,9 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"replicas", &ServerStatus::replicas, {.limit = kMaxStatusRows, .may_be_missing = true}},
     Field{"challenge", &ServerStatus::challenge, {.limit = kMaxWordBytes, .may_be_missing = true}},
     Field{"meshes", &ServerStatus::meshes, {.may_be_missing = true}},
-    Field{"mesh_bytes", &ServerStatus::mesh_bytes, {.may_be_missing = true}}};
+    Field{"mesh_bytes", &ServerStatus::mesh_bytes, {.may_be_missing = true}},
+    Field{"guided_means", &ServerStatus::guided_means, {.may_be_missing = true}},
+    Field{"control_means", &ServerStatus::control_means, {.may_be_missing = true}}};
 
 /// A row of the admin conversation, and its name in a refusal.
 template <typename Row>

@@ -120,6 +120,8 @@ ServerStatus Service::status() const {
   status.dropped_paths = store.dropped_paths;
   status.meshes = store.meshes;
   status.mesh_bytes = store.mesh_bytes;
+  status.guided_means = store.guided_means;
+  status.control_means = store.control_means;
   status.bounds = bounds(store);
   status.credentials_expire_ms = options_.credentials_expire_ms;
   status.upstream = upstream_.status(store.attempts);

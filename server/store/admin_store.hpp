@@ -32,6 +32,8 @@ struct StoreStatus {
   std::uint64_t max_search_bytes = 0;        ///< 0: none is kept
   std::uint64_t meshes = 0;                  ///< contents of robots' meshes
   std::uint64_t mesh_bytes = 0;              ///< of these, compressed; part of `bytes`
+  /// Over all robots and tasks; missing: none were measured.
+  std::optional<PathMeans> guided_means = {}, control_means = {};
   std::uint64_t queued = 0;
   std::uint64_t wal_bytes = 0;  ///< in use: changes that are not yet in the file
   bool writable = true;

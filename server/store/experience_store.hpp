@@ -52,6 +52,9 @@ struct ModeTotals {
   double checks = 0;            ///< collision checks, of solved and unsolved ones
   double checks_squared = 0;    ///< sum of their squares
   double checks_of_solved = 0;  ///< of the solved ones alone
+  /// Solved ones of which time and path were measured, and their sums (see PathMeans).
+  std::uint64_t measured = 0;
+  double time_s = 0, length = 0, hand_length_m = 0, clearance_m = 0;
 };
 
 /// A judged attempt with its planner and distribution.

@@ -103,6 +103,8 @@ PlanningRecord every_record(Distinct& next) {
   record.distribution_revision = next.count();
   record.processor_time_s = 10'000 + record.planning_time_s;
   record.machine_speed = 20'000 + record.planning_time_s;
+  record.hand_length_m = 30'000 + record.planning_time_s;
+  record.least_clearance_m = 40'000 + record.planning_time_s;
   return record;
 }
 

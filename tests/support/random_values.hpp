@@ -146,6 +146,8 @@ class RandomValues {
     record.distribution_revision = count();
     record.processor_time_s = share();
     record.machine_speed = 2 * share();
+    record.hand_length_m = 3 * share();
+    record.least_clearance_m = share();
     if (record.outcome == Outcome::Solved)
       attempt.path = Path(matrix(1 + below(32), 2 + below(max_waypoints)));
     return attempt;

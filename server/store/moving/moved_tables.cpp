@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
+#include "server/store/rules/batch_changes.hpp"
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/values/record_columns.hpp"
 
@@ -39,19 +43,11 @@ MovedTable robots() {
 MovedTable experience() {
   MovedTable table{.name = "experience",
                    .keys = 2,
-                   .columns = {{"task_id"},
-                               {"robot_id"},
-                               {"generation"},
-                               {"retired_generation"},
-                               {"paths"},
-                               {"attempts"},
-                               {"dropped"}}};
-  for (const std::string mode : {"guided", "control"}) {
-    table.columns.push_back({mode + "_attempts"});
-    table.columns.push_back({mode + "_solved"});
-    for (const char* const sum : {"_checks", "_checks_squared", "_checks_of_solved"})
-      table.columns.push_back({mode + sum, Real});
-  }
+                   .columns = {{"task_id"}, {"robot_id"}, {"generation"}, {"retired_generation"}}};
+  for_each_sum({}, [&]<typename T>(std::string_view mode, std::string_view column, T /*change*/) {
+    table.columns.push_back(
+        {std::string(mode).append(column), std::is_same_v<T, double> ? Real : Integer});
+  });
   return table;
 }
 

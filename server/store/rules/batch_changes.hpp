@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "proto/types/conversations.hpp"
@@ -60,6 +62,30 @@ struct PairChange {
   std::int64_t dropped = 0;
   ModeTotals guided = {}, control = {};
 };
+
+/// The sums of a row of `experience`: calls visit(mode, column, change), whose name is both
+/// together, with a change of std::int64_t or double. Both engines write, and a move copies, by it.
+template <typename Visit>
+void for_each_sum(const PairChange& change, Visit visit) {
+  using Mode = std::string_view;
+  visit(Mode(), "paths", change.paths);
+  visit(Mode(), "attempts", change.attempts);
+  visit(Mode(), "dropped", change.dropped);
+  for (const auto& [mode, totals] :
+       {std::pair<Mode, const ModeTotals&>("guided", change.guided),
+        std::pair<Mode, const ModeTotals&>("control", change.control)}) {
+    visit(mode, "_attempts", static_cast<std::int64_t>(totals.attempts));
+    visit(mode, "_solved", static_cast<std::int64_t>(totals.solved));
+    visit(mode, "_checks", totals.checks);
+    visit(mode, "_checks_squared", totals.checks_squared);
+    visit(mode, "_checks_of_solved", totals.checks_of_solved);
+    visit(mode, "_measured", static_cast<std::int64_t>(totals.measured));
+    visit(mode, "_time_s", totals.time_s);
+    visit(mode, "_length", totals.length);
+    visit(mode, "_hand_length_m", totals.hand_length_m);
+    visit(mode, "_clearance_m", totals.clearance_m);
+  }
+}
 
 /// All writes of a batch.
 struct BatchChanges {

@@ -32,7 +32,8 @@ struct AttemptPath {
   bool is_beyond_cap() const { return status == AttemptStatus::Stored && !id; }
 };
 
-void add_cost(PairChange& change, const PlanningRecord& record) {
+void add_cost(PairChange& change, const PreparedAttempt& prepared) {
+  const PlanningRecord& record = prepared.attempt.record;
   if (record.sampling_mode == SamplingMode::Uniform)
     return;
   ModeTotals& sums = record.sampling_mode == SamplingMode::Guided ? change.guided : change.control;
@@ -43,6 +44,14 @@ void add_cost(PairChange& change, const PlanningRecord& record) {
   sums.checks += checks;
   sums.checks_squared += checks * checks;
   sums.checks_of_solved += is_solved ? checks : 0;
+  if (!prepared.path || record.processor_time_s <= 0 || record.machine_speed <= 0 ||
+      record.hand_length_m <= 0 || record.least_clearance_m <= 0)
+    return;
+  ++sums.measured;
+  sums.time_s += record.processor_time_s * record.machine_speed;
+  sums.length += prepared.path->length;
+  sums.hand_length_m += record.hand_length_m;
+  sums.clearance_m += record.least_clearance_m;
 }
 
 /// Resolves attempt by attempt; the state follows the changes.
@@ -95,7 +104,7 @@ Receipt ReportResolver::resolve_new(const PreparedAttempt& prepared, Pair& pair)
   if (!state_.unreadable.contains(attempt.report_uuid)) {
     PairChange& change = change_of(pair);
     ++change.attempts;
-    add_cost(change, attempt.record);
+    add_cost(change, prepared);
   }
   if (path.status == AttemptStatus::Stored)
     drop_excess(pair);

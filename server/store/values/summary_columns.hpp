@@ -123,15 +123,40 @@ std::optional<ModeEvidence> read_evidence(const Row& row, int first_column) {
   return mode;
 }
 
+/// From five columns: attempts, and their sums of the members of PathMeans.
+template <Columns Row>
+std::optional<PathMeans> read_means(const Row& row, int first_column) {
+  const std::uint64_t attempts = count_of(row, first_column);
+  if (attempts == 0)
+    return std::nullopt;
+  const auto mean = [&](int column) {
+    return row.column_real(first_column + column) / static_cast<double>(attempts);
+  };
+  return PathMeans{attempts, mean(1), mean(2), mean(3), mean(4)};
+}
+
+/// The sums of `experience` over all robots and tasks: of guided attempts and of control ones, each
+/// for read_means().
+inline constexpr std::string_view kMeansOfAll =
+    "SELECT CAST(coalesce(sum(guided_measured), 0) AS bigint), coalesce(sum(guided_time_s), 0),"
+    " coalesce(sum(guided_length), 0), coalesce(sum(guided_hand_length_m), 0),"
+    " coalesce(sum(guided_clearance_m), 0), CAST(coalesce(sum(control_measured), 0) AS bigint),"
+    " coalesce(sum(control_time_s), 0), coalesce(sum(control_length), 0),"
+    " coalesce(sum(control_hand_length_m), 0), coalesce(sum(control_clearance_m), 0)"
+    " FROM experience";
+inline constexpr int kControlMeansOfAll = 5;
+
 /// Of a robot in a task.
 inline constexpr std::string_view kTaskRobotColumns =
     "robot_id, paths, attempts, generation, dropped, guided_attempts, guided_solved,"
-    " guided_checks, control_attempts, control_solved, control_checks ";
+    " guided_checks, control_attempts, control_solved, control_checks, guided_measured,"
+    " guided_time_s, guided_length, guided_hand_length_m, guided_clearance_m, control_measured,"
+    " control_time_s, control_length, control_hand_length_m, control_clearance_m ";
 
 /// \param row  of kTaskRobotColumns.
 template <Columns Row>
 TaskRobotSummary read_task_robot(const Row& row, const Digest& robot, std::string_view label) {
-  constexpr int kGuided = 5, kControl = 8;
+  constexpr int kGuided = 5, kControl = 8, kGuidedMeans = 11, kControlMeans = 16;
   return {robot,
           std::string(label),
           count_of(row, 1),
@@ -139,7 +164,9 @@ TaskRobotSummary read_task_robot(const Row& row, const Digest& robot, std::strin
           count_of(row, 3),
           count_of(row, 4),
           read_evidence(row, kGuided),
-          read_evidence(row, kControl)};
+          read_evidence(row, kControl),
+          read_means(row, kGuidedMeans),
+          read_means(row, kControlMeans)};
 }
 
 /// The summary of a task from those of its robots, in order of labels.

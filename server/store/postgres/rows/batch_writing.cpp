@@ -2,8 +2,10 @@
 
 #include <deque>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/rows/arrivals.hpp"
@@ -75,25 +77,6 @@ constexpr std::string_view kRestore =
 // COMMIT waits for the standby too.
 constexpr std::string_view kNoteResent =
     "UPDATE attempt SET resent = resent + 1 WHERE report_uuid = ANY($1)";
-
-constexpr std::string_view kChangePairs =
-    "UPDATE experience AS old SET changed_in = pg_current_xact_id(),"
-    " generation = old.generation + new.changed, paths = old.paths + new.paths,"
-    " attempts = old.attempts + new.attempts, dropped = old.dropped + new.dropped,"
-    " guided_attempts = old.guided_attempts + new.guided,"
-    " guided_solved = old.guided_solved + new.guided_solved,"
-    " guided_checks = old.guided_checks + new.guided_checks,"
-    " guided_checks_squared = old.guided_checks_squared + new.guided_squared,"
-    " guided_checks_of_solved = old.guided_checks_of_solved + new.guided_of_solved,"
-    " control_attempts = old.control_attempts + new.control,"
-    " control_solved = old.control_solved + new.control_solved,"
-    " control_checks = old.control_checks + new.control_checks,"
-    " control_checks_squared = old.control_checks_squared + new.control_squared,"
-    " control_checks_of_solved = old.control_checks_of_solved + new.control_of_solved"
-    " FROM unnest($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16) AS new ("
-    "task_id, robot_id, changed, paths, attempts, dropped, guided, guided_solved, guided_checks,"
-    " guided_squared, guided_of_solved, control, control_solved, control_checks, control_squared,"
-    " control_of_solved) WHERE old.task_id = new.task_id AND old.robot_id = new.robot_id";
 
 /// Poses as blobs, which stay where they are while columns point to them.
 class PoseBlobs {
@@ -289,37 +272,41 @@ Parameters restored_in_columns(const BatchChanges& changes) {
   return Parameters(uuids, paths, statuses);
 }
 
-/// The columns of a sampling mode's costs.
-struct TotalsColumns {
-  Integers attempts, solved;
-  std::vector<double> checks, squared, of_solved;
-
-  void add(const ModeTotals& totals) {
-    attempts.push_back(static_cast<std::int64_t>(totals.attempts));
-    solved.push_back(static_cast<std::int64_t>(totals.solved));
-    checks.push_back(totals.checks);
-    squared.push_back(totals.checks_squared);
-    of_solved.push_back(totals.checks_of_solved);
-  }
-};
+/// Its parameters are pairs_in_columns().
+std::string change_of_pairs() {
+  std::string set, names, places = "$1, $2, $3";
+  int place = 3;
+  for_each_sum({}, [&](std::string_view mode, std::string_view column, auto /*change*/) {
+    const std::string name = std::string(mode).append(column);
+    set += ", " + name + " = old." + name + " + new." + name;
+    names += ", " + name;
+    places += ", $" + std::to_string(++place);
+  });
+  return "UPDATE experience AS old SET changed_in = pg_current_xact_id(),"
+         " generation = old.generation + new.changed" +
+         set + " FROM unnest(" + places + ") AS new (task_id, robot_id, changed" + names +
+         ") WHERE old.task_id = new.task_id AND old.robot_id = new.robot_id";
+}
 
 Parameters pairs_in_columns(const BatchChanges& changes) {
-  Integers tasks, robots, changed, paths, attempts, dropped;
-  TotalsColumns guided, control;
+  Integers tasks, robots, changed;
+  std::vector<std::variant<Integers, std::vector<double>>> sums;
   for (const auto& [key, change] : changes.pairs) {
     tasks.push_back(key.task_id);
     robots.push_back(key.robot_id);
     changed.push_back(change.is_changed ? 1 : 0);
-    paths.push_back(change.paths);
-    attempts.push_back(change.attempts);
-    dropped.push_back(change.dropped);
-    guided.add(change.guided);
-    control.add(change.control);
+    std::size_t place = 0;
+    for_each_sum(change,
+                 [&]<typename T>(std::string_view /*mode*/, std::string_view /*column*/, T added) {
+                   if (place == sums.size())
+                     sums.emplace_back(std::vector<T>());
+                   std::get<std::vector<T>>(sums[place++]).push_back(added);
+                 });
   }
-  return Parameters(tasks, robots, changed, paths, attempts, dropped, guided.attempts,
-                    guided.solved, guided.checks, guided.squared, guided.of_solved,
-                    control.attempts, control.solved, control.checks, control.squared,
-                    control.of_solved);
+  Parameters parameters(tasks, robots, changed);
+  for (const auto& column : sums)
+    std::visit([&parameters](const auto& list) { parameters.add(list); }, column);
+  return parameters;
 }
 
 std::vector<Request> requests_of(const BatchChanges& changes, std::int64_t now_ms) {
@@ -352,8 +339,9 @@ std::vector<Request> requests_of(const BatchChanges& changes, std::int64_t now_m
       uuids.emplace_back(uuid.bytes);
     requests.push_back({kNoteResent, Parameters(uuids)});
   }
+  static const std::string change_pairs = change_of_pairs();
   if (!changes.pairs.empty())
-    requests.push_back({kChangePairs, pairs_in_columns(changes)});
+    requests.push_back({change_pairs, pairs_in_columns(changes)});
   if (const SearchColumns columns(changes.attempts); !columns.uuids.empty())
     requests.push_back(
         {kWriteSearches,

@@ -109,8 +109,8 @@ Page<DistributionSummary> page_of_distributions(Connection& connection, const Pa
 }
 
 void count_rows(Connection& connection, StoreStatus& status) {
-  const std::array<Request, 4> requests = {Request{kCounts}, Request{kPairs}, Request{kDamaged},
-                                           Request{kBytes}};
+  const std::array<Request, 5> requests = {Request{kCounts}, Request{kPairs}, Request{kDamaged},
+                                           Request{kBytes}, Request{kMeansOfAll}};
   const std::vector<Rows> rows = connection.query_all(requests);
   const Row counts = rows[0].front(), pairs = rows[1].front(), damaged = rows[2].front();
   status.robots = count_of(counts, 0);
@@ -125,6 +125,9 @@ void count_rows(Connection& connection, StoreStatus& status) {
   status.dropped_paths = count_of(pairs, 2);
   status.most_paths_of_pair = count_of(pairs, 3);
   status.bytes = count_of(rows[3].front(), 0);
+  const Row means = rows[4].front();
+  status.guided_means = read_means(means, 0);
+  status.control_means = read_means(means, kControlMeansOfAll);
   const std::int64_t paths = damaged.column_integer(0), scenes = damaged.column_integer(1);
   status.damaged = paths + scenes > 0;
   if (paths > 0)

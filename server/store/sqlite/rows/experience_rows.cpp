@@ -1,6 +1,7 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 
 #include <string>
+#include <string_view>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/values/columns.hpp"
@@ -25,27 +26,22 @@ std::uint64_t ensure_experience(Database& database, const ExperienceKey& key) {
 }
 
 void add_to_experience(Database& database, const ExperienceKey& key, const PairChange& change) {
-  const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  const ModeTotals& guided = change.guided;
-  const ModeTotals& control = change.control;
-  database
-      .cached(
-          "UPDATE experience SET attempts = attempts + ?3, paths = paths + ?4,"
-          " dropped = dropped + ?5, guided_attempts = guided_attempts + ?6,"
-          " guided_solved = guided_solved + ?7, guided_checks = guided_checks + ?8,"
-          " guided_checks_squared = guided_checks_squared + ?9,"
-          " guided_checks_of_solved = guided_checks_of_solved + ?10,"
-          " control_attempts = control_attempts + ?11, control_solved = control_solved + ?12,"
-          " control_checks = control_checks + ?13,"
-          " control_checks_squared = control_checks_squared + ?14,"
-          " control_checks_of_solved = control_checks_of_solved + ?15"
-          " WHERE task_id = ?1 AND robot_id = ?2")
-      ->bind_all(key.task_id, key.robot_id, change.attempts, change.paths, change.dropped,
-                 integer(guided.attempts), integer(guided.solved), guided.checks,
-                 guided.checks_squared, guided.checks_of_solved, integer(control.attempts),
-                 integer(control.solved), control.checks, control.checks_squared,
-                 control.checks_of_solved)
-      .run();
+  static const std::string update = [&change] {
+    std::string set;
+    for_each_sum(change, [&set](std::string_view mode, std::string_view column, auto /*change*/) {
+      const std::string name = std::string(mode).append(column);
+      set += (set.empty() ? "" : ", ") + name + " = " + name + " + ?";
+    });
+    return "UPDATE experience SET " + set + " WHERE task_id = ? AND robot_id = ?";
+  }();
+  const auto statement = database.cached(update);
+  int place = 0;
+  for_each_sum(change, [&](std::string_view /*mode*/, std::string_view /*column*/, auto added) {
+    statement->bind(++place, added);
+  });
+  statement->bind(++place, key.task_id);
+  statement->bind(++place, key.robot_id);
+  statement->run();
 }
 
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths) {

@@ -135,16 +135,19 @@ Page<DistributionSummary> page_of_distributions(Database& database, const PairFi
 
 void count_rows(Database& database, StoreStatus& status) {
   // A table that cannot be counted leaves the others their counts.
-  const auto count = [&](std::uint64_t& into, std::string_view name, std::string_view sql) {
+  const auto read = [&](std::string_view name, std::string_view sql, const auto& take) {
     try {
       const auto query = database.cached(sql);
       query->step();
-      into = count_of(*query, 0);
+      take(*query);
     } catch (const SqliteError& error) {
       if (!error.is_damage())
         throw;
       status.message += "damaged: the " + std::string(name) + " cannot be counted; ";
     }
+  };
+  const auto count = [&](std::uint64_t& into, std::string_view name, std::string_view sql) {
+    read(name, sql, [&into](const auto& row) { into = count_of(row, 0); });
   };
   std::uint64_t schema = 0;
   count(status.robots, "robots", "SELECT count(*) FROM robot WHERE label NOT GLOB 'removed *'");
@@ -162,6 +165,10 @@ void count_rows(Database& database, StoreStatus& status) {
         "INDEXED BY distribution_use_by_time");
   count(status.meshes, "meshes", "SELECT count(*) FROM mesh");
   count(status.mesh_bytes, "sizes of meshes", "SELECT coalesce(sum(length(payload)), 0) FROM mesh");
+  read("measured attempts", kMeansOfAll, [&status](const auto& row) {
+    status.guided_means = read_means(row, 0);
+    status.control_means = read_means(row, kControlMeansOfAll);
+  });
   count(schema, "schema", "SELECT user_version FROM pragma_user_version");
   count(status.bytes, "pages",
         "SELECT (SELECT page_count FROM pragma_page_count) *"

@@ -310,6 +310,11 @@ TEST_F(CPlanning, AReportTellsTheSceneAndAStoppedPlanHasNone) {
   EXPECT_NE(report.find("\"post\""), std::string::npos) << report;
   EXPECT_NE(report.find("\"approximate\""), std::string::npos) << report;
   EXPECT_NE(report.find("\"sweep\""), std::string::npos) << report;
+  for (const std::string measure : {"\"hand_length_m\":", "\"least_clearance_m\":"}) {
+    EXPECT_NE(report.find(measure), std::string::npos) << report;
+    EXPECT_EQ(report.find(measure + "0.0,"), std::string::npos) << report;
+    EXPECT_EQ(report.find(measure + "0.0}"), std::string::npos) << report;
+  }
   query_.stop = [](void*) { return 1; };
   ASSERT_NO_FATAL_FAILURE(plan());
   EXPECT_EQ(kinship_plan_report(client, plan_, "sweep", "cell"), KINSHIP_INVALID_INPUT);

@@ -20,6 +20,8 @@ PlannedProblem solved() {
   planned.planner = "CBiRRT2";
   planned.result.time_limit_s = 10;
   planned.result.waypoints = Eigen::MatrixXd::Random(3, 4);
+  planned.result.hand_length_m = 1.5;
+  planned.result.least_clearance_m = 0.03;
   return planned;
 }
 
@@ -34,6 +36,8 @@ TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   EXPECT_EQ(attempt.record.collision_checks, 1234U);  // without those of shortcutting
   EXPECT_EQ(attempt.record.processor_time_s, 0.75);
   EXPECT_EQ(attempt.record.machine_speed, evidence::machine_speed());
+  EXPECT_EQ(attempt.record.hand_length_m, 1.5);
+  EXPECT_EQ(attempt.record.least_clearance_m, 0.03);
   EXPECT_EQ(attempt.record.planner, "CBiRRT2");
   EXPECT_EQ(attempt.record.sampling_mode, SamplingMode::Uniform);
   EXPECT_EQ(attempt.task, "box_to_shelf");

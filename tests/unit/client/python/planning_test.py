@@ -79,6 +79,9 @@ class Paths(OfAUr10e):
             self.assertFalse(kinship.World.of_problem(self.robot, wider).free(np.concatenate(steps)).all())
         far = kinship.plan(self.robot, kinship.Problem("open", START, GOAL))
         self.assertEqual(far.least_clearance, 0.1)
+        reported = json.loads(kinship.plan(self.robot, problem).attempt("around").to_json())["record"]
+        self.assertAlmostEqual(reported["hand_length_m"], kinship.plan(self.robot, problem).hand_length)
+        self.assertGreater(reported["least_clearance_m"], 0)
         none = kinship.plan(self.robot, self.problem, max_checks=1)
         self.assertEqual((none.path_length, none.hand_length, none.least_clearance), (None, None, None))
 

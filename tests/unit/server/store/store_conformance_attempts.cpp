@@ -133,6 +133,54 @@ TEST_P(StoreConformance, SumsUpWhatTheArmsOfARobotAndTaskCost) {
   EXPECT_EQ(store_->attempt_totals(panda_.digest, "nothing").control.attempts, 0U);
 }
 
+TEST_P(StoreConformance, MeansAreOfSolvedAttemptsThatWereMeasuredInEachMode) {
+  const auto attempt = [this](std::uint64_t number, SamplingMode mode, double factor) {
+    Attempt made = solved(number);
+    made.record.sampling_mode = mode;
+    made.record.processor_time_s = 0.25 * factor;
+    made.record.machine_speed = 2;
+    made.record.hand_length_m = factor;
+    made.record.least_clearance_m = 0.01 * factor;
+    return made;
+  };
+  const auto mean_of = [](const Attempt& first, const Attempt& second) {
+    const auto length = [](const Attempt& attempt) {
+      const Eigen::MatrixXd& q = attempt.path->waypoints();
+      return (q.rightCols(q.cols() - 1) - q.leftCols(q.cols() - 1)).colwise().norm().sum();
+    };
+    return (length(first) + length(second)) / 2;
+  };
+  EXPECT_FALSE(store_->status().guided_means);
+  const Attempt first = attempt(1, SamplingMode::Guided, 1),
+                second = attempt(2, SamplingMode::Guided, 3);
+  Attempt unmeasured = attempt(3, SamplingMode::Guided, 100);
+  unmeasured.record.hand_length_m = 0;
+  Attempt untimed = attempt(4, SamplingMode::Guided, 100);
+  untimed.record.processor_time_s = 0;
+  Attempt unsolved = test::make_unsolved(panda_.digest, "shelf", 5);
+  unsolved.record.sampling_mode = SamplingMode::Guided;
+  Attempt elsewhere = attempt(7, SamplingMode::Guided, 5);
+  elsewhere.task = "table";
+  test::report(*store_, {first, unmeasured, untimed, unsolved});
+  test::report(*store_, {second, attempt(6, SamplingMode::Uniform, 100), elsewhere, first});
+  reopen();
+  const TaskRobotSummary pair = store_->find_task("shelf")->robots.at(0);
+  ASSERT_TRUE(pair.guided_means);
+  EXPECT_EQ(pair.guided_means->attempts, 2U);
+  EXPECT_DOUBLE_EQ(pair.guided_means->time_s, 1);
+  EXPECT_DOUBLE_EQ(pair.guided_means->length, mean_of(first, second));
+  EXPECT_DOUBLE_EQ(pair.guided_means->hand_length_m, 2);
+  EXPECT_DOUBLE_EQ(pair.guided_means->least_clearance_m, 0.02);
+  EXPECT_FALSE(pair.control_means);
+  const StoreStatus status = store_->status();
+  ASSERT_TRUE(status.guided_means);
+  EXPECT_EQ(status.guided_means->attempts, 3U);
+  EXPECT_DOUBLE_EQ(status.guided_means->hand_length_m, 3);
+  EXPECT_FALSE(status.control_means);
+  EXPECT_EQ(store_->export_attempts({}, "table", "", 1, kManyBytes).rows.at(0).record.hand_length_m,
+            5);
+}
+
 TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
   const Digest distribution = test::id_from<Digest>(99);
   const auto attempt = [this, distribution](std::uint64_t number, SamplingMode mode,
