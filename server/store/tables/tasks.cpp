@@ -43,12 +43,12 @@ std::vector<Digest> delete_distributions_of(Session& session, std::int64_t task_
 /// \param which  a condition on table task.
 std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
     Session& session, const std::string& which, std::span<const Parameter> parameters) {
-  constexpr int kRobot = 0, kTask = 11;
+  constexpr int kTask = 0, kRobot = 1;
   const std::map<std::int64_t, RobotName> names = select_robot_names(session);
   std::map<std::int64_t, std::vector<TaskRobotSummary>> robots;
   for (const Row& row :
-       session.query_with("SELECT " + std::string(kTaskRobotColumns) +
-                              ", task_id FROM experience WHERE " + session.is_intact("experience") +
+       session.query_with("SELECT " + std::string(kTaskRobotColumns) + "FROM experience WHERE " +
+                              session.is_intact("experience") +
                               " AND task_id IN (SELECT id FROM task WHERE " + which + ")",
                           parameters))
     if (const auto name = names.find(row.column_integer(kRobot));

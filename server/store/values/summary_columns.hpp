@@ -148,7 +148,7 @@ inline constexpr int kControlMeansOfAll = 5;
 
 /// Of a robot in a task.
 inline constexpr std::string_view kTaskRobotColumns =
-    "robot_id, paths, attempts, generation, dropped, guided_attempts, guided_solved,"
+    "task_id, robot_id, paths, attempts, generation, dropped, guided_attempts, guided_solved,"
     " guided_checks, control_attempts, control_solved, control_checks, guided_measured,"
     " guided_time_s, guided_length, guided_hand_length_m, guided_clearance_m, control_measured,"
     " control_time_s, control_length, control_hand_length_m, control_clearance_m ";
@@ -156,13 +156,13 @@ inline constexpr std::string_view kTaskRobotColumns =
 /// \param row  of kTaskRobotColumns.
 template <Columns Row>
 TaskRobotSummary read_task_robot(const Row& row, const Digest& robot, std::string_view label) {
-  constexpr int kGuided = 5, kControl = 8, kGuidedMeans = 11, kControlMeans = 16;
+  constexpr int kGuided = 6, kControl = 9, kGuidedMeans = 12, kControlMeans = 17;
   return {robot,
           std::string(label),
-          count_of(row, 1),
           count_of(row, 2),
           count_of(row, 3),
           count_of(row, 4),
+          count_of(row, 5),
           read_evidence(row, kGuided),
           read_evidence(row, kControl),
           read_means(row, kGuidedMeans),
