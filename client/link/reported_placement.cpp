@@ -15,9 +15,9 @@ Result<ReportedPlacement> reported_placement(Client& client, const std::string& 
         return false;
       },
       1);
-  if (error)
+  if (error && error->code != ErrorCode::NotFound)
     return *error;
-  if (!newest)
+  if (!newest)  // also of a task or robot that the server does not know
     return ReportedPlacement();
   if (!*newest)
     return unreadable_row(newest->error());

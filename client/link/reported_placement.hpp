@@ -17,7 +17,8 @@ struct ReportedPlacement {
 
 /// Asks the server, in two requests, each up to the client's timeout.
 /// \param robot  its label.
-/// \return Unavailable, or InvalidInput if the server does not tell this client of attempts.
+/// \return unknown also if the server does not know the task or robot; Unavailable, or InvalidInput
+///         if it does not tell this client of attempts.
 Result<ReportedPlacement> reported_placement(Client& client, const std::string& task,
                                              const std::string& robot);
 
