@@ -103,6 +103,30 @@ TEST(Commands, AMisspeltWordIsAnsweredWithTheNearestOne) {
       << error({"paths", "list", "--output", "json"});
 }
 
+TEST(Commands, AnUnknownOptionIsToldWhateverElseIsWrong) {
+  const std::string id = "01234567", robots = "'--robots' (did you mean '--robot'?)";
+  const struct {
+    std::vector<std::string> words;
+    std::string told;
+  } lines[] = {
+      {{"paths", "export", id, "--robots", "panda", "--task", "pick"}, robots},
+      {{"paths", "export", "--task", "pick", id, "--robots=panda"}, "'--robots=panda' (did you"},
+      {{"paths", "restore", id, "--robots", "panda", "--task", "pick"}, robots},
+      {{"attempts", "list", "--robots", "panda", "--limit", "many"}, robots},
+      {{"paths", "import", "a.jsonl", "--robots", "panda", "--ompl-planner-data", "b"}, robots},
+      {{"tasks", "list", "--jsn", "--timeout", "abc"}, "'--jsn' (did you mean '--json'?)"},
+      {{"status", "--wach", "--timeout", "abc"}, "'--wach'"},
+      {{"tasks", "rename", "pick", "--yess"}, "'--yess'"},
+  };
+  for (const auto& line : lines) {
+    const Answer answer = run_command(line.words);
+    EXPECT_EQ(answer.code, kWrongUsage);
+    EXPECT_TRUE(answer.err.starts_with("kinship: unknown ")) << answer.err;
+    EXPECT_NE(answer.err.find(line.told), std::string::npos) << answer.err;
+  }
+  EXPECT_EQ(run_command({"paths", "list", "--robots", "x", "--help"}).code, kDone);
+}
+
 TEST(Commands, HelpAndVersionAreWordsToo) {
   EXPECT_EQ(run_command({"help", "paths", "list"}).out,
             run_command({"paths", "list", "--help"}).out);
