@@ -101,13 +101,13 @@ TEST_F(Init, WritesNothingForARobotThatCannotBe) {
   EXPECT_EQ(init({.source = folder_ / "no.urdf"}).code, kNotFound);
 }
 
-TEST_F(Init, LeavesNoFileThatCannotBeRead) {
-  const auto strange = folder_ / "no-utf-8-\xff";  // which TOML cannot say
+TEST_F(Init, LeavesNoFileThatSaysNoRobot) {
+  const auto strange = folder_ / "no-utf-8-\xff";  // TOML has no such text
   std::filesystem::create_directory(strange);
   std::filesystem::copy(kArm, strange / "robot.urdf");
   const Answer answer = init({.source = strange / "robot.urdf"});
   EXPECT_NE(answer.code, kDone);
-  EXPECT_NE(answer.err.find("chain.toml: line "), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("robot.urdf: no such file"), std::string::npos) << answer.err;
   EXPECT_FALSE(std::filesystem::exists(made_ / "chain.toml"));
   ASSERT_EQ(init({.source = kArm}).code, kDone);
   const std::string before = text();
