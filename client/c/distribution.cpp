@@ -12,23 +12,13 @@ namespace {
 
 using SharedDistribution = std::shared_ptr<const Distribution>;
 
-/// Without a placement: where the robot stood when it last reported the task, as far as the server
-/// tells.
-FetchRequest read_request(kinship_client& client, const kinship_request& given) {
+FetchRequest read_request(const kinship_request& given) {
   require(given.task, "request->task");
   FetchRequest request;
   request.task = given.task;
   request.robot = read_robot(given.robot, "request->robot");
   if (given.T_task_base != nullptr)
     request.T_task_base = read_pose(given.T_task_base, "request->T_task_base");
-  else if (const auto reported =
-               link::reported_placement(client.line, request.task, request.robot.hex()))
-    request.T_task_base = reported->T_task_base;
-  else
-    throw Failure(reported.error().code,
-                  "request->T_task_base is NULL, and where the robot last "
-                  "reported the task is not told: " +
-                      reported.error().message);
   if (given.profile != nullptr)
     request.profile = given.profile;
   request.deadline = std::chrono::milliseconds(given.deadline_ms);
@@ -36,8 +26,8 @@ FetchRequest read_request(kinship_client& client, const kinship_request& given) 
 }
 
 /// The same for paths to recall.
-FetchRequest read_recall_request(kinship_client& client, const kinship_request& given) {
-  FetchRequest request = read_request(client, given);
+FetchRequest read_recall_request(const kinship_request& given) {
+  FetchRequest request = read_request(given);
   request.experience_bytes = kDefaultExperienceBytes;
   if (given.start != nullptr) {
     if (given.start_dof < 1 || given.start_dof > kMaxDof)
@@ -49,6 +39,20 @@ FetchRequest read_recall_request(kinship_client& client, const kinship_request& 
     request.T_task_goal = read_pose(given.T_task_goal, "request->T_task_goal");
   request.to_configuration = given.to_configuration != 0;
   return request;
+}
+
+/// Without a placement: where the robot stood when it last reported the task, as far as the server
+/// tells.
+void place(FetchRequest& request, kinship_client& client) {
+  if (request.T_task_base)
+    return;
+  const auto reported = link::reported_placement(client.line, request.task, request.robot.hex());
+  if (!reported)
+    throw Failure(reported.error().code,
+                  "request->T_task_base is NULL, and where the robot last "
+                  "reported the task is not told: " +
+                      reported.error().message);
+  request.T_task_base = reported->T_task_base;
 }
 
 /// Why a fetch brought no distribution.
@@ -111,7 +115,8 @@ kinship_code kinship_fetch(kinship_client* client, const kinship_request* reques
     require(client, "client");
     require(distribution, "distribution");
     *distribution = nullptr;
-    const kinship::FetchRequest wanted = read_request(*client, read_structure(request, "request"));
+    kinship::FetchRequest wanted = read_request(read_structure(request, "request"));
+    place(wanted, *client);
     const auto reply = client->line.fetch(wanted);
     if (!reply)
       return remember(reply.error());
@@ -133,7 +138,8 @@ kinship_code kinship_fetch_recall(kinship_client* client, const kinship_request*
     const kinship_request given = read_structure(request, "request");
     const kinship::kinematics::Chain chain =
         client->chain_of(read_robot(given.robot, "request->robot"));
-    kinship::FetchRequest wanted = read_recall_request(*client, given);
+    kinship::FetchRequest wanted = read_recall_request(given);
+    place(wanted, *client);
     wanted.rehearsed = wanted.deadline.count() > 0;
     const auto reply = client->line.fetch(wanted);
     if (!reply)
@@ -196,14 +202,14 @@ kinship_code kinship_follower_open(kinship_client* client, const kinship_request
     require(follower, "follower");
     *follower = nullptr;
     const kinship_request given = read_structure(request, "request");
+    const kinship::link::FollowOptions options{.asks_placement = true};
     if (given.with_recall == 0) {
-      *follower = new kinship_follower{client->line.follow(read_request(*client, given))};
+      *follower = new kinship_follower{client->line.follow(read_request(given), options)};
       return KINSHIP_OK;
     }
     kinship::kinematics::Chain chain = client->chain_of(read_robot(given.robot, "request->robot"));
-    const kinship::FetchRequest wanted = read_recall_request(*client, given);
-    *follower =
-        new kinship_follower{client->line.follow(wanted), std::move(chain), wanted.T_task_base};
+    *follower = new kinship_follower{client->line.follow(read_recall_request(given), options),
+                                     std::move(chain)};
     return KINSHIP_OK;
   });
 }
@@ -247,7 +253,7 @@ kinship_code kinship_follower_recall(kinship_follower* follower, const kinship_r
       return remember(KINSHIP_PENDING, "no paths to recall have come yet");
     if (held != nullptr && held->guide.library().revision == newest->revision)
       return remember(KINSHIP_PENDING, "the paths that are held are the newest");
-    *recall = new kinship_recall(*follower->chain, *newest, follower->T_task_base);
+    *recall = new kinship_recall(*follower->chain, *newest, follower->value->T_task_base());
     return KINSHIP_OK;
   });
 }

@@ -57,7 +57,6 @@ struct kinship_distribution {
 struct kinship_follower {
   std::unique_ptr<kinship::link::Follower> value;
   std::optional<kinship::kinematics::Chain> chain = {};  // with recall
-  std::optional<Eigen::Isometry3d> T_task_base = {};     // that was asked for
   std::atomic<bool> had_paths = false;                   // to recall
 };
 

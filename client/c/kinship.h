@@ -251,8 +251,8 @@ typedef struct kinship_request {
   size_t size;
   const kinship_robot* robot;
   const char* task;
-  /** Where this robot stands; NULL: as it last reported the task (two requests, each within the
-   * client's timeout, also to open a follower; of role reader); if it never did, identity. */
+  /** Where this robot stands; NULL: as it last reported the task (two requests of role reader, each
+   * within the client's timeout; a follower asks the first server it finds); if never, identity. */
   const double* T_task_base;
   const char* profile;  /**< NULL: "default" */
   uint32_t deadline_ms; /**< 0: what is there, within the client's timeout */

@@ -19,10 +19,6 @@ AttemptDelivery::AttemptDelivery(link::Client& server, std::ostream& err, bool p
     : server_(server), err_(err), progress_(err, progress) {}
 
 void AttemptDelivery::hold(const std::string& place, Attempt attempt) {
-  if (const auto fault = validate(attempt)) {
-    refuse(place, fault->message);
-    return;
-  }
   const BatchBytes size = batch_bytes(attempt);
   bytes_ += size.waypoints + size.scenes + size.searches;
   attempts_.push_back(std::move(attempt));

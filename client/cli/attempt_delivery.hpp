@@ -25,7 +25,8 @@ class AttemptDelivery {
   /// \param progress     names what was delivered last on `err`.
   AttemptDelivery(link::Client& server, std::ostream& err, bool progress);
 
-  /// Takes an attempt; when there are enough, they are delivered.
+  /// Takes an attempt; when there are enough, they are delivered (Client::deliver(), which checks
+  /// each).
   /// \param place  where it is from, for messages, e.g. "line 3".
   void hold(const std::string& place, Attempt attempt);
 

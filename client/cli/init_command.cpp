@@ -23,6 +23,7 @@
 #include "robots/models/mesh_files.hpp"
 #include "robots/models/ros_packages.hpp"
 #include "robots/models/suggested_ends.hpp"
+#include "robots/models/text_file.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -343,7 +344,7 @@ void print_choices(const std::vector<Choice>& choices, std::ostream& out) {
 }
 
 /// \throws Failure with the fault.
-void write_chain_file(const models::ChainFile& chain, const fs::path& file) {
+void write_text(const std::string& text, const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error)
@@ -351,8 +352,34 @@ void write_chain_file(const models::ChainFile& chain, const fs::path& file) {
                   "'" + file.parent_path().string() + "' cannot be made: " + error.message());
   std::ostringstream unused;
   files::OutputFile output(file, unused);
-  output.stream() << models::chain_file_text(chain);
+  output.stream() << text;
   output.keep();
+}
+
+/// Leaves the file as it was if it does not say the robot that is meant.
+/// \throws Failure with the fault.
+void write_chain_file(const models::ChainFile& chain, const kinematics::RobotModel& robot,
+                      const fs::path& file) {
+  constexpr std::size_t kMaxBytes = 1'000'000;
+  std::error_code error;
+  std::optional<std::string> before;
+  if (fs::exists(file, error))
+    before = models::read_text(file, kMaxBytes);
+  write_text(models::chain_file_text(chain), file);
+  try {
+    auto read = models::describe_robot({.source = file.parent_path()}).value_or_throw();
+    const auto again = models::read_model(std::move(read)).value_or_throw();
+    if (again.chain.digest() != robot.chain.digest())
+      throw Failure(ErrorCode::Internal, "'" + file.string() + "' says robot " +
+                                             again.chain.digest().short_hex() + ", meant is " +
+                                             robot.chain.digest().short_hex());
+  } catch (const Failure&) {
+    if (before)
+      write_text(*before, file);
+    else
+      fs::remove(file, error);
+    throw;
+  }
 }
 
 }  // namespace
@@ -380,8 +407,7 @@ int init_robot(const InitOptions& options, std::istream* answers, std::ostream& 
     print_warnings(kInit, described.warnings, err);
     const auto robot = models::read_model(std::move(described)).value_or_throw();
     look_at(chooser.arguments(), robot, err);
-    write_chain_file(chain_file_of(chooser.arguments(), robot.description, folder), file);
-    const auto again = models::describe_robot({.source = folder}).value_or_throw();
+    write_chain_file(chain_file_of(chooser.arguments(), robot.description, folder), robot, file);
     out << "wrote '" << file.string() << "' of robot " << robot.chain.digest().short_hex() << ": '"
         << folder.string() << "' is all that commands need now ('kinship robots check "
         << folder.string() << "')\n\n";

@@ -43,9 +43,13 @@ class RowJoiner {
   std::string row_;
 };
 
+AskAdmin asking(Client& server) {
+  return [&server](const AdminRequest& request) { return server.admin(request); };
+}
+
 }  // namespace
 
-std::optional<Error> for_each_row(Client& server, AdminRequest request,
+std::optional<Error> for_each_row(const AskAdmin& ask, AdminRequest request,
                                   const std::function<bool(const std::string& row)>& use,
                                   std::size_t max_rows) {
   std::size_t rows_left = max_rows == 0 ? std::numeric_limits<std::size_t>::max() : max_rows;
@@ -53,7 +57,7 @@ std::optional<Error> for_each_row(Client& server, AdminRequest request,
   request.cursor.clear();
   while (true) {
     request.limit = static_cast<std::uint32_t>(std::min(rows_left, kRowsPerPage));
-    const Result<AdminReply> reply = server.admin(request);
+    const Result<AdminReply> reply = ask(request);
     if (!reply)
       return reply.error();
     if (reply->status != AdminStatus::Ok)
@@ -73,6 +77,12 @@ std::optional<Error> for_each_row(Client& server, AdminRequest request,
   }
 }
 
+std::optional<Error> for_each_row(Client& server, AdminRequest request,
+                                  const std::function<bool(const std::string& row)>& use,
+                                  std::size_t max_rows) {
+  return for_each_row(asking(server), std::move(request), use, max_rows);
+}
+
 Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& request) {
   std::vector<std::string> rows;
   const auto error = for_each_row(server, request, [&](const std::string& row) {
@@ -84,13 +94,22 @@ Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& req
   return rows;
 }
 
-Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
-  Result<std::vector<std::string>> rows = rows_of(server, request);
-  if (!rows)
-    return rows.error();
-  if (rows->empty())
+Result<std::string> first_row_of(const AskAdmin& ask, const AdminRequest& request) {
+  std::optional<std::string> first;
+  const auto error = for_each_row(ask, request, [&](const std::string& row) {
+    if (!first)
+      first = row;
+    return true;
+  });
+  if (error)
+    return *error;
+  if (!first)
     return Error{ErrorCode::Internal, "the server answered without a row"};
-  return rows->front();
+  return *std::move(first);
+}
+
+Result<std::string> first_row_of(Client& server, const AdminRequest& request) {
+  return first_row_of(asking(server), request);
 }
 
 Error unreadable_row(const Error& why) {

@@ -16,12 +16,18 @@
 /// Admin replies of several pages, and the jobs that admin requests begin.
 namespace kinship::link {
 
+/// Sends an admin request and waits for its reply, as Client::admin() does.
+using AskAdmin = std::function<Result<AdminReply>(const AdminRequest&)>;
+
 /// Requests page after page and calls `use` with each row; a row sent in pieces is joined first.
 /// \param request   its cursor and limit are set here.
 /// \param use       returns false to stop.
 /// \param max_rows  0: all.
 /// \return the error, if any: NotFound, InvalidInput (refused), Internal (failed) with the server's
 ///         message; Unavailable; TooLarge for a row that has no end.
+std::optional<Error> for_each_row(const AskAdmin& ask, AdminRequest request,
+                                  const std::function<bool(const std::string& row)>& use,
+                                  std::size_t max_rows = 0);
 std::optional<Error> for_each_row(Client& server, AdminRequest request,
                                   const std::function<bool(const std::string& row)>& use,
                                   std::size_t max_rows = 0);
@@ -30,6 +36,7 @@ std::optional<Error> for_each_row(Client& server, AdminRequest request,
 Result<std::vector<std::string>> rows_of(Client& server, const AdminRequest& request);
 
 /// The document of the first row, for verbs whose reply has one. \return Internal if there is none.
+Result<std::string> first_row_of(const AskAdmin& ask, const AdminRequest& request);
 Result<std::string> first_row_of(Client& server, const AdminRequest& request);
 
 /// The error for a row that cannot be read.

@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "client/link/reported_placement.hpp"
+#include "proto/codec/admin_codec.hpp"
 #include "proto/codec/fetch_codec.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
@@ -85,6 +87,9 @@ class Follower::Implementation {
         announcements_(*participant_,
                        {.on_sample = [this](const Announcement& news) { notice(news); },
                         .on_server = [this] { notice_server(); }}),
+        placing_(options.asks_placement && !request_.T_task_base
+                     ? std::make_shared<Placing>(*participant_, Uuid::random())
+                     : nullptr),
         thread_([this] { run(); }) {}
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
@@ -98,6 +103,8 @@ class Follower::Implementation {
     }
     changed_.notify_all();
     fetch_.cancel();
+    if (const std::shared_ptr<Placing> placing = this->placing())
+      placing->cancel();
     thread_.join();
   }
 
@@ -116,6 +123,11 @@ class Follower::Implementation {
     return recall_;
   }
 
+  std::optional<Eigen::Isometry3d> T_task_base() const {
+    const std::lock_guard lock(newest_mutex_);
+    return request_.T_task_base;
+  }
+
   State state() const {
     const std::lock_guard lock(mutex_);
     return state_;
@@ -132,6 +144,8 @@ class Follower::Implementation {
   }
 
  private:
+  using Placing = dds::Requester<codec::AdminConversation>;
+
   /// On the thread of the subscriber. As long as nothing is held its id is not known: any
   /// distribution of this task and robot may be the one.
   void notice(const Announcement& news) {
@@ -195,8 +209,36 @@ class Follower::Implementation {
     }
   }
 
+  std::shared_ptr<Placing> placing() const {
+    const std::lock_guard lock(mutex_);
+    return placing_;
+  }
+
+  /// \return why the placement is not known yet.
+  std::optional<Error> find_placement() {
+    const std::shared_ptr<Placing> placing = this->placing();
+    if (!placing)
+      return std::nullopt;
+    const auto reported = reported_placement(
+        [&](const AdminRequest& request) {
+          return placing->call(request, Clock::now() + kServerTime + kSlack);
+        },
+        request_.task, request_.robot.hex());
+    if (!reported)
+      return Error{reported.error().code,
+                   "no T_task_base is given, and where the robot last reported the task is not "
+                   "told: " +
+                       reported.error().message};
+    const std::scoped_lock lock(mutex_, newest_mutex_);
+    request_.T_task_base = reported->T_task_base;
+    placing_.reset();
+    return std::nullopt;
+  }
+
   Result<FetchReply> ask() {
     try {
+      if (auto error = find_placement())
+        return *std::move(error);
       return fetch_.call(request_, Clock::now() + kServerTime + kSlack);
     } catch (const std::exception& error) {  // of Cyclone DDS: tried again
       return Error{ErrorCode::Internal, error.what()};
@@ -267,7 +309,8 @@ class Follower::Implementation {
 
   const dds::OwningProcess process_;
   const std::shared_ptr<const dds::Participant> participant_;
-  FetchRequest request_;  // only its knowledge of experience and library changes
+  FetchRequest request_;  // its placement changes under newest_mutex_; its knowledge of experience
+                          // and library is of the thread alone
   const FollowOptions options_;
   milliseconds pause_{0};            // of the thread alone
   mutable std::mutex newest_mutex_;  // guards the three; taken last, held to copy one
@@ -283,7 +326,8 @@ class Follower::Implementation {
   bool is_stopped_ = false;
   dds::Requester<codec::FetchConversation> fetch_;
   dds::Subscriber<codec::AnnouncementPublication> announcements_;
-  std::thread thread_;  // last: uses the others
+  std::shared_ptr<Placing> placing_;  // under mutex_; shared with a call; null: not to be asked
+  std::thread thread_;                // last: uses the others
 };
 
 Follower::Follower(std::shared_ptr<const dds::Participant> participant, FetchRequest request,
@@ -303,6 +347,10 @@ std::shared_ptr<const TaskExperience> Follower::experience() const {
 }
 
 std::shared_ptr<const RecallLibrary> Follower::recall() const { return implementation_->recall(); }
+
+std::optional<Eigen::Isometry3d> Follower::T_task_base() const {
+  return implementation_->T_task_base();
+}
 
 Follower::State Follower::state() const { return implementation_->state(); }
 

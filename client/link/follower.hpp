@@ -1,7 +1,9 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "proto/types/conversations.hpp"
@@ -28,6 +30,10 @@ enum class FollowStatus {
 struct FollowOptions {
   /// Longest pause after a reply without news; the first pause is a twentieth of this.
   std::chrono::milliseconds longest_pause{20'000};
+  /// A request without placement is for where its robot stood when it last reported the task
+  /// (reported_placement.hpp), as the first server that is there says before the first fetch.
+  /// One that does not say it refuses the request.
+  bool asks_placement = false;
 };
 
 /// Holds the newest distribution for one request; reading it never blocks.
@@ -62,6 +68,9 @@ class Follower {
 
   /// The latest library of paths to recall, likewise; null as long as none came.
   std::shared_ptr<const RecallLibrary> recall() const;
+
+  /// Of the request, or as the server said; missing: neither, so the base is at the origin.
+  std::optional<Eigen::Isometry3d> T_task_base() const;
 
   State state() const;
 

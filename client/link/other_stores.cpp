@@ -40,9 +40,22 @@ std::size_t count_kept(const fs::path& store) {
   return count;
 }
 
-void remove_store(const fs::path& store) {
+void delete_all(const fs::path& path) {
   std::error_code error;
-  fs::remove_all(store, error);  // what stays is empty, and goes next time
+  fs::remove_all(path, error);
+  if (error)
+    throw Failure(ErrorCode::Storage, path.string() + ": cannot be deleted: " + error.message());
+}
+
+/// Its epoch last: ended before, what is left is listed.
+void remove_store(const fs::path& store) {
+  if (!is_there(store))
+    return;
+  for_each_entry(store, [](const fs::directory_entry& entry) {
+    if (entry.path().filename() != kEpoch)
+      delete_all(entry.path());
+  });
+  delete_all(store);
 }
 
 }  // namespace
@@ -94,7 +107,6 @@ void OtherStores::bring_back(const Uuid& epoch) const {
   for_each_kept(folder, [&](const fs::path& report) {
     move_file(report, outbox_ / report.parent_path().filename() / report.filename());
   });
-  remove_store(folder);
 }
 
 std::size_t OtherStores::offer_again() const {
@@ -111,11 +123,7 @@ std::size_t OtherStores::drop(const std::vector<KeptReports>& stores) const {
   for (const KeptReports& each : stores) {
     const fs::path folder = outbox_ / kFolder / each.store;
     dropped += count_kept(folder);
-    std::error_code error;
-    fs::remove_all(folder, error);
-    if (error)
-      throw Failure(ErrorCode::Storage,
-                    folder.string() + ": cannot be deleted: " + error.message());
+    remove_store(folder);
   }
   return dropped;
 }
@@ -129,11 +137,11 @@ std::vector<KeptReports> OtherStores::kept() const {
 }
 
 void OtherStores::age(std::chrono::milliseconds sending) const {
-  for (const fs::path& folder : folders()) {
+  for (const fs::path& folder : folders())
     SentReports(folder).age(sending);
+  for (const fs::path& folder : folders())
     if (count_kept(folder) == 0)
       remove_store(folder);
-  }
 }
 
 }  // namespace kinship::link

@@ -33,7 +33,8 @@ class OtherStores {
 
   /// The epoch in which a store was known last; empty: it was never seen, or nothing is kept of it.
   std::optional<Uuid> known_epoch(const Uuid& epoch) const;
-  /// Gives back to the outbox what is kept for the store that it has now.
+  /// Gives back to the outbox what is kept for the store that it has now. Sending does not wait for
+  /// the empty folder to go: age() deletes it.
   void bring_back(const Uuid& epoch) const;
 
   /// Makes all that is kept pending. \return how many reports.
@@ -43,6 +44,7 @@ class OtherStores {
 
   std::vector<KeptReports> kept() const;  ///< of each store of which something is kept
 
+  /// Deletes stores of which nothing is kept any more, too.
   void age(std::chrono::milliseconds sending) const;
 
  private:

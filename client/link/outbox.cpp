@@ -8,6 +8,7 @@
 
 #include "client/link/durable_file.hpp"
 #include "client/link/outbox_files.hpp"
+#include "proto/files/lock_file.hpp"
 #include "proto/files/new_file.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/robot_description_json.hpp"

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "client/link/durable_file.hpp"
+#include "proto/files/lock_file.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::link {

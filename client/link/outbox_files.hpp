@@ -6,8 +6,11 @@
 #include <string>
 #include <string_view>
 
-#include "proto/files/lock_file.hpp"
 #include "proto/types/uuid.hpp"
+
+namespace kinship::files {
+class LockFile;
+}
 
 /// The files of an outbox, one report each. For the sources of this folder only.
 namespace kinship::link {

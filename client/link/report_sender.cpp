@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/link/outbox_files.hpp"
+#include "proto/files/lock_file.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::link {

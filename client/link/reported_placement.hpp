@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "client/link/admin_rows.hpp"
 #include "client/link/client.hpp"
 #include "proto/types/result.hpp"
 
@@ -15,9 +16,13 @@ struct ReportedPlacement {
   std::optional<Eigen::Isometry3d> T_task_base;  ///< known and missing: reported without one
 };
 
-/// Asks the server, in two requests, each up to the client's timeout.
+/// Asks the server, in two requests.
 /// \param robot  its label.
-/// \return Unavailable, or InvalidInput if the server does not tell this client of attempts.
+/// \return unknown also if the server does not know the task or robot; Unavailable, or InvalidInput
+///         if it does not tell this client of attempts.
+Result<ReportedPlacement> reported_placement(const AskAdmin& ask, const std::string& task,
+                                             const std::string& robot);
+/// Each request up to the client's timeout.
 Result<ReportedPlacement> reported_placement(Client& client, const std::string& task,
                                              const std::string& robot);
 

@@ -37,14 +37,21 @@ struct Wish {
   std::int64_t since_ms = 0;
 };
 
-/// Where the robot stood when it last reported the task; missing: that is not known.
-std::optional<Eigen::Isometry3d> known_placement(const ClientHandle& client,
-                                                 const std::string& task, const Digest& robot) {
-  const auto known =
-      client.wait_for<Result<link::ReportedPlacement>>([task, robot](link::Client& line) {
+/// A request without placement is for where the robot stood when it last reported the task.
+/// \throws Failure if the server does not say it.
+void place(const ClientHandle& client, FetchRequest& request) {
+  if (request.T_task_base)
+    return;
+  const auto known = client.wait_for<Result<link::ReportedPlacement>>(
+      [task = request.task, robot = request.robot](link::Client& line) {
         return link::reported_placement(line, task, robot.hex());
       });
-  return known ? known->T_task_base : std::nullopt;
+  if (!known)
+    throw Failure(known.error().code,
+                  "T_task_base is not given, and where the robot last reported the task is not "
+                  "told: " +
+                      known.error().message);
+  request.T_task_base = known->T_task_base;
 }
 
 FetchRequest request_of(const ClientHandle& client, const Wish& wish) {
@@ -56,8 +63,6 @@ FetchRequest request_of(const ClientHandle& client, const Wish& wish) {
   if (!wish.weighting.empty())
     request.selection.weighting = parse_word<Weighting>(wish.weighting).value_or_throw();
   request.robot = client.find(wish.robot);
-  if (!request.T_task_base)
-    request.T_task_base = known_placement(client, request.task, request.robot);
   std::vector<Digest>& sources = request.selection.sources;
   for (const RobotName& source : wish.sources)
     sources.push_back(client.find(source));
@@ -366,6 +371,7 @@ void bind_fetching(ClientClass& client) {
              std::int64_t since_ms, std::uint64_t minimum_generation) {
             FetchRequest request =
                 request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
+            place(self, request);
             request.minimum_generation = minimum_generation;
             request.deadline = to_milliseconds(deadline, "deadline");
             return distribution_of(self.fetch(request), request);
@@ -396,7 +402,8 @@ Raises NotReady, NoExperience, UnknownRobot, FitFailed, Refused or NoServer.)")
                 request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
             const std::shared_ptr<link::Client> line = self.line();
             const py::gil_scoped_release unlocked;
-            return std::make_unique<FollowerHandle>(line->follow(request));
+            return std::make_unique<FollowerHandle>(
+                line->follow(request, {.asks_placement = true}));
           },
           py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("T_task_base") = py::none(),
           py::arg("profile") = "default", py::arg("sources") = std::vector<RobotName>(),
@@ -414,8 +421,9 @@ void bind_guidance(ClientClass& client) {
          const std::string& guide, std::optional<double> share, std::optional<double> control_share,
          bool rehearsed, const std::optional<Array>& start, const std::optional<Array>& T_task_goal,
          bool to_configuration) {
-        const FetchRequest request =
+        FetchRequest request =
             request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
+        place(self, request);
         return guidance_of(self, *robot, request,
                            {deadline, guide, share, control_share, rehearsed, start, T_task_goal,
                             to_configuration});

@@ -62,7 +62,10 @@ int explain(const CLI::App& app, const CLI::ParseError& error, std::ostream& out
     err << app.help();
     return kWrongUsage;
   }
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+  const bool is_option_unknown =
+      error.get_exit_code() != 0 &&  // --help is an answer all the same
+      std::ranges::any_of(unknown, [](const std::string& word) { return word.starts_with("-"); });
+  if (is_option_unknown || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     bool is_value = false;  // of an option that is told already
     for (const std::string& word : unknown) {
       if (!is_value || word.starts_with("-"))

@@ -16,7 +16,8 @@ namespace kinship::manual {
 std::string suggestion_for(const CLI::App& app, const std::string& word);
 
 /// Writes the fault of a command line with corrections of misspelt words, or the text of --help and
-/// --version; to a line that ends where a verb is wanted, the help of what is there.
+/// --version; to a line that ends where a verb is wanted, the help of what is there. An unknown
+/// option is told before other faults of the line, which may come of it.
 /// \return an exit code (proto/types/exit_code.hpp).
 int explain(const CLI::App& app, const CLI::ParseError& error, std::ostream& out,
             std::ostream& err);

@@ -25,6 +25,8 @@ inline Uuid next_epoch(const Uuid& before) {
 }
 
 /// The store of an epoch, as its text begins, e.g. "ba62759c-d634".
-inline std::string store_name(const Uuid& epoch) { return epoch.text().substr(0, 13); }
+inline std::string store_name(const Uuid& epoch) {
+  return epoch.text().substr(0, 2 * kStoreBytes + 1);  // a dash is among the digits
+}
 
 }  // namespace kinship

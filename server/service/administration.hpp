@@ -138,7 +138,7 @@ class Administration {
   AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
   /// The robot that a request's filters name. \throws Failure(NotFound), of its task as well.
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
-  std::optional<Digest> robot_of_restoration(const AdminRequest& request) const;
+  std::vector<Uuid> reports_to_restore(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
   void forget_tasks_of(const Digest& robot);
   void drop_tasks(std::initializer_list<std::string> tasks,
@@ -146,9 +146,6 @@ class Administration {
   void for_each_task(const std::function<void(const TaskSummary&)>& take) const;
   void name_solver(RobotSummary& summary);
   AdminPage retired(Result<Retirement> retirement, const std::string& what);
-  /// Restores the retired paths of a robot and a task, each empty for all.
-  void restore_listed(const std::optional<Digest>& robot, const std::string& task,
-                      Restoration& restored);
 
   const Parts parts_;
   AuditTrail trail_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -90,11 +89,9 @@ AdminPage Administration::restore_path(const Call& call) {
         Error{ErrorCode::InvalidInput, "restore_path: takes a path's report, or a task or robot"});
   Restoration restored;
   restored.task = request.task;
-  const std::optional<Digest> robot = robot_of_restoration(request);
-  std::vector<Uuid> one;
+  const std::vector<Uuid> reports = reports_to_restore(request);
   if (!request.argument.empty()) {
-    one.push_back(report_of(parts_.store, request.argument));
-    const std::optional<Attempt> attempt = parts_.store.find_attempt(one.front());
+    const std::optional<Attempt> attempt = parts_.store.find_attempt(reports.front());
     if (!attempt)
       return page_of(not_found("report", request.argument));
     restored.task = attempt->task;
@@ -110,10 +107,7 @@ AdminPage Administration::restore_path(const Call& call) {
     parts_.on_change(restored.task, std::to_string(restored.paths) + " paths restored");
   };
   try {
-    if (one.empty())
-      restore_listed(robot, request.task, restored);
-    else
-      restore_paths(parts_.store, one, restored);
+    restore_paths(parts_.store, reports, parts_.stop, restored);
   } catch (const Failure& failure) {
     tell();
     return failure.code() == ErrorCode::Unavailable ? page_of_unfinished(failure.error())
@@ -126,18 +120,13 @@ AdminPage Administration::restore_path(const Call& call) {
   return page_of(std::move(restored));
 }
 
-/// The robot to filter by. \throws Failure(NotFound), also if its task neither is listed nor, being
-/// removed, has paths.
-std::optional<Digest> Administration::robot_of_restoration(const AdminRequest& request) const {
-  AdminRequest known = request;
-  if (!request.task.empty() && !parts_.store.list_paths({}, request.task, {}, 1).rows.empty())
-    known.task.clear();
-  return robot_filter(known);
-}
-
-void Administration::restore_listed(const std::optional<Digest>& robot, const std::string& task,
-                                    Restoration& restored) {
-  // Listed before the first is restored: the listing grows with each.
+/// Of one path, or of the retired ones of a robot and task, each empty for all, in the order in
+/// which they came. \throws Failure(NotFound)
+std::vector<Uuid> Administration::reports_to_restore(const AdminRequest& request) const {
+  if (!request.argument.empty())
+    return {report_of(parts_.store, request.argument)};
+  const std::optional<Digest> robot = robot_filter({.robot = request.robot});
+  const std::string& task = request.task;
   std::vector<Uuid> retired;
   std::string cursor;
   do {
@@ -151,17 +140,9 @@ void Administration::restore_listed(const std::optional<Digest>& robot, const st
   // A removed task is not listed, and may be restored.
   if (retired.empty() && !task.empty() && !parts_.store.find_task(task))
     throw Failure(no_task(parts_.store, task));
-  std::ranges::reverse(retired);  // the oldest first, as they came
+  std::ranges::reverse(retired);
   retired.erase(std::unique(retired.begin(), retired.end()), retired.end());
-  for (std::span<const Uuid> left = retired; !left.empty();) {
-    if (parts_.stop.stop_requested())
-      throw Failure(ErrorCode::Unavailable, "the server is stopping after " +
-                                                std::to_string(restored.paths) +
-                                                " paths were restored; ask again for the rest");
-    const std::size_t next = std::min(left.size(), kMaxAttemptsPerBatch);
-    restore_paths(parts_.store, left.first(next), restored);
-    left = left.subspan(next);
-  }
+  return retired;
 }
 
 AdminPage Administration::rename_task(const Call& call) {

@@ -238,15 +238,10 @@ void FetchService::new_experience(std::string_view task) {
   catalog_.new_experience(task);
 }
 
-void FetchService::forget_task(const std::string& task) {
+void FetchService::forget(const std::string& task, Loss loss) {
   experience_.forget(task);
-  rehearsals_.forget(task);
+  rehearsals_.forget(task, loss);
   catalog_.forget(task);
-}
-
-void FetchService::drop_task(const std::string& task) {
-  forget_task(task);
-  rehearsals_.forget(task, rehearsal::RehearsalScheduler::Loss::Task);
 }
 
 void FetchService::forget_robot(const Digest& robot) {

@@ -44,8 +44,8 @@ class FetchService final : public ServedGuidance {
   void new_experience(std::string_view task) override;
   /// An attempt was committed.
   void add(const catalog::AttemptCost& cost) { advice_.add(cost); }
-  void forget_task(const std::string& task) override;
-  void drop_task(const std::string& task) override;
+  void forget_task(const std::string& task) override { forget(task, Loss::Paths); }
+  void drop_task(const std::string& task) override { forget(task, Loss::Task); }
   void forget_robot(const Digest& robot) override;
   void forget_distribution(const Digest& id) override { catalog_.evict(id); }
   /// Stops serving from memory data that another server changed in the store. One call at a time.
@@ -72,6 +72,8 @@ class FetchService final : public ServedGuidance {
   std::size_t queued_fits() const { return fitters_.queued(); }
 
  private:
+  using Loss = rehearsal::RehearsalScheduler::Loss;
+  void forget(const std::string& task, Loss loss);
   catalog::Catalog::Options catalog_options();
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void count_fetch(const FetchReply& reply);

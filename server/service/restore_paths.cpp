@@ -141,8 +141,13 @@ Uuid restored_report(const Uuid& retired) {
   return report;
 }
 
-void restore_paths(store::Store& store, std::span<const Uuid> reports, Restoration& restored) {
+void restore_paths(store::Store& store, std::span<const Uuid> reports, const std::stop_token& stop,
+                   Restoration& restored) {
   while (!reports.empty()) {
+    if (stop.stop_requested())
+      throw Failure(ErrorCode::Unavailable, "the server is stopping after " +
+                                                std::to_string(restored.paths) +
+                                                " paths were restored; ask again for the rest");
     store::ReplicatedReports read = store.read_reports(
         reports.first(std::min(reports.size(), kMaxAttemptsPerBatch)), kMaxBytes);
     std::map<Uuid, store::ReplicatedReport> found;

@@ -140,7 +140,9 @@ class CRecalls : public testing::Test {
 };
 
 TEST_F(CRecalls, ARobotStandsWhereItLastReportedTheTask) {
-  const test::ServerProcess server({.store = directory_ / "fleet.db", .domain = domain_.number()});
+  const test::ServerProcess::Options served{.store = directory_ / "fleet.db",
+                                            .domain = domain_.number()};
+  std::optional<test::ServerProcess> server(served);
   ASSERT_NO_FATAL_FAILURE(register_robot());
   const double here[7] = {0.5, 0, 0, 0, 0, 0, 1};
   const std::vector<PosedQuery> queries = cell_.queries(0, 6);
@@ -150,6 +152,17 @@ TEST_F(CRecalls, ARobotStandsWhereItLastReportedTheTask) {
   kinship_distribution* fetched = nullptr;
   request_.T_task_base = nullptr;
   ASSERT_EQ(kinship_fetch(client_, &request_, &fetched), KINSHIP_OK) << kinship_error_text();
+
+  // A follower that is opened without a server asks the one that comes.
+  server.reset();
+  kinship_follower* follower = nullptr;
+  ASSERT_EQ(kinship_follower_open(client_, &request_, &follower), KINSHIP_OK)
+      << kinship_error_text();
+  server.emplace(served);
+  kinship_distribution* followed = nullptr;
+  ASSERT_EQ(kinship_follower_newer(follower, nullptr, kEnough_ms, &followed), KINSHIP_OK)
+      << kinship_error_text();
+  kinship_follower_close(follower);
 
   const std::string folder = test::source_dir() + "/robots/models/panda";
   kinship_robot_file file{};
@@ -166,15 +179,19 @@ TEST_F(CRecalls, ARobotStandsWhereItLastReportedTheTask) {
   query.start = queries[0].start.data();
   query.goals = queries[0].goals.data();
   query.goal_count = 1;
-  query.distribution = fetched;
   kinship_plan* plan = nullptr;
-  EXPECT_EQ(kinship_plan_find(planner, &query, &plan), KINSHIP_INVALID_INPUT);
-  EXPECT_STREQ(kinship_error_text(),
-               "T_task_base is not given, so identity, the guidance was made for 0.5 0 0 0 0 0 1");
+  for (const kinship_distribution* made : {followed, fetched}) {
+    query.distribution = made;
+    EXPECT_EQ(kinship_plan_find(planner, &query, &plan), KINSHIP_INVALID_INPUT);
+    EXPECT_STREQ(
+        kinship_error_text(),
+        "T_task_base is not given, so identity, the guidance was made for 0.5 0 0 0 0 0 1");
+  }
   around.T_task_base = here;
   EXPECT_EQ(kinship_plan_find(planner, &query, &plan), KINSHIP_OK) << kinship_error_text();
   kinship_plan_free(plan);
   kinship_planner_free(planner);
+  kinship_distribution_free(followed);
   kinship_distribution_free(fetched);
 }
 

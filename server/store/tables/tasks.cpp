@@ -60,11 +60,10 @@ std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
 
 Page<TaskSummary> read_tasks(Session& session, const std::string& which,
                              std::span<const Parameter> parameters, std::int64_t limit) {
-  const std::string intact =
-      session.is_intact("task") + " AND " + std::string(kIsListed) + " AND " + which;
-  auto robots = robots_of_tasks(session, intact, parameters);
+  const std::string listed = is_listed_task(session) + " AND " + which;
+  auto robots = robots_of_tasks(session, listed, parameters);
   return read_page<TaskSummary>(
-      session.query_with("SELECT id, name FROM task WHERE " + intact, parameters), limit,
+      session.query_with("SELECT id, name FROM task WHERE " + listed, parameters), limit,
       [&](const Row& task) {
         return summary_of(task.column_text(1), std::move(robots[task.column_integer(0)]));
       },
@@ -72,6 +71,10 @@ Page<TaskSummary> read_tasks(Session& session, const std::string& which,
 }
 
 }  // namespace
+
+std::string is_listed_task(Session& session) {
+  return session.is_intact("task") + " AND " + std::string(kIsListed);
+}
 
 std::int64_t ensure_task(Session& session, std::string_view task) {
   const std::string find = "SELECT id FROM task WHERE name = $1 AND " + session.is_intact("task");
@@ -110,7 +113,7 @@ std::optional<TaskSummary> summary_of_task(Session& session, std::string_view ta
 }
 
 std::vector<std::string> select_task_names(Session& session, const WantedNames& wanted) {
-  std::string condition = session.is_intact("task") + " AND " + std::string(kIsListed);
+  std::string condition = is_listed_task(session);
   if (wanted.with_paths)
     condition += " AND EXISTS (SELECT 1 FROM experience WHERE task_id = task.id AND paths > 0)";
   std::vector<std::string> names;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +15,10 @@
 #include "server/store/store.hpp"
 
 namespace kinship::store {
+
+/// The condition that a row of table task is listed: intact, and not removed or with attempts that
+/// came since.
+std::string is_listed_task(Session& session);
 
 /// The task's internal id; makes the task if it is missing.
 std::int64_t ensure_task(Session& session, std::string_view task);

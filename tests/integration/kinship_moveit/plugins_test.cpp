@@ -47,6 +47,33 @@ class KINSHIP_FIXTURE : public PluginCell {
     constraint.orientation.z = turn.z();
     constraint.orientation.w = turn.w();
   }
+  /// A request past the post that keeps the orientation of the hand where the base is turned.
+  struct KeptOrientation {
+    std::shared_ptr<planning_scene::PlanningScene> scene;
+    Eigen::Matrix3d R_world_kept;
+    MotionPlanRequest asked;
+  };
+  /// \param base_rad        of the orientation.
+  /// \param tolerances_rad  about x, y and z.
+  KeptOrientation keep_orientation(planning_interface::PlannerManager& planner, double base_rad,
+                                   const Eigen::Vector3d& tolerances_rad) {
+    const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
+    const Eigen::Isometry3d T(Eigen::Translation3d(0.6, 0, 0.4));
+    auto answer = plan_past(planner, box, T, {});
+    EXPECT_NE(trajectory_of(answer), nullptr) << "the robot is read";
+    KeptOrientation made{empty_scene(turned(-0.7)), {}, request(turned(0.7))};
+    add(*made.scene, "post", box, T);
+    moveit::core::RobotState state = made.scene->state;
+    state.q = turned(base_rad);
+    made.R_world_kept = state.getGlobalLinkTransform("hand").linear();
+    auto& kept = made.asked.path_constraints.orientation_constraints.emplace_back();
+    kept.link_name = "hand";  // which panda_link8 holds
+    set_orientation(made.R_world_kept, kept);
+    kept.absolute_x_axis_tolerance = tolerances_rad.x();
+    kept.absolute_y_axis_tolerance = tolerances_rad.y();
+    kept.absolute_z_axis_tolerance = tolerances_rad.z();
+    return made;
+  }
   bool is_past_the_post(MotionPlanResponse& response) const { return is_past(response, post()); }
   bool is_past(MotionPlanResponse& response, const collision::Surroundings& surroundings) const {
     if (trajectory_of(response) == nullptr)
@@ -207,41 +234,28 @@ TEST_F(KINSHIP_FIXTURE, AnObjectOfSeveralShapesIsPlannedForAndReported) {
 
 TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptAlongThePathAndOtherConstraintsAreRefusedByName) {
   const auto planner = this->planner(node());
-  const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
-  const Eigen::Isometry3d T(Eigen::Translation3d(0.6, 0, 0.4));
-  auto answer = plan_past(*planner, box, T, {});
-  ASSERT_NE(trajectory_of(answer), nullptr) << "the robot is read";
-  const auto scene = empty_scene(turned(-0.7));
-  add(*scene, "post", box, T);
-  MotionPlanRequest upright = request(turned(0.7));
-  upright.path_constraints.orientation_constraints.emplace_back();
-  auto& kept = upright.path_constraints.orientation_constraints.front();
-  kept.link_name = "hand";  // which panda_link8 holds
-  const Eigen::Matrix3d R_world_hand = scene->state.getGlobalLinkTransform("hand").linear();
-  set_orientation(R_world_hand, kept);
-  kept.absolute_x_axis_tolerance = kept.absolute_y_axis_tolerance = 0.2;
-  kept.absolute_z_axis_tolerance = 3.2;
-  answer = solve(*planner, scene, upright);
+  const KeptOrientation upright = keep_orientation(*planner, -0.7, {0.2, 0.2, 3.2});
+  auto answer = solve(*planner, upright.scene, upright.asked);
   ASSERT_TRUE(is_past_the_post(answer));
   const auto tilt = [&](std::size_t i) {
     return std::acos(std::min(
         1.0,
         trajectory_of(answer)->getWayPoint(i).getGlobalLinkTransform("hand").linear().col(2).dot(
-            R_world_hand.col(2))));
+            upright.R_world_kept.col(2))));
   };
   for (std::size_t i = 0; i < trajectory_of(answer)->getWayPointCount(); ++i)
     EXPECT_LT(tilt(i), 0.2) << i;
 
   const auto refusal = [&](const MotionPlanRequest& asked) {
     testing::internal::CaptureStderr();
-    auto refused = solve(*planner, scene, asked);
+    auto refused = solve(*planner, upright.scene, asked);
     EXPECT_EQ(trajectory_of(refused), nullptr);
     return testing::internal::GetCapturedStderr();
   };
-  MotionPlanRequest tilted = upright;
+  MotionPlanRequest tilted = upright.asked;
   tilted.path_constraints.orientation_constraints.front().absolute_y_axis_tolerance = 3.2;
   EXPECT_NE(refusal(tilted).find("bound no tilt"), std::string::npos);
-  MotionPlanRequest elbow = upright;
+  MotionPlanRequest elbow = upright.asked;
   elbow.path_constraints.orientation_constraints.front().link_name = "panda_link4";
   EXPECT_NE(refusal(elbow).find("does not move with 'panda_link8'"), std::string::npos);
   MotionPlanRequest joints = request(turned(0.7));
@@ -251,26 +265,13 @@ TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptAlongThePathAndOtherConstraintsAreRef
 
 TEST_F(KINSHIP_FIXTURE, AnOrientationIsKeptWithinThreeTolerances) {
   const auto planner = this->planner(node());
-  const auto box = std::make_shared<shapes::Box>(0.05, 0.05, 0.8);
-  const Eigen::Isometry3d T(Eigen::Translation3d(0.6, 0, 0.4));
-  auto answer = plan_past(*planner, box, T, {});
-  ASSERT_NE(trajectory_of(answer), nullptr) << "the robot is read";
-  const auto scene = empty_scene(turned(-0.7));
-  add(*scene, "post", box, T);
-  moveit::core::RobotState middle = scene->state;  // the base turns by 0.7 rad to either side
-  middle.q = turned(0);
-  const Eigen::Matrix3d R_world_middle = middle.getGlobalLinkTransform("hand").linear();
-  MotionPlanRequest asked = request(turned(0.7));
-  auto& kept = asked.path_constraints.orientation_constraints.emplace_back();
-  kept.link_name = "hand";
-  set_orientation(R_world_middle, kept);
-  kept.absolute_x_axis_tolerance = kept.absolute_y_axis_tolerance = 0.3;
-  kept.absolute_z_axis_tolerance = 1.4;
-  answer = solve(*planner, scene, asked);
+  // The base turns by 0.7 rad to either side.
+  const KeptOrientation middle = keep_orientation(*planner, 0, {0.3, 0.3, 1.4});
+  auto answer = solve(*planner, middle.scene, middle.asked);
   ASSERT_TRUE(is_past_the_post(answer));
   for (std::size_t i = 0; i < trajectory_of(answer)->getWayPointCount(); ++i) {
     const Eigen::Matrix3d R =
-        R_world_middle.transpose() *
+        middle.R_world_kept.transpose() *
         trajectory_of(answer)->getWayPoint(i).getGlobalLinkTransform("hand").linear();
     EXPECT_LE(std::abs(std::atan2(-R(1, 2), R(2, 2))), 0.3) << i;
     EXPECT_LE(std::abs(std::asin(R(0, 2))), 0.3) << i;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/store/tables/pages.hpp"
+#include "server/store/tables/tasks.hpp"
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
@@ -44,11 +45,14 @@ std::string newest_distributions(Session& session, const PairFilter& filter,
          are_asked_for;
 }
 
-constexpr std::string_view kCounts =
-    "SELECT (SELECT count(*) FROM robot WHERE label NOT LIKE 'removed %'),"
-    " (SELECT count(*) FROM task), count(*), coalesce(sum(bytes), 0)::bigint,"
-    " (SELECT max(version) FROM schema_migration), (SELECT count(*) FROM mesh),"
-    " (SELECT coalesce(sum(length(payload)), 0)::bigint FROM mesh) FROM distribution_use";
+std::string counts_of_all(Connection& connection) {
+  return "SELECT (SELECT count(*) FROM robot WHERE label NOT LIKE 'removed %'),"
+         " (SELECT count(*) FROM task WHERE " +
+         is_listed_task(connection) +
+         "), count(*), coalesce(sum(bytes), 0)::bigint,"
+         " (SELECT max(version) FROM schema_migration), (SELECT count(*) FROM mesh),"
+         " (SELECT coalesce(sum(length(payload)), 0)::bigint FROM mesh) FROM distribution_use";
+}
 
 constexpr std::string_view kPairs =
     "SELECT coalesce(sum(paths), 0)::bigint, coalesce(sum(attempts), 0)::bigint,"
@@ -109,7 +113,8 @@ Page<DistributionSummary> page_of_distributions(Connection& connection, const Pa
 }
 
 void count_rows(Connection& connection, StoreStatus& status) {
-  const std::array<Request, 5> requests = {Request{kCounts}, Request{kPairs}, Request{kDamaged},
+  const std::string of_all = counts_of_all(connection);
+  const std::array<Request, 5> requests = {Request{of_all}, Request{kPairs}, Request{kDamaged},
                                            Request{kBytes}, Request{kMeansOfAll}};
   const std::vector<Rows> rows = connection.query_all(requests);
   const Row counts = rows[0].front(), pairs = rows[1].front(), damaged = rows[2].front();

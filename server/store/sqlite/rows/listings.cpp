@@ -12,6 +12,7 @@
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/quarantine_rows.hpp"
 #include "server/store/tables/pages.hpp"
+#include "server/store/tables/tasks.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
@@ -151,7 +152,7 @@ void count_rows(Database& database, StoreStatus& status) {
   };
   std::uint64_t schema = 0;
   count(status.robots, "robots", "SELECT count(*) FROM robot WHERE label NOT GLOB 'removed *'");
-  count(status.tasks, "tasks", "SELECT count(*) FROM task");
+  count(status.tasks, "tasks", "SELECT count(*) FROM task WHERE " + is_listed_task(database));
   count(status.paths, "paths", "SELECT coalesce(sum(paths), 0) FROM experience");
   count(status.dropped_paths, "dropped paths", "SELECT coalesce(sum(dropped), 0) FROM experience");
   count(status.most_paths_of_pair, "paths of robots and tasks",

@@ -1,5 +1,3 @@
-#include "client/cli/commands.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,26 +15,12 @@
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/urdf_parses.hpp"
+#include "tests/unit/client/cli/run_command.hpp"
 
 namespace kinship::cli::commands_test {
 namespace {
 
 const std::string kModels = test::source_dir() + "/robots/models/";
-
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-Answer run_command(const std::vector<std::string>& arguments) {
-  std::vector<const char*> argv = {"kinship"};
-  for (const std::string& argument : arguments)
-    argv.push_back(argument.c_str());
-  std::ostringstream out;
-  std::ostringstream err;
-  const int code = run(static_cast<int>(argv.size()), argv.data(), out, err);
-  return {code, out.str(), err.str()};
-}
 
 /// A command for a server that is not there.
 Answer run_without_server(std::vector<std::string> command, const char* timeout_s = "0.1") {
@@ -79,39 +63,6 @@ TEST(Commands, APageAndADocumentAreNotBothForStandardOutput) {
       run_without_server({"robots", "compare", "--task", "pick", "--json", "--output", "-"});
   EXPECT_EQ(answer.code, kWrongUsage);
   EXPECT_NE(answer.err.find("--json and --output -"), std::string::npos) << answer.err;
-}
-
-TEST(Commands, HelpIsAnAnswer) {
-  for (const std::string group : {"robots", "tasks", "paths", "distributions"}) {
-    const Answer answer = run_command({group, "list", "--help"});
-    EXPECT_EQ(answer.code, kDone);
-    EXPECT_NE(answer.out.find("Example:"), std::string::npos) << answer.out;
-  }
-}
-
-TEST(Commands, AMisspeltWordIsAnsweredWithTheNearestOne) {
-  const auto error = [](const std::vector<std::string>& words) { return run_command(words).err; };
-  EXPECT_NE(error({"robtos"}).find("'robtos' (did you mean 'robots'?)"), std::string::npos);
-  EXPECT_NE(error({"paths", "lsit"}).find("'lsit' (did you mean 'list'?)"), std::string::npos)
-      << error({"paths", "lsit"});
-  EXPECT_NE(error({"paths", "list", "--tsk", "pick"}).find("'--tsk' (did you mean '--task'?)"),
-            std::string::npos)
-      << error({"paths", "list", "--tsk", "pick"});
-  EXPECT_EQ(error({"frobnicate"}).find("did you mean"), std::string::npos);
-  EXPECT_NE(error({"paths", "list", "--output", "json"}).find("(did you mean '-o'?)"),
-            std::string::npos)
-      << error({"paths", "list", "--output", "json"});
-}
-
-TEST(Commands, HelpAndVersionAreWordsToo) {
-  EXPECT_EQ(run_command({"help", "paths", "list"}).out,
-            run_command({"paths", "list", "--help"}).out);
-  EXPECT_EQ(run_command({"help"}).out, run_command({"--help"}).out);
-  EXPECT_EQ(run_command({"version"}).out, run_command({"--version"}).out);
-  EXPECT_NE(run_command({"version"}).out, "");
-  const Answer group = run_command({"paths"});
-  EXPECT_EQ(group.code, kWrongUsage);
-  EXPECT_NE(group.err.find("  retire "), std::string::npos) << group.err;
 }
 
 TEST(Commands, AHostThatNobodyKnowsIsNamedAtOnce) {
@@ -199,50 +150,6 @@ TEST(Commands, AFileThatCannotBeWrittenIsNamedBeforeAServerIsAsked) {
     const Answer answer = run_without_server(command);
     EXPECT_EQ(answer.code, kFailed) << answer.err;
     EXPECT_NE(answer.err.find("/nowhere/rows"), std::string::npos) << answer.err;
-  }
-}
-
-TEST(Commands, TheHelpOfANounIsAboutThatNoun) {
-  const Answer answer = run_command({"robots", "--help"});
-  EXPECT_EQ(answer.code, kDone);
-  EXPECT_EQ(answer.out.find("paths list"), std::string::npos) << answer.out;
-  EXPECT_NE(answer.out.find("Exit codes: 0 done"), std::string::npos) << answer.out;
-}
-
-TEST(Commands, EachHasHelpWithAnExample) {
-  const std::vector<std::vector<std::string>> commands = {{"status"},
-                                                          {"backup"},
-                                                          {"backup", "list"},
-                                                          {"backup", "download"},
-                                                          {"watch"},
-                                                          {"audit"},
-                                                          {"jobs", "list"},
-                                                          {"jobs", "wait"},
-                                                          {"jobs", "cancel"},
-                                                          {"robots", "register"},
-                                                          {"robots", "rename"},
-                                                          {"robots", "remove"},
-                                                          {"robots", "init"},
-                                                          {"robots", "links"},
-                                                          {"robots", "frames"},
-                                                          {"robots", "suggest-srdf"},
-                                                          {"tasks", "reset"},
-                                                          {"tasks", "rename"},
-                                                          {"tasks", "remove"},
-                                                          {"tasks", "experience"},
-                                                          {"paths", "export"},
-                                                          {"paths", "import"},
-                                                          {"paths", "retire"},
-                                                          {"paths", "restore"},
-                                                          {"distributions", "fetch"},
-                                                          {"distributions", "explain"},
-                                                          {"distributions", "evict"},
-                                                          {"configurations", "export"}};
-  for (std::vector<std::string> command : commands) {
-    command.push_back("--help");
-    const Answer answer = run_command(command);
-    EXPECT_EQ(answer.code, kDone) << command.front();
-    EXPECT_NE(answer.out.find("Example"), std::string::npos) << answer.out;
   }
 }
 

@@ -101,6 +101,20 @@ TEST_F(Init, WritesNothingForARobotThatCannotBe) {
   EXPECT_EQ(init({.source = folder_ / "no.urdf"}).code, kNotFound);
 }
 
+TEST_F(Init, LeavesNoFileThatSaysNoRobot) {
+  const auto strange = folder_ / "no-utf-8-\xff";  // TOML has no such text
+  std::filesystem::create_directory(strange);
+  std::filesystem::copy(kArm, strange / "robot.urdf");
+  const Answer answer = init({.source = strange / "robot.urdf"});
+  EXPECT_NE(answer.code, kDone);
+  EXPECT_NE(answer.err.find("robot.urdf: no such file"), std::string::npos) << answer.err;
+  EXPECT_FALSE(std::filesystem::exists(made_ / "chain.toml"));
+  ASSERT_EQ(init({.source = kArm}).code, kDone);
+  const std::string before = text();
+  EXPECT_NE(init({.source = strange / "robot.urdf"}, nullptr, true).code, kDone);
+  EXPECT_EQ(text(), before);
+}
+
 TEST_F(Init, NamesAPackageThatIsNotFoundAndAsksForItOnATerminal) {
   std::string urdf = models::read_text(kArm, 100'000);
   const std::string box = R"(<box size="0.06 0.13 0.09"/>)";

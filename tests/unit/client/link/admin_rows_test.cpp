@@ -1,4 +1,5 @@
-// Pages, jobs and names of robots against an admin replier in this process, over loopback.
+// Pages, jobs, names and placements of robots against an admin replier in this process, over
+// loopback.
 
 #include "client/link/admin_rows.hpp"
 
@@ -7,6 +8,7 @@
 #include <map>
 #include <thread>
 
+#include "client/link/reported_placement.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/dds/replier.hpp"
 #include "proto/json/admin_rows_json.hpp"
@@ -198,6 +200,27 @@ TEST(ResolveRobots, WithoutAServerIsUnavailable) {
   const auto robots = resolve_robots(asker, {"panda"});
   ASSERT_FALSE(robots);
   EXPECT_EQ(robots.error().code, ErrorCode::Unavailable);
+}
+
+TEST(ReportedPlacements, ATaskThatTheServerDoesNotKnowIsNotReported) {
+  const test::ReservedDomain domain;
+  AdminStatus status = AdminStatus::NotFound;
+  const AdminServer server(domain.number(), [&](const AdminRequest& request) {
+    EXPECT_EQ(request.verb, AdminVerb::FindAttempts);
+    AdminReply reply;
+    reply.status = status;
+    reply.message = "no task 'x'";
+    return reply;
+  });
+  Client asker = client(domain.number());
+  const auto unknown = reported_placement(asker, "x", "panda");
+  ASSERT_TRUE(unknown) << unknown.error().message;
+  EXPECT_FALSE(unknown->is_known);
+  EXPECT_FALSE(unknown->T_task_base);
+  status = AdminStatus::Refused;
+  const auto refused = reported_placement(asker, "x", "panda");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::InvalidInput);
 }
 
 }  // namespace

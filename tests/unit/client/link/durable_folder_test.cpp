@@ -1,7 +1,6 @@
 // What is synced to disk, seen at the call of the system: fsync() of this program is the one below.
 
 #include <gtest/gtest.h>
-#include <sys/fsuid.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "client/link/outbox.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/client/link/another_user.hpp"
 
 namespace {
 
@@ -90,20 +90,6 @@ TEST_F(DurableFolder, APlaceThatCannotBeWrittenIsToldWithWhatToName) {
   EXPECT_NE(said_of(EACCES).find("; name a folder"), std::string::npos);
   EXPECT_EQ(said_of(ENOSPC), "/home/u/.local: cannot make the folder: No space left on device");
 }
-
-/// Files of root are another user's to this thread while it lives.
-class AnotherUser {
- public:
-  AnotherUser() { ::setfsuid(kNobody); }
-  AnotherUser(const AnotherUser&) = delete;
-  AnotherUser& operator=(const AnotherUser&) = delete;
-  ~AnotherUser() { ::setfsuid(::geteuid()); }
-
-  static bool is_root() { return ::setfsuid(static_cast<uid_t>(-1)) == 0; }
-
- private:
-  static constexpr uid_t kNobody = 65534;
-};
 
 TEST_F(DurableFolder, AFileThatCannotBeReadIsToldWithoutAPlaceToWrite) {
   write_durably(folder / "file", "text");

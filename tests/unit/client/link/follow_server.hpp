@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -17,12 +18,19 @@ namespace kinship::link {
 /// announces what it is told to.
 class FollowServer {
  public:
-  FollowServer(std::uint32_t domain, FetchReply reply)
+  using AnswerAdmin = std::function<AdminReply(const AdminRequest&)>;
+
+  FollowServer(std::uint32_t domain, FetchReply reply, AnswerAdmin administer = {})
       : reply_(std::move(reply)),
         participant_({.domain = domain, .role = dds::Role::Server}),
         loop_(participant_),
         fetch_(participant_, loop_,
                [this](const FetchRequest& wanted, const auto& answer) { answer(take(wanted)); }),
+        admin_(
+            participant_, loop_,
+            [administer = std::move(administer)](const AdminRequest& request, const auto& answer) {
+              answer(administer ? administer(request) : AdminReply());
+            }),
         announcements_(participant_, loop_),
         thread_(
             [this] { loop_.run([] { return std::chrono::steady_clock::time_point::max(); }); }) {}
@@ -81,6 +89,7 @@ class FollowServer {
   dds::Participant participant_;
   dds::WaitLoop loop_;
   dds::Replier<codec::FetchConversation> fetch_;
+  dds::Replier<codec::AdminConversation> admin_;
   dds::Publisher<codec::AnnouncementPublication> announcements_;
   std::thread thread_;
 };

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "client/link/client.hpp"
+#include "proto/json/admin_rows_json.hpp"
+#include "proto/json/attempt_json.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/reserved_domain.hpp"
@@ -75,6 +77,41 @@ TEST_F(FollowerTest, HoldsWhatTheServerHasUnderALeaseOfAMinute) {
   EXPECT_EQ(follower->newest(), newest);
   EXPECT_TRUE(becomes(*follower, FollowStatus::Ready));
   EXPECT_EQ(server.last_request().follow, 60s);
+}
+
+TEST_F(FollowerTest, AsksWhereTheRobotStandsBeforeItFetches) {
+  Attempt attempt = values_.attempt(5);
+  attempt.T_task_base = values_.pose();
+  FollowServer server(domain_.number(), ready(), [&](const AdminRequest& wanted) {
+    AdminReply reply;
+    reply.status = AdminStatus::Ok;
+    AttemptSummary summary;
+    summary.report_uuid = attempt.report_uuid;
+    summary.robot = distribution_.robot;
+    reply.rows.push_back(wanted.verb == AdminVerb::FindAttempts ? json::to_json(summary)
+                                                                : json::to_json(attempt));
+    return reply;
+  });
+  const auto follower = client().follow(request(), {.asks_placement = true});
+  ASSERT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
+  const auto told = follower->T_task_base();
+  ASSERT_TRUE(told);
+  EXPECT_TRUE(told->isApprox(*attempt.T_task_base));
+  EXPECT_TRUE(server.first_request().T_task_base.value().isApprox(*told));
+}
+
+TEST_F(FollowerTest, FetchesForNoPlacementThatItIsNotTold) {
+  const FollowServer server(domain_.number(), ready(), [](const AdminRequest&) {
+    AdminReply reply;
+    reply.status = AdminStatus::Refused;
+    reply.message = "of role reader";
+    return reply;
+  });
+  const auto follower = client().follow(request(), {.asks_placement = true});
+  ASSERT_TRUE(becomes(*follower, FollowStatus::Refused));
+  EXPECT_NE(follower->state().reason.find("no T_task_base is given"), std::string::npos);
+  EXPECT_NE(follower->state().reason.find("of role reader"), std::string::npos);
+  EXPECT_EQ(server.fetches(), 0);
 }
 
 TEST_F(FollowerTest, FetchesWhatIsAnnouncedAndKeepsWhatItGaveOut) {

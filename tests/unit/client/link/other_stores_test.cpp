@@ -17,6 +17,7 @@
 #include "proto/types/store_epoch.hpp"
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/client/link/another_user.hpp"
 
 namespace kinship::link::other_stores_test {
 namespace {
@@ -187,6 +188,62 @@ TEST_F(OtherStoresTest, NothingIsDeletedWhileAProcessSends) {
         << failure.what();
   }
   EXPECT_EQ(kept(), 2U);
+}
+
+/// Everything in `folder` may be changed by every user, but what is in `locked`.
+void lock_folder(const fs::path& folder, const fs::path& locked) {
+  constexpr fs::perms kWritten =
+      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  fs::permissions(folder, fs::perms::all);
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    fs::permissions(entry.path(), fs::perms::all);
+  fs::permissions(locked, kWritten, fs::perm_options::remove);
+}
+
+TEST_F(OtherStoresTest, WhatCannotBeDeletedIsToldAndStaysListed) {
+  acknowledge_two();
+  outbox->note_store(second, {});
+  const auto listed = outbox->kept_of_older_stores();
+  const fs::path away = folder.path() / "other_stores" / store_name(first);
+  lock_folder(folder.path(), away / "sent");
+  std::string said;
+  {
+    const AnotherUser user;
+    if (AnotherUser::is_root())
+      GTEST_SKIP() << "root that must not become another user";
+    try {
+      outbox->drop_of_older_stores(listed);
+    } catch (const Failure& failure) {
+      said = failure.what();
+    }
+  }
+  EXPECT_EQ(said, (away / "sent").string() + ": cannot be deleted: Permission denied");
+  ASSERT_EQ(outbox->kept_of_older_stores().size(), 1U) << "by its epoch, which goes last";
+  lock_folder(folder.path(), folder.path() / "sent");
+  EXPECT_GE(outbox->drop_of_older_stores(listed), 1U);
+  EXPECT_FALSE(fs::exists(away));
+}
+
+TEST_F(OtherStoresTest, AFolderThatIsEmptiedButStaysIsToldAndHoldsUpNoReport) {
+  acknowledge_two();
+  for (const Uuid& epoch : {second, first, second})
+    outbox->note_store(epoch, {});
+  const fs::path others = folder.path() / "other_stores";
+  lock_folder(folder.path(), others);
+  std::string said;
+  {
+    const AnotherUser user;
+    if (AnotherUser::is_root())
+      GTEST_SKIP() << "root that must not become another user";
+    outbox->note_store(first, {});
+    EXPECT_TRUE(is_in("sent", older) && is_in("sent", newer));
+    try {
+      outbox->age(0s);
+    } catch (const Failure& failure) {
+      said = failure.what();
+    }
+  }
+  EXPECT_NE(said.find(": cannot be deleted: Permission denied"), std::string::npos) << said;
 }
 
 TEST_F(OtherStoresTest, ReportsOfOlderStoresAge) {

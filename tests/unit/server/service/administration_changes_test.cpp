@@ -191,6 +191,15 @@ TEST_F(AdministrationChanges, ARemovedTaskIsRestoredAndListedAgain) {
   EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 2U);
 }
 
+TEST_F(AdministrationChanges, ATaskWithoutPathsIsRestoredOnlyWhileItIsThere) {
+  report({fleet::unsolved(teacher_.digest, "bin")});
+  AdminRequest request = fleet::question(AdminVerb::RestorePath);
+  request.task = "bin";
+  EXPECT_EQ(row<Restoration>(administer(request)).paths, 0U);
+  ASSERT_EQ(ask(AdminVerb::RemoveTask, "bin").status, AdminStatus::Ok);
+  EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
+}
+
 TEST_F(AdministrationChanges, AnUnknownNameIsAnsweredWithTheNearest) {
   const std::vector<Attempt> attempts = fleet::solved(teacher_, "load_machine", 1, 1);
   report(attempts);

@@ -60,7 +60,7 @@ TEST_F(RestorePaths, AReportThatTheStorePutsOffStandsInNoOnesWay) {
   poison(restored_report(reports[2]));
   for (const std::uint64_t known : {0U, 4U}) {
     Restoration restored;
-    restore_paths(*store_, reports, restored);
+    restore_paths(*store_, reports, {}, restored);
     EXPECT_EQ(restored.paths, 4U - known);
     EXPECT_EQ(restored.in_use, known);
     EXPECT_EQ(restored.lost, 1U);
@@ -76,21 +76,45 @@ TEST_F(RestorePaths, ManyAreStoredAtOnce) {
   store::TroubledStore counting(*store_);
   counting.takes_reports = true;
   Restoration restored;
-  restore_paths(counting, reports, restored);
+  restore_paths(counting, reports, {}, restored);
   EXPECT_EQ(restored.paths, kPaths);
   EXPECT_EQ(restored.report_uuid, restored_report(reports[0]));
   EXPECT_EQ(counting.commits, 3U);
   EXPECT_EQ(paths(), kPaths);
 }
 
+TEST_F(RestorePaths, AStopEndsItBetweenTwoBatches) {
+  constexpr std::uint64_t kPaths = 600, kOfTwoBatches = 512;
+  const std::vector<Uuid> reports = retired(kPaths);
+  std::stop_source stop;
+  store::TroubledStore stopping(*store_);
+  stopping.takes_reports = true;
+  stopping.on_exchange = [&] {
+    if (stopping.commits == 1)  // the second one is read
+      stop.request_stop();
+  };
+  Restoration restored;
+  try {
+    restore_paths(stopping, reports, stop.get_token(), restored);
+    ADD_FAILURE() << "not stopped";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Unavailable);
+    EXPECT_NE(std::string(failure.what()).find("stopping after 512 paths"), std::string::npos)
+        << failure.what();
+  }
+  EXPECT_EQ(paths(), kOfTwoBatches);
+  restore_paths(*store_, reports, {}, restored);
+  EXPECT_EQ(paths(), kPaths);
+}
+
 TEST_F(RestorePaths, OneOfWhichACopyWasRetiredTooIsStoredOnce) {
   const std::vector<Uuid> reports = retired(1);
   Restoration first;
-  restore_paths(*store_, reports, first);
+  restore_paths(*store_, reports, {}, first);
   ASSERT_EQ(first.paths, 1U);
   static_cast<void>(store_->reset_task("shelf").value_or_throw());
   Restoration both;
-  restore_paths(*store_, std::array{reports[0], first.report_uuid}, both);
+  restore_paths(*store_, std::array{reports[0], first.report_uuid}, {}, both);
   EXPECT_EQ(both.paths, 1U);
   EXPECT_EQ(both.in_use, 1U);
   EXPECT_EQ(both.report_uuid, restored_report(first.report_uuid));

@@ -137,6 +137,17 @@ TEST_P(StoreConformance, NamesTasksOfSomeLengths) {
   EXPECT_EQ(names(2, false, 2), (Names{"bind", "load"}));
 }
 
+TEST_P(StoreConformance, TheStatusCountsTheTasksThatAreListed) {
+  report(test::make_attempt(panda_.digest, "shelf", 1));
+  report(test::make_unsolved(panda_.digest, "table", 2));
+  EXPECT_EQ(store_->status().tasks, 2U);
+  ASSERT_TRUE(store_->remove_task("shelf"));
+  EXPECT_EQ(store_->list_tasks("", 10).rows.size(), 1U);
+  EXPECT_EQ(store_->status().tasks, 1U);
+  report(test::make_attempt(panda_.digest, "shelf", 3));
+  EXPECT_EQ(store_->status().tasks, 2U) << "an attempt came since";
+}
+
 TEST_P(StoreConformance, CountsTheRevisionsOfADistribution) {
   test::begin_task(*store_, panda_.digest, "shelf");
   Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
