@@ -166,6 +166,10 @@ class Planning(WithServer):
         self.assertEqual(self.client.flush(60).accepted, 1)
         guidance = self.client.guidance("placed", self.panda, deadline=120)
         np.testing.assert_allclose(guidance.T_task_base[:3, 3], here[:3])
+        with self.client.follow("placed", self.panda) as follower:
+            followed = follower.wait_for_newer(timeout=120)
+            self.assertIsNotNone(followed, follower.reason)
+            np.testing.assert_allclose(followed.T_task_base[:3, 3], here[:3])
         with self.assertRaisesRegex(kinship.InvalidInput, "T_task_base is not given, so identity, the guidance was made for 0.1"):
             kinship.plan(self.panda, kinship.Problem("forgotten", placed.waypoints[0], placed.waypoints[-1]), guidance)
 
