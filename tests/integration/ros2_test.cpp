@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -149,6 +151,7 @@ TEST_P(Ros2, ADistributionComesWithItsQueryAndToWhoIsLate) {
   EXPECT_EQ(run("listen"), distribution);
 }
 
+/// It only listens after its first answer.
 TEST_P(Ros2, WhoFollowsGetsTheNextRevision) {
   register_robot();
   for (const char* const seed : {"seed=1", "seed=2", "seed=3"})
@@ -195,6 +198,20 @@ TEST_P(Ros2, ANodeThatFloodsHasItsOwnQuotaAndDelaysNoOther) {
       EXPECT_TRUE(status == "0" || status == "1") << status << " with a quota of " << quota;
     }
   }
+}
+
+TEST_P(Ros2, WhatANodeReportsBeyondTheRateOfItsReceiptsIsToldInTurn) {
+  register_robot();
+  std::uint32_t told = 0, stored = 0;
+  int sent_again = -1, ms_after = -1;
+  const std::string said = run("report_many", {robot_, joints_, "rate=300", "seconds=3"});
+  ASSERT_EQ(std::sscanf(said.c_str(), "receipts %u of-stored %u sent-again %d ms-after %d", &told,
+                        &stored, &sent_again, &ms_after),
+            4)
+      << said;
+  EXPECT_EQ(told, 900U);
+  EXPECT_GT(stored, 800U) << "told of once, however often they were sent: " << said;
+  EXPECT_GT(ms_after, 4000) << "a hundred a second: " << said;
 }
 
 TEST_P(Ros2, MessagesOfTenMegabytesArriveAndLongerOnesDoNoHarm) {
