@@ -25,6 +25,17 @@ std::string text_of(const dds_guid_t& guid) {
   return uuid.text();
 }
 
+/// Of what an entity has matched: all, or nothing after an error or if they are too many.
+template <typename Get>
+std::optional<std::vector<dds_instance_handle_t>> matched(const Entity& entity, const Get& get) {
+  std::vector<dds_instance_handle_t> handles(kMaxKnown);
+  const dds_return_t count = get(entity.get(), handles.data(), handles.size());
+  if (count < 0 || static_cast<std::size_t>(count) > handles.size())
+    return std::nullopt;
+  handles.resize(static_cast<std::size_t>(count));
+  return handles;
+}
+
 GuidPrefix prefix_of(const dds_guid_t& guid) {
   GuidPrefix prefix;
   std::copy_n(std::begin(guid.v), prefix.size(), prefix.begin());
@@ -50,6 +61,17 @@ std::optional<std::string> client_of_partitions(const dds_qos* qos) {
   return name;
 }
 
+std::optional<std::set<std::string>> clients_of_readers(const Entity& writer) {
+  const auto readers = matched(writer, dds_get_matched_subscriptions);
+  if (!readers)
+    return std::nullopt;
+  std::set<std::string> clients;
+  for (const dds_instance_handle_t reader : *readers)
+    if (const Endpoint endpoint(dds_get_matched_subscription_data(writer.get(), reader)); endpoint)
+      clients.insert(text_of(endpoint->participant_key));
+  return clients;
+}
+
 MatchedWriters::MatchedWriters(const Participant& participant)
     : has_security_(participant.credentials().has_value()),
       participants_(
@@ -67,13 +89,12 @@ Sender* MatchedWriters::find(const Entity& reader, std::uint64_t writer) {
   return &known_.emplace(writer, *std::move(sender)).first->second;
 }
 
-std::set<std::string> MatchedWriters::clients(const Entity& reader) {
+std::optional<std::set<std::string>> MatchedWriters::clients(const Entity& reader) {
+  const auto writers = matched(reader, dds_get_matched_publications);
+  if (!writers)
+    return std::nullopt;
   std::set<std::string> clients;
-  std::vector<dds_instance_handle_t> writers(kMaxKnown);
-  const dds_return_t count =
-      dds_get_matched_publications(reader.get(), writers.data(), writers.size());
-  writers.resize(std::min(writers.size(), static_cast<std::size_t>(std::max(count, 0))));
-  for (const dds_instance_handle_t writer : writers)
+  for (const dds_instance_handle_t writer : *writers)
     if (const Sender* const sender = find(reader, writer))
       clients.insert(sender->client);
   return clients;

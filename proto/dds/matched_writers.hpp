@@ -46,8 +46,8 @@ class MatchedWriters {
   ///         until the next call.
   Sender* find(const Entity& reader, std::uint64_t writer);
 
-  /// The clients whose writers a reader has matched now.
-  std::set<std::string> clients(const Entity& reader);
+  /// The clients whose writers a reader has matched now; nothing if that cannot be known.
+  std::optional<std::set<std::string>> clients(const Entity& reader);
 
   void forget_heard();  ///< some reader has gone
 
@@ -59,6 +59,10 @@ class MatchedWriters {
   Entity participants_;                              // reader of the built-in topic of participants
   std::unordered_map<std::uint64_t, Sender> known_;  // by writer
 };
+
+/// The clients, by participant, whose readers a writer has matched now; nothing if that cannot be
+/// known.
+std::optional<std::set<std::string>> clients_of_readers(const Entity& writer);
 
 /// The common name of the client's certificate if the QoS of a reader or writer has that client's
 /// partition and no other.

@@ -2,19 +2,23 @@
 
 #include <dds/dds.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <deque>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
 #include "proto/dds/matched_readers.hpp"
 #include "proto/dds/matched_writers.hpp"
-#include "proto/dds/reply_rate_limit.hpp"
+#include "proto/dds/peer_table.hpp"
 #include "proto/ros2/outlet.hpp"
 
 namespace kinship::ros2 {
@@ -23,7 +27,9 @@ namespace {
 constexpr int kHeldQuestions = 256;  ///< by the reader, until they are taken
 constexpr int kKeptAnswers = 256;    ///< for a reader that is slow
 constexpr std::size_t kWaitingQuestions = 256;
-constexpr int kAnswersPerSecond = 100;
+constexpr dds::TokenBucket::Rate kAnswers{.per_s = 100, .burst = 100};  ///< to a node
+constexpr std::chrono::milliseconds kBetweenAnswers{10};                ///< at that rate
+constexpr std::size_t kMaxHeldOfNode = 4096, kMaxHeld = 16384;          ///< answers
 constexpr std::chrono::milliseconds kMaxHold{100};  ///< then its node sends it again
 
 /// Of a sample, as the head that queues know.
@@ -37,9 +43,12 @@ codec::Head head_of(const void* sample) {
 /// A node and its question.
 using Place = std::pair<std::string, codec::Head>;
 
-/// Answers leave here, from any thread.
+/// Answers leave here, from any thread: at once, or those beyond a node's rate in its turn. Until
+/// then its question is being answered, so that it need not be asked again.
 class AnswerLine {
  public:
+  using Clock = dds::WaitLoop::Clock;
+
   AnswerLine(const dds::Participant& participant, const ChannelTopics& topics)
       : topic_(make_topic(participant, topics.answer_type, topics.answer)),
         publisher_(dds_create_publisher(participant.get(), nullptr, nullptr), "publisher"),
@@ -61,17 +70,75 @@ class AnswerLine {
     const std::lock_guard lock(mutex_);
     being_answered_.erase(place);
   }
-  void end_with(const Place& place, const void* answer) {
-    if (end_and_count(place))
-      dds_write(writer_.get(), answer);
+  void send(const Place& place, std::shared_ptr<const void> answer) {
+    switch (take_turn(place, answer)) {
+      case Turn::Now:
+        dds_write(writer_.get(), answer.get());
+        return;
+      case Turn::Later:
+        dds_set_guardcondition(readers_.guard().get(), true);  // has send_held() called
+        return;
+      case Turn::Never:
+        return;
+    }
+  }
+
+  /// \return when to call it again.
+  Clock::time_point send_held() {
+    const auto now = Clock::now();
+    std::vector<std::shared_ptr<const void>> due;
+    {
+      const std::lock_guard lock(mutex_);
+      if (held_ == 0)
+        return dds::WaitLoop::kWithSamples;
+      for (auto& [node, line] : lines_)
+        for (; !line.held.empty() && line.tokens.has_token(now); --held_) {
+          line.tokens.take(now);
+          being_answered_.erase({node, line.held.front().question});
+          due.push_back(std::move(line.held.front().answer));
+          line.held.pop_front();
+        }
+    }
+    for (const auto& answer : due)
+      dds_write(writer_.get(), answer.get());
+    return now + kBetweenAnswers;
   }
 
  private:
-  /// \return whether its node is sent one more answer now.
-  bool end_and_count(const Place& place) {
+  enum class Turn { Now, Later, Never };
+  struct Held {
+    codec::Head question;
+    std::shared_ptr<const void> answer;  // shared with nobody, once it is held
+  };
+  struct Line {
+    dds::TokenBucket tokens;
+    std::deque<Held> held;
+  };
+
+  /// Keeps the answer if its turn is later. Never: its node asks again.
+  Turn take_turn(const Place& place, const std::shared_ptr<const void>& answer) {
+    const auto now = Clock::now();
     const std::lock_guard lock(mutex_);
+    Line* const line = is_asked_again_ ? &line_of(place.first, now) : nullptr;
+    const bool is_now = !line || (line->held.empty() && line->tokens.has_token(now));
+    if (!is_now && line->held.size() < kMaxHeldOfNode && held_ < kMaxHeld) {
+      line->held.push_back({place.second, answer});
+      ++held_;
+      return Turn::Later;
+    }
     being_answered_.erase(place);
-    return !is_asked_again_ || sent_.take(place.first, dds::ReplyRateLimit::Clock::now());
+    if (line && is_now)
+      line->tokens.take(now);
+    return is_now ? Turn::Now : Turn::Never;
+  }
+
+  Line& line_of(const std::string& node, Clock::time_point now) {
+    if (const auto known = lines_.find(node); known != lines_.end())
+      return known->second;
+    std::erase_if(lines_, [&](const auto& each) {  // of those that have been silent, or have left
+      return each.second.held.empty() && each.second.tokens.is_full(now);
+    });
+    return lines_.emplace(node, Line{{kAnswers, now}, {}}).first->second;
   }
 
   dds::Entity topic_;
@@ -79,9 +146,10 @@ class AnswerLine {
   dds::MatchedReaders readers_;
   const bool is_asked_again_;
   dds::Entity writer_;
-  std::mutex mutex_;  // guards the next two
+  std::mutex mutex_;  // guards what follows
   std::set<Place> being_answered_;
-  dds::ReplyRateLimit sent_{kAnswersPerSecond};
+  std::map<std::string, Line> lines_;  // by node
+  std::size_t held_ = 0;               // answers of all lines
 };
 
 }  // namespace
@@ -102,12 +170,12 @@ class Question::State {
   const Caller& caller() const noexcept { return caller_; }
   std::string key() const { return caller_.client + ' ' + place_.second.client_id.text(); }
 
-  void send(void* sample) {
+  void send(std::shared_ptr<void> answer) {
     if (is_sent_.exchange(true))
       return;
-    std::memcpy(sample, place_.second.client_id.bytes.data(), wire::kKeyBytes);
+    std::memcpy(answer.get(), place_.second.client_id.bytes.data(), wire::kKeyBytes);
     if (const auto line = line_.lock())
-      line->end_with(place_, sample);
+      line->send(place_, std::move(answer));
   }
 
  private:
@@ -119,7 +187,7 @@ class Question::State {
 
 const Caller& Question::caller() const noexcept { return state_->caller(); }
 std::string Question::key() const { return state_->key(); }
-void Question::send(void* sample) const noexcept { state_->send(sample); }
+void Question::send(std::shared_ptr<void> answer) const { state_->send(std::move(answer)); }
 
 class Channel::Implementation {
  public:
@@ -137,7 +205,7 @@ class Channel::Implementation {
         reader_, [this] { return serve_some(); }, &line_->readers().guard());
   }
 
-  std::set<std::string> nodes() { return senders_.clients(reader_); }
+  std::optional<std::set<std::string>> nodes() { return senders_.clients(reader_); }
 
  private:
   struct Waiting {
@@ -146,7 +214,7 @@ class Channel::Implementation {
   };
   using Queue = dds::FairQueue<Waiting>;
 
-  /// \return when the next waiting question may be served.
+  /// \return when the next waiting question may be served, or the next held answer sent.
   Queue::Time serve_some() {
     constexpr int kInTurn = 4;  // then the other channels
     if (waiting_.holds_some())
@@ -160,7 +228,7 @@ class Channel::Implementation {
         break;
       serve(next->second.answering);
     }
-    return waiting_.next();
+    return std::min(waiting_.next(), line_->send_held());
   }
 
   /// All that the reader holds, before each one that is served: it keeps the newest of all nodes.
@@ -244,6 +312,6 @@ Channel::Channel(const dds::Participant& participant, dds::WaitLoop& loop,
 
 Channel::~Channel() = default;
 
-std::set<std::string> Channel::nodes() const { return implementation_->nodes(); }
+std::optional<std::set<std::string>> Channel::nodes() const { return implementation_->nodes(); }
 
 }  // namespace kinship::ros2

@@ -4,11 +4,15 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <new>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "proto/dds/participant.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/ros2/answers.hpp"
 #include "proto/ros2/wire.hpp"
 #include "proto/types/caller.hpp"
 
@@ -33,17 +37,20 @@ class Question {
   class State;
   explicit Question(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
-  /// Sends the answer, a sample of the channel's type, with the question's key at its beginning.
-  template <typename Sample>
-  void answer(Sample sample) const noexcept {
-    send(&sample);
+  /// Sends the answer, a message of the channel's type, with the question's key at its beginning.
+  /// Without memory it is not sent.
+  template <typename Wire>
+  void answer(Message<Wire> message) const noexcept try {
+    const auto kept = std::make_shared<Message<Wire>>(std::move(message));
+    send({kept, &kept->wire});
+  } catch (const std::bad_alloc&) {  // the node asks again
   }
 
   const Caller& caller() const noexcept;
   std::string key() const;  ///< as text, after the caller's client and a space (catalog::client_of)
 
  private:
-  void send(void* sample) const noexcept;
+  void send(std::shared_ptr<void> answer) const;
 
   std::shared_ptr<State> state_;  // shared by the copies; the last one frees the place
 };
@@ -68,8 +75,9 @@ class Channel {
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
-  /// The nodes that can ask now (Caller::client). On the loop's thread.
-  std::set<std::string> nodes() const;
+  /// The nodes that can ask now (Caller::client); nothing if that cannot be known. On the loop's
+  /// thread.
+  std::optional<std::set<std::string>> nodes() const;
 
  private:
   class Implementation;

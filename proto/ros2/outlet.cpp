@@ -2,6 +2,7 @@
 
 #include <dds/dds.h>
 
+#include "proto/dds/matched_writers.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::ros2 {
@@ -34,5 +35,9 @@ Outlet::Outlet(const dds::Participant& participant, const dds_topic_descriptor& 
               "writer " + name) {}
 
 void Outlet::write(const void* sample) const noexcept { dds_write(writer_.get(), sample); }
+
+std::optional<std::set<std::string>> Outlet::nodes() const {
+  return dds::clients_of_readers(writer_);
+}
 
 }  // namespace kinship::ros2

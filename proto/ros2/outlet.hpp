@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "proto/dds/entity.hpp"
@@ -31,6 +33,9 @@ class Outlet {
 
   /// \param sample  of that type. A slow reader loses samples and delays no others.
   void write(const void* sample) const noexcept;
+
+  /// The nodes that read it now (Caller::client); nothing if that cannot be known.
+  std::optional<std::set<std::string>> nodes() const;
 
  private:
   dds::Entity topic_;

@@ -42,7 +42,15 @@ Joints joints_of(const Robots& robots, const Digest& digest) {
 
 /// Sends an answer by the way that its question came.
 template <typename Answer>
-using Send = std::function<void(const Question&, const Answer&)>;
+using Send = std::function<void(const Question&, Message<Answer>)>;
+
+template <typename Response, typename Answer>
+Message<Response> response_of(Message<Answer> answer) {
+  Message<Response> response;
+  response.arena = std::move(answer.arena);
+  response.wire = {0, 0, answer.wire};
+  return response;
+}
 
 /// The topics of messages with UUIDs.
 ChannelTopics topics_of(const std::string& question, const dds_topic_descriptor& question_type,
@@ -95,14 +103,18 @@ class QuestionsServed::Implementation {
   }
 
  private:
-  /// What nodes follow that cannot ask any more.
+  /// What nodes follow that neither read distributions nor can ask any more.
   void forget_departed() {
     if (follows_.empty())
       return;
-    std::set<std::string> here;
-    for (const auto& channel : channels_)
-      here.merge(channel->nodes());
-    follows_.keep_only(here);
+    auto here = distributions_->nodes();
+    for (const auto& channel : channels_) {
+      auto nodes = channel->nodes();
+      if (!here || !nodes)
+        return;
+      here->merge(*nodes);
+    }
+    follows_.keep_only(*here);
   }
 
   bool follow(const std::string& client, const FetchRequest& query) {
@@ -132,11 +144,11 @@ class QuestionsServed::Implementation {
          [this](const void* sample, const Question& question) {
            return read_query(message_in<wire::DistributionQuery>(sample, 0), question,
                              [outlet = distributions_](const Question& asked,
-                                                       const wire::DistributionAnswer& answer,
+                                                       Message<wire::DistributionAnswer> answer,
                                                        const Message<wire::Distribution>* found) {
                                if (found)
                                  outlet->write(&found->wire);
-                               asked.answer(answer);
+                               asked.answer(std::move(answer));
                              });
          });
     open(topics_of("status_query", kinship_msgs_msg_dds__StatusQuery__desc, "status",
@@ -153,43 +165,41 @@ class QuestionsServed::Implementation {
                            kinship_msgs_srv_dds__Register_Response__desc),
          [this](const void* sample, const Question& question) {
            return read_robot(message_in<wire::Registration>(sample, wire::kKeyBytes), question,
-                             [](const Question& asked, const wire::Registered& answer) {
-                               asked.answer(wire::RegisterResponse{0, 0, answer});
+                             [](const Question& asked, Message<wire::Registered> answer) {
+                               asked.answer(response_of<wire::RegisterResponse>(std::move(answer)));
                              });
          });
     open(topics_of_service("report", kinship_msgs_srv_dds__Report_Request__desc,
                            kinship_msgs_srv_dds__Report_Response__desc),
          [this](const void* sample, const Question& question) {
            return read_path(message_in<wire::PlannedPath>(sample, wire::kKeyBytes), question,
-                            [](const Question& asked, const wire::Receipt& answer) {
-                              asked.answer(wire::ReportResponse{0, 0, answer});
+                            [](const Question& asked, Message<wire::Receipt> answer) {
+                              asked.answer(response_of<wire::ReportResponse>(std::move(answer)));
                             });
          });
     open(topics_of_service("fetch", kinship_msgs_srv_dds__Fetch_Request__desc,
                            kinship_msgs_srv_dds__Fetch_Response__desc),
          [this](const void* sample, const Question& question) {
            return read_query(message_in<wire::DistributionQuery>(sample, wire::kKeyBytes), question,
-                             [](const Question& asked, const wire::DistributionAnswer& answer,
+                             [](const Question& asked, Message<wire::DistributionAnswer> answer,
                                 const Message<wire::Distribution>* found) {
-                               wire::FetchResponse response{0, 0, answer, {}};
-                               wire::Distribution distribution{};
+                               Message<wire::FetchResponse> response;
+                               response.wire = {0, 0, answer.wire, {}};
                                if (found) {
-                                 distribution = found->wire;
-                                 response.distribution._length = 1;
-                                 response.distribution._maximum = 1;
-                                 response.distribution._buffer = &distribution;
+                                 response.arena->resize(response.wire.distribution, 1);
+                                 response.wire.distribution._buffer[0] = found->wire;
                                }
-                               asked.answer(response);
+                               asked.answer(std::move(response));  // is sent before it returns
                              });
          });
     open(topics_of_service("get_status", kinship_msgs_srv_dds__GetStatus_Request__desc,
                            kinship_msgs_srv_dds__GetStatus_Response__desc),
          [this](const void* sample, const Question& question) {
-           return read_status_query(message_in<wire::StatusQuery>(sample, wire::kKeyBytes),
-                                    question,
-                                    [](const Question& asked, const wire::Status& answer) {
-                                      asked.answer(wire::GetStatusResponse{0, 0, answer});
-                                    });
+           return read_status_query(
+               message_in<wire::StatusQuery>(sample, wire::kKeyBytes), question,
+               [](const Question& asked, Message<wire::Status> answer) {
+                 asked.answer(response_of<wire::GetStatusResponse>(std::move(answer)));
+               });
          });
   }
 
@@ -197,7 +207,7 @@ class QuestionsServed::Implementation {
                                 const Send<wire::Registered>& send) {
     const Uuid uuid = read_uuid(message.uuid);
     const auto refuse = [&](const RegisterReply& reply) -> Channel::Answering {
-      send(question, to_registered(reply, uuid, {}).wire);
+      send(question, to_registered(reply, uuid, {}));
       return {};
     };
     const std::string& client = question.caller().client;
@@ -213,7 +223,7 @@ class QuestionsServed::Implementation {
             service_.registration().find_robots(
                 {reply.robot},
                 [=](const Robots& robots) {
-                  send(question, to_registered(reply, uuid, joints_of(robots, reply.robot)).wire);
+                  send(question, to_registered(reply, uuid, joints_of(robots, reply.robot)));
                 },
                 client);
           },
@@ -227,16 +237,16 @@ class QuestionsServed::Implementation {
     const std::string& client = question.caller().client;
     const codec::RequestSize size = size_of(message);
     if (const auto refusal = service_.admit(client, size.bytes, size.attempts)) {
-      send(question, to_receipt(reply_to(*refusal, ReportReply{}), uuid).wire);
+      send(question, to_receipt(reply_to(*refusal, ReportReply{}), uuid));
       return {};
     }
     Result<PathReport> read_report = read(message);
     if (!read_report) {
-      send(question, to_receipt(read_report.error(), uuid).wire);
+      send(question, to_receipt(read_report.error(), uuid));
       return {};
     }
     const auto answer = [question, send, uuid](const ReportReply& reply) {
-      send(question, to_receipt(reply, uuid).wire);
+      send(question, to_receipt(reply, uuid));
     };
     return [this, answer, client, report = std::move(read_report).value()] {
       report_in_order(report, answer, client);
@@ -271,7 +281,7 @@ class QuestionsServed::Implementation {
         client);
   }
 
-  using SendDistribution = std::function<void(const Question&, const wire::DistributionAnswer&,
+  using SendDistribution = std::function<void(const Question&, Message<wire::DistributionAnswer>,
                                               const Message<wire::Distribution>*)>;
 
   Channel::Answering read_query(const wire::DistributionQuery& message, const Question& question,
@@ -279,7 +289,7 @@ class QuestionsServed::Implementation {
     const Uuid uuid = read_uuid(message.uuid);
     const auto refuse = [&](FetchReply reply, FetchStatus status) -> Channel::Answering {
       reply.status = status;
-      send(question, to_answer(reply, uuid).wire, nullptr);
+      send(question, to_answer(reply, uuid), nullptr);
       return {};
     };
     const std::string& client = question.caller().client;
@@ -294,7 +304,7 @@ class QuestionsServed::Implementation {
       service_.fetches().fetch(
           query, question.key(), [this, question, send, uuid, client](const FetchReply& reply) {
             with_distribution(reply, client, [=](const Message<wire::Distribution>* found) {
-              send(question, to_answer(reply, uuid).wire, found);
+              send(question, to_answer(reply, uuid), found);
             });
           });
     };
@@ -321,7 +331,7 @@ class QuestionsServed::Implementation {
                                        const Send<wire::Status>& send) {
     const Uuid uuid = read_uuid(message.uuid);
     const auto answer = [question, send, uuid](const Result<ServerStatus>& status) {
-      send(question, to_status(status, uuid).wire);
+      send(question, to_status(status, uuid));
     };
     if (const auto refusal = service_.admit(question.caller().client, size_of(message).bytes)) {
       answer(Error{ErrorCode::Unavailable, refusal->message});

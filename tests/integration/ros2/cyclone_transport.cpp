@@ -47,6 +47,8 @@ class CycloneTransport final : public Transport {
                   DDS_PUBLICATION_MATCHED_STATUS);
   }
 
+  void close_writer(int writer) override { dds_delete(writer); }
+
   int open_reader(const std::string& topic, const TopicType& type, bool is_late) override {
     const dds_entity_t handle = make_topic(topic, type);
     return entity(dds_create_reader(participant_, handle, qos(is_late).get(), nullptr),

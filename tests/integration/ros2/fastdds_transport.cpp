@@ -59,6 +59,10 @@ class FastTransport final : public Transport {
     return static_cast<int>(writers_.size()) - 1;
   }
 
+  void close_writer(int writer) override {
+    publisher_->delete_datawriter(writers_.at(static_cast<std::size_t>(writer)));
+  }
+
   int open_reader(const std::string& topic, const TopicType& type, bool is_late) override {
     DataReaderQos qos;
     qos.reliability().kind = RELIABLE_RELIABILITY_QOS;

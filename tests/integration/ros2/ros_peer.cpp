@@ -16,8 +16,10 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -136,8 +138,10 @@ std::optional<typename Answer::Ros> ask(Transport& node, const std::string& ques
     while (const auto bytes = node.take(reader, resend)) {
       auto answer = made<Answer>();
       from_cdr(Answer::support(), *bytes, &answer);
-      if (std::memcmp(answer.uuid.uuid, question.uuid.uuid, sizeof answer.uuid.uuid) == 0)
-        return answer;
+      if (std::memcmp(answer.uuid.uuid, question.uuid.uuid, sizeof answer.uuid.uuid) != 0)
+        continue;
+      node.close_writer(writer);  // as rclpy's destroy_publisher()
+      return answer;
     }
   }
   return std::nullopt;
@@ -271,6 +275,61 @@ int flood(Transport& node, const Options& options) {
   }
 }
 
+/// Reports `rate` paths a second for some `seconds`, each again every second until its receipt has
+/// come, and prints when all had: receipts of stored paths, and the time since the last new path.
+int report_many(Transport& node, const Options& options) {
+  const int writer = node.open_writer("rt/kinship/report", PlannedPath::type());
+  const int reader = node.open_reader("rt/kinship/receipt", Receipt::type(), false);
+  const auto deadline = Clock::now() + patience;
+  if (!node.wait_for_writer_match(writer, deadline) ||
+      !node.wait_for_reader_match(reader, deadline))
+    return none();
+  auto path = path_of(options);
+  PlannedPath::Wire wire{};
+  const auto rate = static_cast<std::uint32_t>(options.number("rate", 300));
+  const auto count = rate * static_cast<std::uint32_t>(options.number("seconds", 3));
+  const auto begin = Clock::now();
+  const auto time_of = [&](std::uint32_t number) {
+    return begin + number * std::chrono::nanoseconds(std::chrono::seconds(1)) / rate;
+  };
+  std::set<std::pair<Clock::time_point, std::uint32_t>> open;  // by when each is sent next
+  std::map<std::uint32_t, Clock::time_point> due;              // the same by number
+  for (std::uint32_t number = 0; number < count; ++number) {
+    open.emplace(time_of(number), number);
+    due.emplace(number, time_of(number));
+  }
+  int stored = 0, sendings = 0;
+  while (!open.empty() && Clock::now() < deadline) {
+    while (open.begin()->first <= Clock::now()) {
+      const std::uint32_t number = open.begin()->second;
+      std::memcpy(path.uuid.uuid, &number, sizeof number);
+      path.trajectory.points.data[0].positions.data[0] = 1e-4 * number;
+      copy(path, wire);
+      node.write(writer, {&wire, to_cdr(PlannedPath::support(), &path)});
+      ++sendings;
+      open.erase(open.begin());
+      open.emplace(due[number] = Clock::now() + kResend, number);
+    }
+    const auto answer = node.take(reader, open.begin()->first);
+    if (!answer)
+      continue;
+    auto receipt = made<Receipt>();
+    from_cdr(Receipt::support(), *answer, &receipt);
+    std::uint32_t number = 0;
+    std::memcpy(&number, receipt.uuid.uuid, sizeof number);
+    if (receipt.status > kinship_msgs__msg__Receipt__DUPLICATE || !due.contains(number))
+      continue;
+    stored += receipt.status == kinship_msgs__msg__Receipt__STORED ? 1 : 0;
+    open.erase({due[number], number});
+    due.erase(number);
+  }
+  std::cout << "receipts " << count - due.size() << " of-stored " << stored << " sent-again "
+            << sendings - static_cast<int>(count) << " ms-after "
+            << std::chrono::round<std::chrono::milliseconds>(Clock::now() - time_of(count)).count()
+            << std::endl;
+  return due.empty() ? 0 : 1;
+}
+
 int call_report(Transport& node, const Options& options) {
   auto request = made<Report_Request>();
   request.path = path_of(options);
@@ -392,6 +451,8 @@ int run(std::uint32_t domain, const std::string& verb, const Words& words) {
     return report(*node, options);
   if (verb == "flood")
     return flood(*node, options);
+  if (verb == "report_many")
+    return report_many(*node, options);
   if (verb == "call_report")
     return call_report(*node, options);
   if (verb == "fetch")

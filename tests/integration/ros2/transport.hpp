@@ -32,6 +32,7 @@ class Transport {
 
   /// Reliable, volatile, keep last 10. \return its number.
   virtual int open_writer(const std::string& topic, const TopicType& type) = 0;
+  virtual void close_writer(int writer) = 0;
   /// The same; transient local if it is to get what was sent before.
   virtual int open_reader(const std::string& topic, const TopicType& type, bool is_late) = 0;
 
