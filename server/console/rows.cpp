@@ -58,9 +58,17 @@ Result<AdminRequest> change_of(const VerbRule& rule, const http::Request& reques
   if (!members)
     return members.error();
   std::map<std::string, std::string> given = std::move(members).value();
-  AdminRequest change{.verb = rule.verb, .argument = given["argument"], .robot = given["robot"]};
-  if (change.argument.empty() || given["confirm"] != change.argument)
-    return invalid_input("'" + given["confirm"] + "' does not confirm '" + change.argument + "'");
+  AdminRequest change{.verb = rule.verb, .argument = given["argument"]};
+  if (rule.is(VerbRule::NamesRobot))
+    change.robot = given["robot"];
+  if (rule.is(VerbRule::NamesTask))
+    change.task = given["task"];
+  // Where a robot or task is named, `argument` is its new name.
+  const std::string& object = !change.task.empty()    ? change.task
+                              : !change.robot.empty() ? change.robot
+                                                      : change.argument;
+  if (object.empty() || given["confirm"] != object)
+    return invalid_input("'" + given["confirm"] + "' does not confirm '" + object + "'");
   return change;
 }
 
