@@ -58,12 +58,11 @@ Result<AdminRequest> change_of(const VerbRule& rule, const http::Request& reques
   if (!members)
     return members.error();
   std::map<std::string, std::string> given = std::move(members).value();
-  AdminRequest change{.verb = rule.verb, .argument = given["argument"]};
-  if (rule.is(VerbRule::NamesRobot))
-    change.robot = given["robot"];
-  if (rule.is(VerbRule::NamesTask))
-    change.task = given["task"];
-  // Where a robot or task is named, `argument` is its new name.
+  AdminRequest change{.verb = rule.verb,
+                      .argument = given["argument"],
+                      .robot = given["robot"],
+                      .task = given["task"]};
+  // Where a robot or task is named, `argument` is its new name; other verbs refuse both.
   const std::string& object = !change.task.empty()    ? change.task
                               : !change.robot.empty() ? change.robot
                                                       : change.argument;
