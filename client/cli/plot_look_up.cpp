@@ -7,25 +7,6 @@
 #include "proto/types/failure.hpp"
 
 namespace kinship::cli {
-namespace {
-
-std::vector<PathSummary> newest_paths(link::Client& server, const AdminRequest& request,
-                                      std::size_t most) {
-  std::vector<PathSummary> paths;
-  std::size_t in_use = 0;
-  const auto error = link::for_each_row(server, request, [&](const std::string& row) {
-    paths.push_back(json::row_from_json<PathSummary>(row).value_or_throw());
-    if (paths.back().retired_ms == 0)
-      ++in_use;
-    return in_use < most;
-  });
-  if (error)
-    throw Failure(*error);
-  return paths;
-}
-
-}  // namespace
-
 Result<KnownRobot> find_known_robot(link::Client& server, const std::string& name) {
   const auto rows = link::rows_of(server, {.verb = AdminVerb::ShowRobot, .argument = name});
   if (!rows)
@@ -41,12 +22,16 @@ plots::LookUp look_up_of(link::Client& server) {
     return link::first_row_of(server, {.verb = verb, .argument = name}).value_or_throw();
   };
   return {
-      .paths =
-          [&server](const std::string& task, const std::optional<Digest>& robot, std::size_t most) {
-            return newest_paths(
+      .for_each_path =
+          [&server](const std::string& task, const std::optional<Digest>& robot, const auto& take) {
+            const auto error = link::for_each_row(
                 server,
                 {.verb = AdminVerb::ListPaths, .robot = robot ? robot->hex() : "", .task = task},
-                most);
+                [&](const std::string& row) {
+                  return take(json::row_from_json<PathSummary>(row).value_or_throw());
+                });
+            if (error)
+              throw Failure(*error);
           },
       .attempt =
           [first_row](const Uuid& report) {

@@ -21,11 +21,10 @@ namespace kinship::plots {
 /// What figures of many paths ask for, of a server or of its client. All throw Failure, e.g.
 /// NotFound for a path that was dropped after it was listed.
 struct LookUp {
-  /// Of a task and a robot (none: of all), the newest first: all, or so many that `most` of them
-  /// are in use.
-  std::function<std::vector<PathSummary>(const std::string& task,
-                                         const std::optional<Digest>& robot, std::size_t most)>
-      paths;
+  /// Of a task and a robot (none: of all), the newest first, until `take` returns false.
+  std::function<void(const std::string& task, const std::optional<Digest>& robot,
+                     const std::function<bool(PathSummary)>& take)>
+      for_each_path;
   std::function<Attempt(const Uuid& report)> attempt;
   std::function<RobotDescription(const Digest& robot)> robot;
   /// Those kept of a robot and task.
@@ -33,6 +32,11 @@ struct LookUp {
       distributions;
   std::function<Distribution(const Digest& id)> distribution;
 };
+
+/// Of a task and a robot (none: of all), the newest first: all, or so many that `most` of them are
+/// in use.
+std::vector<PathSummary> newest_paths(const LookUp& look_up, const std::string& task,
+                                      const std::optional<Digest>& robot, std::size_t most);
 
 /// The robots of a figure, each looked up and read when it is first needed.
 class DrawnRobots {

@@ -139,7 +139,8 @@ void search_paths(const Distribution& distribution, const DrawnRobot& robot, std
   const std::size_t max_paths = std::max<std::size_t>(1, kMaxSearchedPaths / sources);
   const std::size_t max_poses = std::max<std::size_t>(1, kMaxSearchedPoses / sources);
   const kinematics::Chain& chain = robot.robot.chain;
-  for (const PathSummary& summary : look_up.paths(distribution.task, chain.digest(), max_paths)) {
+  for (const PathSummary& summary :
+       newest_paths(look_up, distribution.task, chain.digest(), max_paths)) {
     const SearchedSource& so_far = search.summary();
     if (so_far.paths + so_far.taken_over == max_paths || so_far.poses >= max_poses)
       return;

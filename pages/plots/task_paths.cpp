@@ -169,7 +169,7 @@ TaskPaths task_paths(const TaskSummary& task, const LookUp& look_up) {
   figure.in_use = task.paths;
   DrawnRobots robots(look_up);
   Scenes scenes;
-  for (const PathSummary& summary : look_up.paths(task.task, std::nullopt, kMaxTaskPaths)) {
+  for (const PathSummary& summary : newest_paths(look_up, task.task, std::nullopt, kMaxTaskPaths)) {
     if (figure.paths.size() + figure.left_out == kMaxTaskPaths)
       break;
     if (summary.retired_ms == 0 && !add_path(summary, look_up, robots, scenes, figure))

@@ -116,29 +116,38 @@ bool add_meshes(const kinematics::RobotModel& robot, const FindMesh& find, Known
   return true;
 }
 
+/// Of all meshes of a robot: half a second of a thread that other requests wait for. Those of
+/// cover_links() take some ten a triangle.
+constexpr std::size_t kMaxRobotTests = 50'000'000;
+
 /// Whether the solids of each link hold its meshes: they are what a client says they are.
 /// \param known  with the triangles.
-bool hold_meshes(const RobotShapes& covers, const RobotShapes& known) {
+bool hold_meshes(const RobotShapes& covers, const RobotShapes& known, std::size_t& tests_left) {
   std::map<int, std::vector<FittedShape>> solids;
   for (const LinkShape& shape : covers.shapes)
     if (shape.approximate)
       solids[shape.link].push_back({shape.shape, shape.T_link_shape});
   return std::ranges::all_of(known.shapes, [&](const LinkShape& shape) {
     return !shape.triangles ||
-           hold(solids[shape.link], Eigen::Matrix3Xd(shape.T_link_shape * *shape.triangles));
+           hold(solids[shape.link], Eigen::Matrix3Xd(shape.T_link_shape * *shape.triangles),
+                tests_left);
   });
 }
 
 /// The solids, each as much larger as hold() has them: what is apart for them is apart.
-/// \param shapes  without what the solids stand for. \param known  with the triangles.
-/// \return null if they do not hold the meshes.
+/// \param shapes  without what the solids stand for.
+/// \param known   with the triangles; learns whether it took too many tests to tell.
+/// \return null if they do not hold the meshes, as far as was tested.
 std::shared_ptr<const RobotShapes> covers_of(const kinematics::RobotModel& robot,
-                                             RobotShapes shapes, const RobotShapes& known) {
+                                             RobotShapes shapes, KnownShapes& known) {
   std::set<int> covered;
+  std::size_t tests_left = kMaxRobotTests;
   if (add_solids(robot.description.mesh_solids, robot.chain, shapes, covered) ||
       !std::ranges::all_of(shapes.left_out, [&](int link) { return covered.contains(link); }) ||
-      !hold_meshes(shapes, known))
+      !hold_meshes(shapes, known.shapes, tests_left)) {
+    known.are_covers_untested = tests_left == 0;
     return nullptr;
+  }
   for (LinkShape& shape : shapes.shapes)
     if (shape.approximate)
       shape.shape = grown(shape.shape, kCoverMargin_m);
@@ -172,7 +181,7 @@ Result<KnownShapes> read_known_shapes(const kinematics::RobotModel& robot, const
   known.shapes = *std::move(shapes);
   const RobotShapes without_meshes = known.shapes;
   if (add_meshes(robot, find, known)) {
-    known.covers = covers_of(robot, without_meshes, known.shapes);
+    known.covers = covers_of(robot, without_meshes, known);
     std::set<int> links;
     for (const LinkShape& shape : known.shapes.shapes)
       links.insert(shape.link);
@@ -211,7 +220,8 @@ std::string describe(const KnownShapes& known) {
   if (known.exact_links > 0)
     add(counted(known.exact_links, "link") + " by exact shapes");
   if (known.mesh_links > 0)
-    add(counted(known.mesh_links, "link") + " by the triangles of their meshes");
+    add(counted(known.mesh_links, "link") + " by the triangles of their meshes" +
+        (known.are_covers_untested ? " alone (too many to test the solids around them)" : ""));
   if (known.approximate_links > 0) {
     std::string part = counted(known.approximate_links, "link") + " by " +
                        counted(known.mesh_solids, "solid") + " around meshes (approximate";

@@ -22,10 +22,11 @@ struct KnownShapes {
   /// With the mesh solids in place of the meshes, which they hold: that is tested. Null without
   /// `mesh_links`, and if a mesh is not wholly in those of its link. Shared by copies; immutable.
   std::shared_ptr<const RobotShapes> covers = nullptr;
-  int exact_links = 0;        ///< made of primitives only
-  int mesh_links = 0;         ///< with the triangles of all their meshes
-  int approximate_links = 0;  ///< with a mesh known as solids around it
-  int unknown_links = 0;      ///< with an unknown mesh: shapes may be missing
+  bool are_covers_untested = false;  ///< null for the work that the test would have taken
+  int exact_links = 0;               ///< made of primitives only
+  int mesh_links = 0;                ///< with the triangles of all their meshes
+  int approximate_links = 0;         ///< with a mesh known as solids around it
+  int unknown_links = 0;             ///< with an unknown mesh: shapes may be missing
   int mesh_solids = 0;
   int unfiltered_pairs = 0;  ///< of links, excluded by the mesh solids
   GeometryGrade grade = GeometryGrade::None;

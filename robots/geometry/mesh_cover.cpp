@@ -325,7 +325,9 @@ struct Inside {
 /// Solids that are asked for the triangles of one mesh.
 class Holders {
  public:
-  explicit Holders(const std::vector<FittedShape>& solids) {
+  /// \param tests_left  how often a point may be looked for in a solid; counted down.
+  Holders(const std::vector<FittedShape>& solids, std::size_t& tests_left)
+      : tests_left_(tests_left) {
     for (const FittedShape& solid : solids)
       solids_.push_back({grown(solid.shape, kCoverMargin_m), solid.T_points_shape.inverse()});
   }
@@ -343,7 +345,7 @@ class Holders {
       const Eigen::Vector3d edges((piece.col(1) - piece.col(0)).norm(),
                                   (piece.col(2) - piece.col(1)).norm(),
                                   (piece.col(0) - piece.col(2)).norm());
-      if (edges.maxCoeff(&longest) <= kCoverMargin_m || steps_left_-- == 0)
+      if (edges.maxCoeff(&longest) <= kCoverMargin_m || tests_left_ == 0)
         return false;
       const Eigen::Index next = (longest + 1) % 3;
       const Eigen::Vector3d middle = (piece.col(longest) + piece.col(next)) / 2;
@@ -357,12 +359,13 @@ class Holders {
  private:
   /// Neighbours of a triangle are likely in the same solid: that is asked first.
   bool is_in_one(const Eigen::Matrix3d& piece) {
-    for (std::size_t i = 0; i < solids_.size(); ++i) {
+    for (std::size_t i = 0; i < solids_.size() && tests_left_ > 0; ++i) {
       const std::size_t at = (last_ + i) % solids_.size();
       const auto& [shape, T_shape_points] = solids_[at];
       bool is_inside = true;
       for (Eigen::Index corner = 0; is_inside && corner < 3; ++corner)
-        is_inside = std::visit(Inside{T_shape_points * piece.col(corner)}, shape);
+        is_inside = tests_left_ > 0 && tests_left_-- > 0 &&
+                    std::visit(Inside{T_shape_points * piece.col(corner)}, shape);
       if (is_inside) {
         last_ = at;
         return true;
@@ -372,7 +375,8 @@ class Holders {
   }
 
   std::vector<std::pair<Shape, Eigen::Isometry3d>> solids_;
-  std::size_t last_ = 0, steps_left_ = 2'000'000;
+  std::size_t& tests_left_;
+  std::size_t last_ = 0;
 };
 
 }  // namespace
@@ -424,8 +428,9 @@ Shape grown(const Shape& shape, double by_m) {
   return std::visit(Grown{by_m}, shape);
 }
 
-bool hold(const std::vector<FittedShape>& solids, const Eigen::Matrix3Xd& corners) {
-  Holders holders(solids);
+bool hold(const std::vector<FittedShape>& solids, const Eigen::Matrix3Xd& corners,
+          std::size_t& tests_left) {
+  Holders holders(solids, tests_left);
   for (Eigen::Index i = 0; i < corners.cols(); i += 3)
     if (!holders.hold(corners.middleCols<3>(i)))
       return false;

@@ -39,9 +39,11 @@ inline constexpr double kCoverMargin_m = 5e-4;
 Shape grown(const Shape& shape, double by_m);
 
 /// Whether solids, each grown by kCoverMargin_m, together hold every point of triangles. Solids of
-/// cover_mesh() do. A mesh that takes more than two million steps to tell is not held.
-/// \param solids   in the frame of the corners.
-/// \param corners  3 x 3 n, m, finite, three columns per triangle.
-bool hold(const std::vector<FittedShape>& solids, const Eigen::Matrix3Xd& corners);
+/// cover_mesh() do. A mesh that takes more tests than there are left is not held.
+/// \param solids      in the frame of the corners.
+/// \param corners     3 x 3 n, m, finite, three columns per triangle.
+/// \param tests_left  how often a point may be looked for in a solid, some 5 ns each; counted down.
+bool hold(const std::vector<FittedShape>& solids, const Eigen::Matrix3Xd& corners,
+          std::size_t& tests_left);
 
 }  // namespace kinship::geometry

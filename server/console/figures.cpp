@@ -19,31 +19,21 @@ constexpr std::size_t kMaxKept = 16;
 constexpr int kKeptPerTime = 100;
 constexpr std::size_t kMaxListed = 200'000;  // rows of a task's history
 
-std::vector<PathSummary> newest_paths(Questions& questions, AdminRequest request,
-                                      std::size_t most) {
-  std::vector<PathSummary> paths;
-  std::size_t in_use = 0;
-  request.limit = static_cast<std::uint32_t>(std::min<std::size_t>(most, kMaxPageRows));
-  do {
-    service::AdminPage page = questions.answer(request);
-    for (service::AdminRow& row : page.rows) {
-      paths.push_back(std::get<PathSummary>(std::move(row)));
-      if (paths.back().retired_ms == 0)
-        ++in_use;
-    }
-    request.cursor = page.next_cursor;
-  } while (!request.cursor.empty() && in_use < most);
-  return paths;
-}
-
 plots::LookUp look_up_of(Questions& questions) {
   return {
-      .paths =
-          [&](const std::string& task, const std::optional<Digest>& robot, std::size_t most) {
-            return newest_paths(
-                questions,
-                {.verb = AdminVerb::ListPaths, .robot = robot ? robot->hex() : "", .task = task},
-                most);
+      .for_each_path =
+          [&](const std::string& task, const std::optional<Digest>& robot, const auto& take) {
+            AdminRequest request{.verb = AdminVerb::ListPaths,
+                                 .robot = robot ? robot->hex() : "",
+                                 .task = task,
+                                 .limit = kMaxPageRows};
+            do {
+              service::AdminPage page = questions.answer(request);
+              for (service::AdminRow& row : page.rows)
+                if (!take(std::get<PathSummary>(std::move(row))))
+                  return;
+              request.cursor = page.next_cursor;
+            } while (!request.cursor.empty());
           },
       .attempt =
           [&](const Uuid& report) {

@@ -58,9 +58,16 @@ Result<AdminRequest> change_of(const VerbRule& rule, const http::Request& reques
   if (!members)
     return members.error();
   std::map<std::string, std::string> given = std::move(members).value();
-  AdminRequest change{.verb = rule.verb, .argument = given["argument"], .robot = given["robot"]};
-  if (change.argument.empty() || given["confirm"] != change.argument)
-    return invalid_input("'" + given["confirm"] + "' does not confirm '" + change.argument + "'");
+  AdminRequest change{.verb = rule.verb,
+                      .argument = given["argument"],
+                      .robot = given["robot"],
+                      .task = given["task"]};
+  // Where a robot or task is named, `argument` is its new name; other verbs refuse both.
+  const std::string& object = !change.task.empty()    ? change.task
+                              : !change.robot.empty() ? change.robot
+                                                      : change.argument;
+  if (object.empty() || given["confirm"] != object)
+    return invalid_input("'" + given["confirm"] + "' does not confirm '" + object + "'");
   return change;
 }
 

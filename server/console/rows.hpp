@@ -13,7 +13,8 @@ using RowText = std::function<std::string(const service::AdminRow&)>;
 
 /// Answers /api/rows/VERB with {"rows": [...], "next_cursor", "message"}: the rows of an admin verb
 /// (VerbRule::name), as `--json` has them. Verbs that change something need POST and, in its body,
-/// {"argument", "robot", "confirm"}: `confirm` is the argument once more, as a person typed it.
+/// {"argument", "robot", "task", "confirm"}: `confirm` is the object's name once more, as a person
+/// typed it: of the task or robot where the verb names one, else the argument.
 void answer_rows(Questions& questions, const RowText& to_json, const http::Request& request,
                  const http::Answer& answer);
 

@@ -184,6 +184,56 @@ class Changes(unittest.TestCase):
         self.assertIn(("console", "retire_path", path["report_uuid"]), done)
         self.assertIn(("console", "cancel_job", jobs[-1]), done)
 
+    def test_undo_and_rename_are_on_their_pages(self):
+        console = ServedConsole("--console-admin")
+        self.addCleanup(console.close)
+        console.kinship("robots", "register", str(MODELS / "panda"))
+        path = attempt("panda", 1, task="old")
+        console.give([path])
+
+        def in_use() -> list:
+            return [row["report_uuid"] for row in console.rows("paths", "list") if row["retired_ms"] == 0]
+
+        with Browser() as browser:
+            self.let_in(browser, console)
+            pages, here = "/paths/" + path["report_uuid"], "document.querySelector('main').dataset.ready === "
+            browser.driver.get(f"http://{console.host}{pages}")
+            self.press(browser, "Restore this path", path["report_uuid"])
+            browser.wait("document.querySelector('dialog .alarm').textContent !== ''")  # it is in use
+            self.change(browser, console, pages, self.button("Retire this path"), path["report_uuid"])
+            self.assertEqual(in_use(), [])
+            self.change(browser, console, pages, self.button("Restore this path"), path["report_uuid"])
+            restored, = in_use()
+            browser.wait(f"{here}'/paths/{restored}'")
+            self.change(browser, console, "/tasks/old", self.button("Retire all its paths"), "old")
+            self.assertEqual(in_use(), [])
+            self.change(browser, console, "/tasks/old", self.button("Restore its paths"), "old")
+            self.assertEqual(len(in_use()), 1)
+            browser.driver.get(f"http://{console.host}/tasks/old")
+            self.press(browser, "Rename", "old", "new")
+            browser.wait(f"{here}'/tasks/new'")
+            self.change(browser, console, "/tasks/new", self.button("Remove"), "new")
+            browser.wait(f"{here}'/tasks'")
+            browser.check_console(self)
+        self.assertEqual(console.rows("tasks", "list"), [])
+        done = [(row["verb"], row["target"]) for row in console.rows("audit") if (row["name"], row["outcome"]) == ("console", "done")]
+        self.assertIn(("restore_path", path["report_uuid"]), done)
+        self.assertIn(("remove_task", "new"), done)
+        self.assertEqual([verb for verb, _ in done].count("rename_task"), 1)
+
+    @staticmethod
+    def button(text: str) -> str:
+        return f"xpath://div[@class='page']/div[@class='tools']/button[.='{text} \u2026']"
+
+    def press(self, browser: Browser, text: str, name: str, asked: str = "") -> None:
+        """On the page that is shown."""
+        WebDriverWait(browser.driver, 60).until(lambda driver: driver.find_elements(By.XPATH, self.button(text)[6:]))[0].click()
+        if asked:
+            browser.press("dialog input[aria-label='New name']", asked)
+            self.assertFalse(browser.element("dialog .grave").is_enabled())
+        browser.press("dialog input[aria-label^='Type ']", name)
+        browser.click("dialog .grave")
+
     @staticmethod
     def grow(store: pathlib.Path, size: int) -> None:
         """Free pages, which a copy has too."""

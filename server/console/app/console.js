@@ -52,24 +52,30 @@ const kinshipConsole = (() => {
   const figure = (kind, name) => get(`/api/figures/${kind}/${encodeURIComponent(name)}`);
 
   /// A button for a change, which a person confirms by typing its object; null where the console only reads.
-  function changeButton(text, verb, argument, told) {
+  /// \param change  {text, verb}; by: the member that names the object, unless it is `argument`; asks: what else is typed, as
+  ///                `argument`; undo: how it is undone
+  /// \param told    (row): it is done
+  function changeButton({text, verb, by = "argument", asks, undo = "This cannot be undone here."}, object, told) {
     if (!isAdmin) return null;
     const ask = () => {
-      const typed = make("input", {type: "text", autocomplete: "off", "aria-label": `Type ${argument} to confirm`, oninput: () => { go.disabled = typed.value !== argument; }});
+      const field = (label) => make("input", {type: "text", autocomplete: "off", "aria-label": label, oninput: () => { go.disabled = typed.value !== object || (asked && !asked.value); }});
+      const typed = field(`Type ${object} to confirm`), asked = asks && field(asks);
       const trouble = make("p", {class: "alarm", role: "alert"});
       const go = make("button", {type: "button", class: "grave", disabled: true, onclick: async () => {
         try {
           const reply = await fetch(`/api/rows/${verb}`, {method: "POST", headers: {"Content-Type": "application/json"},
-                                                          body: JSON.stringify({argument, confirm: typed.value})});
-          await answerOf(reply);
+                                                          body: JSON.stringify({...(asked && {argument: asked.value}), [by]: object, confirm: typed.value})});
+          const row = (await answerOf(reply)).rows[0] || {};
+          if (row.paths === 0 && row.reason) throw new Error(row.reason);
           dialog.close();
-          told();
+          told(row);
         } catch (error) {
           trouble.textContent = error.message;
         }
       }}, text);
       const dialog = make("dialog", {"aria-label": text, onclose: () => dialog.remove()}, make("h2", {}, text),
-        make("p", {}, "This cannot be undone here. To confirm, type ", make("code", {}, argument)), typed, trouble,
+        ...(asked ? [make("p", {}, asks), asked] : []),
+        make("p", {}, `${undo} To confirm, type `, make("code", {}, object)), typed, trouble,
         make("div", {class: "tools"}, make("button", {type: "button", onclick: () => dialog.close()}, "Leave it"), go));
       document.body.append(dialog);
       dialog.showModal();
@@ -171,5 +177,5 @@ const kinshipConsole = (() => {
     listen();
   }
 
-  return {page, href, link, get, rows, figure, changeButton, start, reload: show};
+  return {page, href, link, get, rows, figure, changeButton, go, start, reload: show};
 })();

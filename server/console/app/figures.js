@@ -2,7 +2,7 @@
 "use strict";
 (() => {
   const {make} = kinshipPage;
-  const {page, href, figure, changeButton, reload} = kinshipConsole;
+  const {page, href, figure, changeButton, go, reload} = kinshipConsole;
   let loaded = null;
 
   /// Runs in order, like scripts of the page itself.
@@ -30,14 +30,14 @@
     });
   }
 
-  /// \param change  what an administrator may do: [text, verb]
-  function figurePage(kind, folder, change) {
+  /// \param changes  what an administrator may do: of changeButton; to (row): the address where it is then, unless it is here
+  function figurePage(kind, folder, changes = []) {
     page({
       path: `/${folder}/:name`,
       title: ({name}) => `${kind[0].toUpperCase() + kind.slice(1)} ${name}`,
       async show(element, {name}) {
-        const button = change && changeButton(change[0], change[1], name, reload);
-        if (button) element.append(make("div", {class: "tools"}, button));
+        const buttons = changes.map((change) => changeButton(change, name, (row) => (change.to ? go(change.to(row)) : reload()))).filter(Boolean);
+        if (buttons.length) element.append(make("div", {class: "tools"}, ...buttons));
         const inside = make("div", {class: "figure", "data-kind": kind}), told = make("p", {role: "status"}, "Reading \u2026");
         element.append(told, inside);
         try {
@@ -50,8 +50,16 @@
   }
 
   figurePage("robot", "robots");
-  figurePage("task", "tasks", ["Retire all its paths", "reset_task"]);
-  figurePage("distribution", "distributions", ["Evict it", "evict_distribution"]);
-  figurePage("path", "paths", ["Retire this path", "retire_path"]);
+  figurePage("task", "tasks", [
+    {text: "Retire all its paths", verb: "reset_task", undo: "Restoring its paths undoes this."},
+    {text: "Restore its paths", verb: "restore_path", by: "task", undo: "Retiring its paths undoes this."},
+    {text: "Rename", verb: "rename_task", by: "task", asks: "New name", undo: "Robots that report the former name begin that task again.",
+     to: ({task}) => `/tasks/${encodeURIComponent(task)}`},
+    {text: "Remove", verb: "remove_task", undo: "Its paths are retired, its attempts stay on record; it is listed again once its paths are restored.",
+     to: () => "/tasks"}]);
+  figurePage("distribution", "distributions", [{text: "Evict it", verb: "evict_distribution"}]);
+  figurePage("path", "paths", [
+    {text: "Retire this path", verb: "retire_path", undo: "Restoring this path undoes it."},
+    {text: "Restore this path", verb: "restore_path", undo: "Retiring the restored path undoes it.", to: ({report_uuid: uuid}) => `/paths/${uuid}`}]);
   figurePage("attempt", "attempts");
 })();

@@ -60,7 +60,7 @@
     columns: (refresh) => [text("job", (j) => j.id), text("verb", (j) => j.verb), text("object", (j) => j.argument), text("state", (j) => j.state),
       {title: "done", of: (j) => j.progress, show: (j) => Math.round(100 * j.progress) + "\u202f%"}, {title: "rows", of: (j) => j.rows},
       time("started", (j) => j.started_ms), time("ended", (j) => j.ended_ms), long("message", (j) => j.message),
-      {title: "change", of: () => "", show: (j) => (j.state === "queued" || j.state === "running" ? changeButton("Cancel", "cancel_job", j.id, refresh) : "") || ""}]});
+      {title: "change", of: () => "", show: (j) => (j.state === "queued" || j.state === "running" ? changeButton({text: "Cancel", verb: "cancel_job"}, j.id, refresh) : "") || ""}]});
 
   listingPage({
     path: "/audit", title: "Audit log", nav: "Audit", verb: "list_audit", seconds: 10, empty: "Nothing was changed, or refused.",

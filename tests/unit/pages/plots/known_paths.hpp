@@ -36,13 +36,11 @@ class KnownPaths {
   }
 
   LookUp look_up() {
-    return {.paths =
-                [this](const std::string&, const std::optional<Digest>& robot, std::size_t) {
-                  std::vector<PathSummary> paths = newest_first;
-                  std::erase_if(paths, [&](const PathSummary& path) {
-                    return robot && path.robot != *robot;
-                  });
-                  return paths;
+    return {.for_each_path =
+                [this](const std::string&, const std::optional<Digest>& robot, const auto& take) {
+                  for (const PathSummary& path : newest_first)
+                    if ((!robot || path.robot == *robot) && !take(path))
+                      return;
                 },
             .attempt = [this](const Uuid& report) { return find(attempts, report); },
             .robot = [this](const Digest& robot) { return find(descriptions, robot); },

@@ -98,6 +98,9 @@ TEST(TaskPaths, AreTheNewestOfMany) {
   EXPECT_EQ(figure.in_use, kMaxTaskPaths + 3);
   ASSERT_EQ(figure.paths.size(), kMaxTaskPaths);
   EXPECT_EQ(figure.paths.front().summary.received_ms, 1003);
+  for (std::size_t i = 0; i < 3; ++i)
+    known.newest_first[i].retired_ms = 5;
+  EXPECT_EQ(figure_of(known).paths.size(), kMaxTaskPaths) << "retired ones take no place";
 }
 
 TEST(TaskPaths, WithoutRetiredOnesAndThoseThatCannotBeRead) {

@@ -141,11 +141,19 @@ TEST(GeometryDoubts, ATransferFrameBeyondTenTimesTheReachIsRefusedAndANearerOneI
   EXPECT_NE(error->message.find("at most 10 times the reach"), std::string::npos);
 }
 
-TEST(GeometryDoubts, AChainInMillimetresIsRefused) {
-  RobotDescription description = describe(kSolid, kSolid, kSolid);
-  const std::string metre = "xyz='1 0 0'";
-  description.urdf.replace(description.urdf.find(metre), metre.size(), "xyz='1000 0 0'");
-  const auto error = find_impossible_lengths(read(description).chain);
+TEST(GeometryDoubts, AChainInMillimetresIsRefusedAndALongOneIsNamed) {
+  const auto of_length = [](const std::string& metres) {
+    RobotDescription description = describe(kSolid, kSolid, kSolid);
+    const std::string metre = "xyz='1 0 0'";
+    description.urdf.replace(description.urdf.find(metre), metre.size(),
+                             "xyz='" + metres + " 0 0'");
+    return read(description);
+  };
+  EXPECT_FALSE(find_impossible_lengths(of_length("60").chain));
+  EXPECT_NE(doubts_of(of_length("60")).find("the arm reaches 60 m from its base, stretched out"),
+            std::string::npos);
+  EXPECT_EQ(doubts_of(of_length("40")).find("the arm reaches"), std::string::npos);
+  const auto error = find_impossible_lengths(of_length("1000").chain);
   ASSERT_TRUE(error);
   EXPECT_NE(error->message.find("reaches 1e+03 m from its base, stretched out; these are probably "
                                 "millimetres (1 m)"),

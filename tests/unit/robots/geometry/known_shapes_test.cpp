@@ -134,6 +134,42 @@ TEST(KnownShapes, SolidsThatDoNotHoldTheMeshesAreNoCovers) {
   EXPECT_GT(std::get<BoxShape>(covers->shapes[1].shape).size.z(), 0.3) << "as the test was made";
 }
 
+/// A robot of one link with as many meshes, each a long triangle across the seam of two solids: it
+/// is halved along all of the seam. Other solids, which are all asked each time, are far away.
+KnownShapes with_seams(int meshes) {
+  Eigen::Matrix3Xd corners(3, 3);
+  corners << -1, 1.1, 0.05, 0, 0, 40, 0, 0, 0;
+  const TriangleMesh mesh = TriangleMesh::from_corners(corners).value_or_throw();
+  std::string collisions;
+  RobotDescription robot = description("", "");
+  for (int i = 0; i < meshes; ++i) {
+    collisions += "<collision><geometry>" + kMesh + "</geometry></collision>";
+    robot.meshes.push_back({.link = "arm", .role = MeshRole::Collision, .content = mesh.digest()});
+  }
+  const std::string arm = "<link name='arm'>";
+  robot.urdf.insert(robot.urdf.find(arm) + arm.size(), collisions);
+  for (const double x : {-5.0, 5.0})
+    robot.mesh_solids.solids.push_back(
+        {"arm", BoxShape{{10, 100, 1}}, Eigen::Isometry3d(Eigen::Translation3d(x, 20, 0))});
+  while (robot.mesh_solids.solids.size() < 100)
+    robot.mesh_solids.solids.push_back(
+        {"arm", SphereShape{0.1}, Eigen::Isometry3d(Eigen::Translation3d(-500, 0, 0))});
+  return read_known_shapes(kinematics::read_model(robot).value_or_throw(),
+                           [&](const Digest&) { return std::optional(mesh.content()); })
+      .value_or_throw();
+}
+
+TEST(KnownShapes, WhatSolidsHoldIsTestedWithinABoundOfTheRobotNotOfEachMesh) {
+  const KnownShapes few = with_seams(1), many = with_seams(20);
+  EXPECT_NE(few.covers, nullptr);
+  EXPECT_EQ(describe(few), "1 link by the triangles of their meshes");
+  EXPECT_EQ(many.grade, GeometryGrade::Exact);
+  EXPECT_EQ(many.covers, nullptr);
+  EXPECT_EQ(describe(many),
+            "1 link by the triangles of their meshes alone (too many to test the solids around "
+            "them)");
+}
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

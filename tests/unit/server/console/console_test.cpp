@@ -159,6 +159,24 @@ TEST_F(ConsoleTest, OnlyReadsUnlessItIsAnAdministrators) {
   EXPECT_EQ(status(post("reset_task", confirmed)), "404") << "no such task: it reached the service";
 }
 
+TEST_F(ConsoleTest, ARenameIsConfirmedByTheNameThatItChanges) {
+  const auto rename = [this](const std::string& confirm) {
+    return status(post("rename_task",
+                       R"({"task": "shelf", "argument": "rack", "confirm": ")" + confirm + "\"}"));
+  };
+  EXPECT_EQ(rename("shelf"), "403");
+  start(true);
+  EXPECT_EQ(rename("rack"), "400");
+  EXPECT_EQ(rename(""), "400");
+  EXPECT_EQ(rename("shelf"), "404") << "no such task: it reached the service";
+  EXPECT_EQ(status(post("restore_path", R"({"task": "shelf", "confirm": "shelf"})")), "404");
+  EXPECT_EQ(status(post("restore_path", R"({"task": "shelf", "confirm": ""})")), "400");
+  EXPECT_EQ(
+      status(post("reset_task", R"({"argument": "shelf", "task": "other", "confirm": "other"})")),
+      "400")
+      << "the verb takes no task beside its argument";
+}
+
 TEST_F(ConsoleTest, EventsComeAsTheyHappen) {
   const HttpConnection browser(url_);
   browser.send("GET /api/events HTTP/1.1\r\n" + fields_ + "\r\n");

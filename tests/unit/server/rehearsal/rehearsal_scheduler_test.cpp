@@ -100,6 +100,29 @@ TEST_F(RehearsalSchedulers, OfATaskThatWasRenamedOrRemovedNothingIsKnown) {
   EXPECT_FALSE(experience_index.ask(rehearsal_key(panda_)));
 }
 
+TEST_F(RehearsalSchedulers, ARehearsalThatRunsWhileItsTaskIsRenamedIsNotKeptUnderTheFormerName) {
+  report_sweeps(6);
+  std::promise<void> renamed;
+  std::promise<void> ended;
+  RehearsalSchedulerOptions options = quick();
+  options.log = [&](std::string_view) {  // before its result is kept
+    ended.set_value();
+    renamed.get_future().wait();
+  };
+  RehearsalScheduler scheduler(kept(), options);
+  std::future<SharedRehearsal> answer = wait(scheduler, panda_);
+  ended.get_future().wait();
+  ASSERT_TRUE(store_->rename_task("sweep", "mop", nullptr));
+  scheduler.forget("sweep", RehearsalScheduler::Loss::Task);
+  renamed.set_value();
+  EXPECT_FALSE(answer.get());
+  EXPECT_FALSE(scheduler.find(identify(key_of(panda_))));
+  EXPECT_FALSE(scheduler.library(rehearsal_key(panda_)));
+  EXPECT_EQ(scheduler.totals().done, 0U);
+  EXPECT_FALSE(RehearsalScheduler(kept(), quick()).find(identify(key_of(panda_))))
+      << "of the store";
+}
+
 TEST_F(RehearsalSchedulers, AtItsDeadlineAWaiterGetsWhatIsKnownByThen) {
   report_sweeps(6);
   int woken = 0;
