@@ -61,6 +61,11 @@ class AdministrationChanges : public ServiceFixture {
     } while (!request.cursor.empty());
     return rows;
   }
+  static AdminRequest restoration_of(const std::string& task) {
+    AdminRequest request = fleet::question(AdminVerb::RestorePath);
+    request.task = task;
+    return request;
+  }
   Distribution fetched(const std::string& profile = "default") {
     FetchRequest request = request_for(pupil_);
     request.profile = profile;
@@ -130,8 +135,7 @@ TEST_F(AdministrationChanges, AResetTaskIsRestoredWhole) {
   report(fleet::solved(teacher_, "shelf", 4, 1));
   report({fleet::unsolved(teacher_.digest, "shelf")});
   ASSERT_EQ(ask(AdminVerb::ResetTask, "shelf").status, AdminStatus::Ok);
-  AdminRequest request = fleet::question(AdminVerb::RestorePath);
-  request.task = "shelf";
+  AdminRequest request = restoration_of("shelf");
   EXPECT_EQ(row<Restoration>(administer(request)).paths, 4U);
   EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "shelf")).paths, 4U);
   const Restoration again = row<Restoration>(administer(request));
@@ -172,8 +176,7 @@ TEST_F(AdministrationChanges, ARemovedTaskIsListedAgainOnceItIsReported) {
   EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 1U);
   EXPECT_EQ(ask(AdminVerb::ListTasks).rows.size(), 2U);
   ASSERT_EQ(ask(AdminVerb::RemoveTask, "lod").status, AdminStatus::Ok);
-  AdminRequest request = fleet::question(AdminVerb::RestorePath);
-  request.task = "lod";
+  AdminRequest request = restoration_of("lod");
   EXPECT_EQ(row<Restoration>(administer(request)).paths, 3U);
   EXPECT_EQ(row<TaskSummary>(ask(AdminVerb::ShowTask, "lod")).paths, 3U);
   request.task = "lud";
@@ -183,8 +186,7 @@ TEST_F(AdministrationChanges, ARemovedTaskIsListedAgainOnceItIsReported) {
 TEST_F(AdministrationChanges, ARemovedTaskIsRestoredAndListedAgain) {
   report(fleet::solved(teacher_, "lod", 2, 1));
   ASSERT_EQ(ask(AdminVerb::RemoveTask, "lod").status, AdminStatus::Ok);
-  AdminRequest request = fleet::question(AdminVerb::RestorePath);
-  request.task = "lid";
+  AdminRequest request = restoration_of("lid");
   EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
   request.task = "lod";
   EXPECT_EQ(row<Restoration>(administer(request)).paths, 2U);
@@ -193,11 +195,41 @@ TEST_F(AdministrationChanges, ARemovedTaskIsRestoredAndListedAgain) {
 
 TEST_F(AdministrationChanges, ATaskWithoutPathsIsRestoredOnlyWhileItIsThere) {
   report({fleet::unsolved(teacher_.digest, "bin")});
-  AdminRequest request = fleet::question(AdminVerb::RestorePath);
-  request.task = "bin";
+  AdminRequest request = restoration_of("bin");
   EXPECT_EQ(row<Restoration>(administer(request)).paths, 0U);
   ASSERT_EQ(ask(AdminVerb::RemoveTask, "bin").status, AdminStatus::Ok);
   EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
+}
+
+TEST_F(AdministrationChanges, GuidanceFollowsWhatIsRenamedRemovedAndRestored) {
+  report(fleet::solved(teacher_, "shelf", 4, 1));
+  const auto status_of = [this](const std::string& task) {
+    FetchRequest request = request_for(pupil_);
+    request.task = task;
+    return fetch(request).status;
+  };
+  ASSERT_EQ(status_of("shelf"), FetchStatus::Ready);
+  AdminRequest rename = fleet::question(AdminVerb::RenameTask, "rack");
+  rename.task = "shelf";
+  ASSERT_EQ(administer(rename).status, AdminStatus::Ok);
+  EXPECT_EQ(status_of("shelf"), FetchStatus::NoExperience);
+  EXPECT_EQ(status_of("rack"), FetchStatus::Ready);
+  ASSERT_EQ(ask(AdminVerb::RemoveTask, "rack").status, AdminStatus::Ok);
+  EXPECT_EQ(status_of("rack"), FetchStatus::NoExperience);
+  ASSERT_EQ(row<Restoration>(administer(restoration_of("rack"))).paths, 4U);
+  EXPECT_EQ(status_of("rack"), FetchStatus::Ready);
+}
+
+TEST_F(AdministrationChanges, RestoredPathsKeepTheirOrder) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 3, 1);
+  for (const Attempt& attempt : attempts)
+    report({attempt});
+  ASSERT_EQ(ask(AdminVerb::ResetTask, "shelf").status, AdminStatus::Ok);
+  ASSERT_EQ(row<Restoration>(administer(restoration_of("shelf"))).paths, 3U);
+  const std::vector<AdminRow> rows = export_all("teacher", "shelf", 100);
+  ASSERT_EQ(rows.size(), 1U + attempts.size());
+  for (std::size_t i = 0; i < attempts.size(); ++i)
+    EXPECT_EQ(std::get<Attempt>(rows[i + 1]).path->waypoints(), attempts[i].path->waypoints());
 }
 
 TEST_F(AdministrationChanges, AnUnknownNameIsAnsweredWithTheNearest) {
