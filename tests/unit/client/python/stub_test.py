@@ -17,7 +17,8 @@ from kinship import _kinship
 STUB = pathlib.Path(_kinship.__file__).with_name("_kinship.pyi")
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 MYPY = shutil.which("mypy", path="/usr/bin")
-OTHERS = {"__repr__", "__getstate__", "__setstate__", "__new__", "__init__"}  # not part of a class's face
+OTHERS = {"__repr__", "__getstate__", "__setstate__", "__new__", "__init__",
+          "_pybind11_conduit_v1_"}  # not part of a class's face; the last is of pybind11 2.13
 
 
 def parameters_of(function: ast.FunctionDef):
