@@ -8,7 +8,6 @@
 #include "client/c/errors.hpp"
 #include "client/c/handles.hpp"
 #include "client/guided/attempt_record.hpp"
-#include "client/guided/path_measures.hpp"
 #include "client/guided/planner_choice.hpp"
 #include "client/guided/query_sampler.hpp"
 #include "client/guided/scene_record.hpp"
@@ -236,12 +235,10 @@ kinship_code kinship_plan_report(kinship_client* client, const kinship_plan* pla
           KINSHIP_INVALID_INPUT,
           "nothing was planned: " + (plan->planned.interrupted ? std::string("it was stopped")
                                                                : plan->planned.result.reason));
-    const auto& chain = plan->robot->chain;
-    kinship::guided::PlannedProblem measured = plan->planned;
-    kinship::guided::measure_path(*plan->robot, plan->problem, measured.result);
     kinship::Attempt attempt = kinship::guided::make_attempt(
-        {chain.digest(), text_or_empty(machine), task}, plan->problem, measured, plan->settings);
-    attempt.scene = kinship::guided::record_scene(chain, plan->problem).value_or_throw();
+        {*plan->robot, text_or_empty(machine), task}, plan->problem, plan->planned, plan->settings);
+    attempt.scene =
+        kinship::guided::record_scene(plan->robot->chain, plan->problem).value_or_throw();
     client->line.report(attempt);
     return KINSHIP_OK;
   });

@@ -47,7 +47,7 @@ int main(int count, char** words) try {
     std::cout << problem.name << (planned.result.solved ? " solved with " : " not solved with ")
               << planned.result.collision_checks << " checks\n";
     Attempt attempt =
-        guided::make_attempt({wanted.robot, "cell 4", wanted.task}, problem, planned, settings);
+        guided::make_attempt({robot, "cell 4", wanted.task}, problem, planned, settings);
     attempt.scene = guided::record_scene(arm.chain, problem).value_or_throw();
     client.report(attempt);
   }

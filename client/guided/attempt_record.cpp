@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "client/guided/path_measures.hpp"
 #include "proto/evidence/machine_speed.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
@@ -26,10 +27,12 @@ std::string describe(const PlanSettings& settings, const std::string& problem,
 
 Attempt make_attempt(const Reporter& reporter, const Problem& problem,
                      const PlannedProblem& planned, const PlanSettings& settings) {
-  const ProblemResult& result = planned.result;
+  ProblemResult result = planned.result;
+  if (!result.path_length)
+    measure_path(reporter.robot, problem, result);
   Attempt attempt;
   attempt.report_uuid = Uuid::random();
-  attempt.robot = reporter.robot;
+  attempt.robot = reporter.robot.chain.digest();
   attempt.machine = reporter.machine;
   attempt.task = reporter.task;
   attempt.T_task_base = problem.T_task_base;

@@ -9,14 +9,15 @@
 
 namespace kinship::guided {
 
-/// Origin of a report: robot, machine and task.
+/// Origin of a report.
 struct Reporter {
-  Digest robot;
+  const PlannedRobot& robot;
   std::string machine;
   std::string task;
 };
 
-/// The attempt that reports a planned problem to the server, under a new report UUID.
+/// The attempt that reports a planned problem to the server, under a new report UUID. A path that
+/// was not measured yet is, in some milliseconds (path_measures.hpp).
 Attempt make_attempt(const Reporter& reporter, const Problem& problem,
                      const PlannedProblem& planned, const PlanSettings& settings);
 

@@ -142,16 +142,10 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
   return made;
 }
 
-/// What is measured of the path when it is first needed.
-void measure(Plan& self) {
-  if (!self.planned.result.path_length)
-    guided::measure_path(*self.robot->planned(), self.problem, self.planned.result);
-}
-
-json::NamedAttempt attempt_for(Plan& self, const std::string& task, const std::string& machine) {
-  measure(self);
+json::NamedAttempt attempt_for(const Plan& self, const std::string& task,
+                               const std::string& machine) {
   json::NamedAttempt named;
-  named.attempt = guided::make_attempt({self.robot->digest(), machine, task}, self.problem,
+  named.attempt = guided::make_attempt({*self.robot->planned(), machine, task}, self.problem,
                                        self.planned, self.settings);
   const Problem& problem = self.problem;
   const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty() &&
@@ -167,10 +161,13 @@ auto result(Value ProblemResult::*member) {
   return [member](const Plan& self) { return self.planned.result.*member; };
 }
 
+/// What is measured of the path when it is first asked for.
 auto measured(std::optional<double> ProblemResult::*member) {
   return [member](Plan& self) {
-    measure(self);
-    return self.planned.result.*member;
+    ProblemResult& result = self.planned.result;
+    if (!result.path_length)
+      guided::measure_path(*self.robot->planned(), self.problem, result);
+    return result.*member;
   };
 }
 

@@ -250,8 +250,16 @@ TEST_P(GoldenStore, TakesASceneWithItsReport) {
 TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   for (const Receipt& receipt : test::report(*store_, test::golden_attempts()))
     EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate) << receipt.message;
-  const Attempt fresh = test::make_attempt(test::golden_robots()[0].digest, "bin", 1000);
+  Attempt fresh = test::make_attempt(test::golden_robots()[0].digest, "bin", 1000);
+  fresh.record.processor_time_s = fresh.record.machine_speed = 0.5;
+  fresh.record.hand_length_m = 2;
+  fresh.record.least_clearance_m = 0.03;
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
+  const std::vector<TaskRobotSummary> robots = store_->find_task("bin")->robots;
+  const auto row = std::ranges::find(robots, fresh.robot, &TaskRobotSummary::robot);
+  ASSERT_TRUE(row != robots.end() && row->control_means) << "measured from schema 5 on";
+  EXPECT_EQ(row->control_means->attempts, 1U);
+  EXPECT_EQ(row->control_means->hand_length_m, 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5));

@@ -44,6 +44,7 @@ void add_cost(PairChange& change, const PreparedAttempt& prepared) {
   sums.checks += checks;
   sums.checks_squared += checks * checks;
   sums.checks_of_solved += is_solved ? checks : 0;
+  // As kIsMeasured of values/summary_columns says it in SQL.
   if (!prepared.path || record.processor_time_s <= 0 || record.machine_speed <= 0 ||
       record.hand_length_m <= 0 || record.least_clearance_m <= 0)
     return;

@@ -135,6 +135,11 @@ std::optional<PathMeans> read_means(const Row& row, int first_column) {
   return PathMeans{attempts, mean(1), mean(2), mean(3), mean(4)};
 }
 
+/// Of an attempt: whether it counts in PathMeans, in SQL as in rules/report_resolver.
+inline constexpr std::string_view kIsMeasured =
+    "(outcome = 1 AND processor_time_s > 0 AND machine_speed > 0 AND hand_length_m > 0"
+    " AND least_clearance_m > 0)";
+
 /// The sums of `experience` over all robots and tasks: of guided attempts and of control ones, each
 /// for read_means().
 inline constexpr std::string_view kMeansOfAll =

@@ -34,20 +34,28 @@ Rule rule_of_sums(const std::string& mode, int code, const std::string& counted)
   const auto differs = [&](const std::string& sum) {
     return "abs(" + mode + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
   };
+  const auto of_measured = [](const std::string& sum, const std::string& value) {
+    return ", total(iif(" + std::string(kIsMeasured) + ", " + value + ", 0)) AS found" + sum;
+  };
   return {"experience",
           "SELECT " + kPair + "'the sums of its " + mode +
               " attempts are wrong' FROM experience LEFT JOIN (SELECT task_id AS t, robot_id AS r,"
               " count(*) AS found_attempts, sum(outcome = 1) AS found_solved,"
               " total(collision_checks) AS found_checks,"
               " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
-              " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
-              "FROM attempt WHERE sampling_mode = " +
-              std::to_string(code) + " AND " + counted +
+              " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved" +
+              of_measured("_measured", "1") +
+              of_measured("_time_s", "processor_time_s * machine_speed") +
+              of_measured("_hand_length_m", "hand_length_m") +
+              of_measured("_clearance_m", "least_clearance_m") +
+              " FROM attempt WHERE sampling_mode = " + std::to_string(code) + " AND " + counted +
               " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
               "WHERE " +
               mode + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
               differs("_checks") + " OR " + differs("_checks_squared") + " OR " +
-              differs("_checks_of_solved")};
+              differs("_checks_of_solved") + " OR " + differs("_measured") + " OR " +
+              differs("_time_s") + " OR " + differs("_hand_length_m") + " OR " +
+              differs("_clearance_m")};
 }
 
 std::string not_quarantined(const std::string& table) { return "NOT " + in_quarantine(table); }

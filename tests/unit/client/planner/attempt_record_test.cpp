@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "proto/evidence/machine_speed.hpp"
+#include "robots/planning/path_vertices.hpp"
+#include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::guided::attempt_record_test {
 namespace {
 
-const Reporter kReporter = {Digest{}, "cell 3", "box_to_shelf"};
+const PlannedRobot kRobot = planar_robot();
+const Reporter kReporter = {kRobot, "cell 3", "box_to_shelf"};
 
 PlannedProblem solved() {
   PlannedProblem planned;
@@ -20,6 +23,7 @@ PlannedProblem solved() {
   planned.planner = "CBiRRT2";
   planned.result.time_limit_s = 10;
   planned.result.waypoints = Eigen::MatrixXd::Random(3, 4);
+  planned.result.path_length = 4;
   planned.result.hand_length_m = 1.5;
   planned.result.least_clearance_m = 0.03;
   return planned;
@@ -43,6 +47,16 @@ TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   EXPECT_EQ(attempt.task, "box_to_shelf");
   EXPECT_EQ(attempt.machine, "cell 3");
   EXPECT_EQ(attempt.T_task_base->translation().x(), 0.25);
+}
+
+TEST(AttemptRecord, APathThatNobodyMeasuredIsMeasured) {
+  PlannedProblem planned = solved();
+  planned.result.path_length.reset();
+  planned.result.waypoints = Eigen::MatrixXd::Zero(kRobot.chain.dof(), 2);
+  planned.result.waypoints->col(1).setConstant(0.2);
+  const PlanningRecord record = make_attempt(kReporter, {}, planned, {}).record;
+  EXPECT_EQ(record.hand_length_m, planning::hand_length_m(kRobot.chain, *planned.result.waypoints));
+  EXPECT_NE(record.least_clearance_m, 0.03);
 }
 
 TEST(AttemptRecord, AMissingPlacementIsReportedAsMissing) {

@@ -97,7 +97,7 @@ TEST(SearchNotes, AnExportedAttemptIsPlannedAgainAlike) {
   const PlanSettings settings = giving_up_after(300);
   const PlannedRobot robot = planar_robot();
   const PlannedProblem answer = planned(problem, settings);
-  Attempt attempt = make_attempt({robot.chain.digest(), "cell", "turn"}, problem, answer, settings);
+  Attempt attempt = make_attempt({robot, "cell", "turn"}, problem, answer, settings);
   attempt.scene = record_scene(robot.chain, problem).value_or_throw();
   ASSERT_FALSE(validate(attempt));
   const Problem again = cli::problem_of(attempt, robot.chain).value_or_throw();

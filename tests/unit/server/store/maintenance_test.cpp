@@ -36,6 +36,10 @@ class Maintenance : public testing::Test {
         attempt.scene = RecordedScene{
             {{"table", BoxShape{{1, 1, 0.1}}}, {"bench", BoxShape{{1, 1, 0.1}}}}, {}, {}};
       attempt.record.sampling_mode = number % 2 == 0 ? SamplingMode::Guided : SamplingMode::Control;
+      attempt.record.processor_time_s = 0.125 * static_cast<double>(number);
+      attempt.record.machine_speed = 2;
+      attempt.record.hand_length_m = static_cast<double>(number);
+      attempt.record.least_clearance_m = 0.02;
       test::report(*store, {attempt, test::make_unsolved(panda.digest, "shelf", 1000 + number)});
     }
     static_cast<void>(store->retire_path(test::id_from<Uuid>(first + 3)));
@@ -285,6 +289,26 @@ TEST_F(Maintenance, ARestoreRefusesADamagedBackupAndChangesNothing) {
   EXPECT_EQ(names(), before);
   EXPECT_EQ(open_sqlite_store(file_)->epoch(), epoch);
   EXPECT_EQ(refusal([&] { restore_store(file_, file_, ignore); }).code, ErrorCode::InvalidInput);
+}
+
+TEST_F(Maintenance, ARepairKeepsWhatWasMeasuredAndACheckComparesIt) {
+  const auto means = [this] { return open_sqlite_store(file_)->status().guided_means.value(); };
+  const PathMeans before = means();
+  EXPECT_EQ(before.attempts, 2U);
+  EXPECT_EQ(before.hand_length_m, 3);
+  repair_store(file_, ignore);
+  EXPECT_EQ(means().attempts, before.attempts);
+  EXPECT_DOUBLE_EQ(means().time_s, before.time_s);
+  EXPECT_DOUBLE_EQ(means().length, before.length);
+  EXPECT_DOUBLE_EQ(means().hand_length_m, before.hand_length_m);
+  EXPECT_DOUBLE_EQ(means().least_clearance_m, before.least_clearance_m);
+  edit("UPDATE experience SET guided_hand_length_m = guided_hand_length_m + 1");
+  const StoreCheck check = check_store(file_, ignore);
+  ASSERT_FALSE(check.messages.empty());
+  EXPECT_NE(
+      testing::PrintToString(check.messages).find("the sums of its guided attempts are wrong"),
+      std::string::npos)
+      << testing::PrintToString(check.messages);
 }
 
 TEST_F(Maintenance, ARepairedStoreHasItsNameFromItsSettingsOrElseFromItsMark) {

@@ -162,7 +162,8 @@ TEST_P(StoreConformance, MeansAreOfSolvedAttemptsThatWereMeasuredInEachMode) {
   Attempt elsewhere = attempt(7, SamplingMode::Guided, 5);
   elsewhere.task = "table";
   test::report(*store_, {first, unmeasured, untimed, unsolved});
-  test::report(*store_, {second, attempt(6, SamplingMode::Uniform, 100), elsewhere, first});
+  test::report(*store_, {second, attempt(6, SamplingMode::Uniform, 100),
+                         attempt(8, SamplingMode::Control, 7), elsewhere, first});
   reopen();
   const TaskRobotSummary pair = store_->find_task("shelf")->robots.at(0);
   ASSERT_TRUE(pair.guided_means);
@@ -171,12 +172,17 @@ TEST_P(StoreConformance, MeansAreOfSolvedAttemptsThatWereMeasuredInEachMode) {
   EXPECT_DOUBLE_EQ(pair.guided_means->length, mean_of(first, second));
   EXPECT_DOUBLE_EQ(pair.guided_means->hand_length_m, 2);
   EXPECT_DOUBLE_EQ(pair.guided_means->least_clearance_m, 0.02);
-  EXPECT_FALSE(pair.control_means);
+  ASSERT_TRUE(pair.control_means);
+  EXPECT_EQ(pair.control_means->attempts, 1U);
+  EXPECT_DOUBLE_EQ(pair.control_means->time_s, 3.5);
+  EXPECT_DOUBLE_EQ(pair.control_means->hand_length_m, 7);
+  EXPECT_DOUBLE_EQ(pair.control_means->least_clearance_m, 0.07);
   const StoreStatus status = store_->status();
   ASSERT_TRUE(status.guided_means);
   EXPECT_EQ(status.guided_means->attempts, 3U);
   EXPECT_DOUBLE_EQ(status.guided_means->hand_length_m, 3);
-  EXPECT_FALSE(status.control_means);
+  ASSERT_TRUE(status.control_means);
+  EXPECT_DOUBLE_EQ(status.control_means->least_clearance_m, 0.07);
   EXPECT_EQ(store_->export_attempts({}, "table", "", 1, kManyBytes).rows.at(0).record.hand_length_m,
             5);
 }
