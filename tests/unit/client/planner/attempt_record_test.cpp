@@ -9,7 +9,7 @@
 namespace kinship::guided::attempt_record_test {
 namespace {
 
-const PlannedRobot kRobot = planar_robot();
+const PlannedRobot kRobot = test::planar_robot();
 const Reporter kReporter = {kRobot, "cell 3", "box_to_shelf"};
 
 PlannedProblem solved() {
