@@ -19,6 +19,7 @@
 #include "proto/json/robot_description_json.hpp"
 #include "proto/json/task_experience_json.hpp"
 #include "proto/tables/table.hpp"
+#include "proto/types/duration_text.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/time_text.hpp"
 
@@ -83,7 +84,7 @@ void add_means(std::string_view mode, const TaskRobotSummary& robot,
                const std::optional<PathMeans>& means, Table& table) {
   if (means)
     table.add_row({robot.label, std::string(mode), std::to_string(means->attempts),
-                   number_text(means->time_s, 3), number_text(means->length, 2),
+                   duration_text(means->time_s), number_text(means->length, 2),
                    number_text(means->hand_length_m, 2), number_text(means->least_clearance_m, 3)});
 }
 
@@ -107,13 +108,8 @@ void print_task(const TaskSummary& task, std::ostream& out) {
         return robot.guided_means || robot.control_means;
       }))
     return;
-  Table means({{"MEANS OF SOLVED", Fit::Cut},
-               "MODE",
-               "SOLVED",
-               "TIME_S",
-               "LENGTH",
-               "HAND_M",
-               "CLEARANCE_M"});
+  Table means(
+      {{"MEANS OF SOLVED", Fit::Cut}, "MODE", "SOLVED", "TIME", "LENGTH", "HAND_M", "CLEARANCE_M"});
   for (const TaskRobotSummary& robot : task.robots) {
     add_means("guided", robot, robot.guided_means, means);
     add_means("uniform", robot, robot.control_means, means);

@@ -61,7 +61,7 @@ std::string gain_text(const std::vector<GuideCost>& costs, const GuideCost& cost
 }  // namespace
 
 std::string means_text(const PathMeans& means) {
-  return number_text(means.time_s, 3) + " s, " + number_text(means.length, 2) + " long, hand " +
+  return duration_text(means.time_s) + ", " + number_text(means.length, 2) + " long, hand " +
          number_text(means.hand_length_m, 2) + " m, clearance " +
          number_text(means.least_clearance_m, 3) + " m (mean of " + std::to_string(means.attempts) +
          ")";

@@ -31,7 +31,7 @@ void print_scene(const RecordedScene& scene, std::ostream& out);
 /// one line each, values from the 13th column on.
 void print_search(const SearchRecord& search, std::ostream& out);
 
-/// "0.031 s, 4.21 long, hand 1.62 m, clearance 0.034 m (mean of 12)".
+/// "31.2 ms, 4.21 long, hand 1.62 m, clearance 0.034 m (mean of 12)".
 std::string means_text(const PathMeans& means);
 
 /// "1.40 by time, 2.10 by checks (best without experience none, with it ways)".

@@ -328,7 +328,7 @@ TEST(GuidanceText, SaysWhatItBringsOrCosts) {
   robot.guided_means = PathMeans{40, 0.0312, 4.213, 1.618, 0.0341};
   EXPECT_EQ(guidance_text("pick", robot),
             "ur10e on pick: 487 checks a solution guided, 852 uniform: 1.75 times fewer; guided: "
-            "0.031 s, 4.21 long, hand 1.62 m, clearance 0.034 m (mean of 40)");
+            "31.2 ms, 4.21 long, hand 1.62 m, clearance 0.034 m (mean of 40)");
   robot.control->checks_per_solution = 243.5;
   EXPECT_NE(guidance_text("pick", robot).find("2.00 times more"), std::string::npos);
 }
