@@ -216,6 +216,7 @@ TEST_P(Ros2, WhatANodeReportsBeyondTheRateOfItsReceiptsIsToldInTurn) {
       << said;
   EXPECT_EQ(told, 900U);
   EXPECT_GT(stored, 800U) << "told of once, however often they were sent: " << said;
+  EXPECT_LT(sent_again, 2700) << "dropped while it is answered, a second apart: " << said;
   EXPECT_GT(ms_after, 4000) << "a hundred a second: " << said;
 }
 
