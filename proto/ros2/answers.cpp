@@ -161,4 +161,19 @@ Message<wire::Status> to_status(const Result<ServerStatus>& status, const Uuid& 
   return message;
 }
 
+bool asks_again(const wire::Receipt& receipt) {
+  return receipt.status == number(ReceiptStatus::TryAgain);
+}
+
+bool asks_again(const wire::Registered& answer) {
+  return answer.retry_after.sec > 0 || answer.retry_after.nanosec > 0;
+}
+
+bool asks_again(const wire::DistributionAnswer& answer) {
+  return answer.status == number(FetchStatus::Pending) ||
+         answer.status == number(FetchStatus::Busy);
+}
+
+bool asks_again(const wire::Status& status) { return *status.version == '\0'; }
+
 }  // namespace kinship::ros2

@@ -31,4 +31,15 @@ Message<wire::Distribution> to_distribution(const Distribution& distribution,
 
 Message<wire::Status> to_status(const Result<ServerStatus>& status, const Uuid& query);
 
+/// Whether an answer holds for now only: its node is to ask again.
+bool asks_again(const wire::Receipt& receipt);
+bool asks_again(const wire::Registered& answer);
+bool asks_again(const wire::DistributionAnswer& answer);
+bool asks_again(const wire::Status& status);
+/// Answers of services: their calls are not repeated.
+template <typename Response>
+bool asks_again(const Response& /*response*/) {
+  return false;
+}
+
 }  // namespace kinship::ros2

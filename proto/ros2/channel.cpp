@@ -6,19 +6,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
-#include <deque>
 #include <exception>
-#include <map>
-#include <mutex>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
 #include "proto/dds/matched_readers.hpp"
 #include "proto/dds/matched_writers.hpp"
-#include "proto/dds/peer_table.hpp"
+#include "proto/ros2/answer_turns.hpp"
 #include "proto/ros2/outlet.hpp"
 
 namespace kinship::ros2 {
@@ -27,10 +23,8 @@ namespace {
 constexpr int kHeldQuestions = 256;  ///< by the reader, until they are taken
 constexpr int kKeptAnswers = 256;    ///< for a reader that is slow
 constexpr std::size_t kWaitingQuestions = 256;
-constexpr dds::TokenBucket::Rate kAnswers{.per_s = 100, .burst = 100};  ///< to a node
-constexpr std::chrono::milliseconds kBetweenAnswers{10};                ///< at that rate
-constexpr std::size_t kMaxHeldOfNode = 4096, kMaxHeld = 16384;          ///< answers
-constexpr std::chrono::milliseconds kMaxHold{100};  ///< then its node sends it again
+constexpr std::chrono::milliseconds kBetweenAnswers{10};  ///< at the rate of a node
+constexpr std::chrono::milliseconds kMaxHold{100};        ///< then its node sends it again
 
 /// Of a sample, as the head that queues know.
 codec::Head head_of(const void* sample) {
@@ -40,11 +34,10 @@ codec::Head head_of(const void* sample) {
   return head;
 }
 
-/// A node and its question.
-using Place = std::pair<std::string, codec::Head>;
+using Place = AnswerTurns::Place;
+using Answer = AnswerTurns::Answer;
 
-/// Answers leave here, from any thread: at once, or those beyond a node's rate in its turn. Until
-/// then its question is being answered, so that it need not be asked again.
+/// Answers leave here, from any thread.
 class AnswerLine {
  public:
   using Clock = dds::WaitLoop::Clock;
@@ -59,86 +52,45 @@ class AnswerLine {
                                      "writer " + topics.answer)) {}
 
   const dds::MatchedReaders& readers() const noexcept { return readers_; }
-  bool reaches(const dds::Sender& sender) const {
-    return readers_.has(writer_, sender.participant);
-  }
-  bool begin(const Place& place) {
-    const std::lock_guard lock(mutex_);
-    return being_answered_.insert(place).second;
-  }
-  void end(const Place& place) {
-    const std::lock_guard lock(mutex_);
-    being_answered_.erase(place);
-  }
-  void send(const Place& place, std::shared_ptr<const void> answer) {
+  bool reaches(std::uint64_t participant) const { return readers_.has(writer_, participant); }
+  bool begin(const Place& place) { return turns_.begin(place); }
+  void end(const Place& place) { turns_.end(place); }
+
+  /// \throws std::bad_alloc  the question has ended.
+  void send(const Place& place, Answer answer) {
     switch (take_turn(place, answer)) {
-      case Turn::Now:
-        dds_write(writer_.get(), answer.get());
+      case AnswerTurns::Turn::Now:
+        dds_write(writer_.get(), answer.sample.get());
         return;
-      case Turn::Later:
+      case AnswerTurns::Turn::Later:
         dds_set_guardcondition(readers_.guard().get(), true);  // has send_held() called
         return;
-      case Turn::Never:
+      case AnswerTurns::Turn::Never:
         return;
     }
   }
 
+  /// On the loop's thread.
   /// \return when to call it again.
   Clock::time_point send_held() {
-    const auto now = Clock::now();
-    std::vector<std::shared_ptr<const void>> due;
-    {
-      const std::lock_guard lock(mutex_);
-      if (held_ == 0)
-        return dds::WaitLoop::kWithSamples;
-      for (auto& [node, line] : lines_)
-        for (; !line.held.empty() && line.tokens.has_token(now); --held_) {
-          line.tokens.take(now);
-          being_answered_.erase({node, line.held.front().question});
-          due.push_back(std::move(line.held.front().answer));
-          line.held.pop_front();
-        }
+    if (const std::uint64_t departures = readers_.departures(); departures != departures_) {
+      departures_ = departures;
+      turns_.drop_if([this](std::uint64_t participant) { return !reaches(participant); });
     }
-    for (const auto& answer : due)
-      dds_write(writer_.get(), answer.get());
-    return now + kBetweenAnswers;
+    const auto now = Clock::now();
+    for (const auto& sample : turns_.due(now))
+      dds_write(writer_.get(), sample.get());
+    return turns_.holds_some() ? now + kBetweenAnswers : dds::WaitLoop::kWithSamples;
   }
 
  private:
-  enum class Turn { Now, Later, Never };
-  struct Held {
-    codec::Head question;
-    std::shared_ptr<const void> answer;  // shared with nobody, once it is held
-  };
-  struct Line {
-    dds::TokenBucket tokens;
-    std::deque<Held> held;
-  };
-
-  /// Keeps the answer if its turn is later. Never: its node asks again.
-  Turn take_turn(const Place& place, const std::shared_ptr<const void>& answer) {
-    const auto now = Clock::now();
-    const std::lock_guard lock(mutex_);
-    Line* const line = is_asked_again_ ? &line_of(place.first, now) : nullptr;
-    const bool is_now = !line || (line->held.empty() && line->tokens.has_token(now));
-    if (!is_now && line->held.size() < kMaxHeldOfNode && held_ < kMaxHeld) {
-      line->held.push_back({place.second, answer});
-      ++held_;
-      return Turn::Later;
+  AnswerTurns::Turn take_turn(const Place& place, Answer& answer) {
+    if (is_asked_again_) {
+      answer.may_wait = answer.may_wait && reaches(answer.participant);
+      return turns_.take(place, answer, Clock::now());
     }
-    being_answered_.erase(place);
-    if (line && is_now)
-      line->tokens.take(now);
-    return is_now ? Turn::Now : Turn::Never;
-  }
-
-  Line& line_of(const std::string& node, Clock::time_point now) {
-    if (const auto known = lines_.find(node); known != lines_.end())
-      return known->second;
-    std::erase_if(lines_, [&](const auto& each) {  // of those that have been silent, or have left
-      return each.second.held.empty() && each.second.tokens.is_full(now);
-    });
-    return lines_.emplace(node, Line{{kAnswers, now}, {}}).first->second;
+    turns_.end(place);
+    return AnswerTurns::Turn::Now;
   }
 
   dds::Entity topic_;
@@ -146,18 +98,20 @@ class AnswerLine {
   dds::MatchedReaders readers_;
   const bool is_asked_again_;
   dds::Entity writer_;
-  std::mutex mutex_;  // guards what follows
-  std::set<Place> being_answered_;
-  std::map<std::string, Line> lines_;  // by node
-  std::size_t held_ = 0;               // answers of all lines
+  AnswerTurns turns_;
+  std::uint64_t departures_ = 0;  // known to turns_
 };
 
 }  // namespace
 
 class Question::State {
  public:
-  State(const std::shared_ptr<AnswerLine>& line, Place place, Caller caller)
-      : line_(line), place_(std::move(place)), caller_(std::move(caller)) {}
+  State(const std::shared_ptr<AnswerLine>& line, Place place, std::uint64_t participant,
+        Caller caller)
+      : line_(line),
+        place_(std::move(place)),
+        participant_(participant),
+        caller_(std::move(caller)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
@@ -170,24 +124,27 @@ class Question::State {
   const Caller& caller() const noexcept { return caller_; }
   std::string key() const { return caller_.client + ' ' + place_.second.client_id.text(); }
 
-  void send(std::shared_ptr<void> answer) {
+  void send(std::shared_ptr<void> sample, std::size_t bytes, bool may_wait) {
     if (is_sent_.exchange(true))
       return;
-    std::memcpy(answer.get(), place_.second.client_id.bytes.data(), wire::kKeyBytes);
+    std::memcpy(sample.get(), place_.second.client_id.bytes.data(), wire::kKeyBytes);
     if (const auto line = line_.lock())
-      line->send(place_, std::move(answer));
+      line->send(place_, {std::move(sample), bytes, participant_, may_wait});
   }
 
  private:
   std::weak_ptr<AnswerLine> line_;
   Place place_;
+  std::uint64_t participant_;
   Caller caller_;
   std::atomic<bool> is_sent_ = false;
 };
 
 const Caller& Question::caller() const noexcept { return state_->caller(); }
 std::string Question::key() const { return state_->key(); }
-void Question::send(std::shared_ptr<void> answer) const { state_->send(std::move(answer)); }
+void Question::send(std::shared_ptr<void> sample, std::size_t bytes, bool may_wait) const {
+  state_->send(std::move(sample), bytes, may_wait);
+}
 
 class Channel::Implementation {
  public:
@@ -219,7 +176,7 @@ class Channel::Implementation {
     constexpr int kInTurn = 4;  // then the other channels
     if (waiting_.holds_some())
       waiting_.release_if([this](const codec::Head& /*head*/, const Waiting& each) {
-        return line_->reaches(each.sender);
+        return line_->reaches(each.sender.participant);
       });
     for (int served = 0; served < kInTurn; ++served) {
       take_questions();
@@ -259,7 +216,7 @@ class Channel::Implementation {
     const Place place{known->client, head};
     if (!line_->begin(place))
       return;
-    const Question question(std::make_shared<Question::State>(line_, place,
+    const Question question(std::make_shared<Question::State>(line_, place, known->participant,
                                                               Caller{.client = known->client,
                                                                      .role = AccessRole::Admin,
                                                                      .is_local = known->is_local,
@@ -290,7 +247,7 @@ class Channel::Implementation {
   Queue::Time hold(dds::Sender& sender) const {
     if (sender.hearing != dds::Hearing::Unknown)
       return Queue::kNow;
-    const bool is_heard = line_->reaches(sender);
+    const bool is_heard = line_->reaches(sender.participant);
     sender.hearing = is_heard ? dds::Hearing::Heard : dds::Hearing::Awaited;
     return is_heard ? Queue::kNow : dds::WaitLoop::Clock::now() + kMaxHold;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -38,11 +39,13 @@ class Question {
   explicit Question(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
   /// Sends the answer, a message of the channel's type, with the question's key at its beginning.
-  /// Without memory it is not sent.
+  /// Without memory it is not sent. One that has the node ask again is sent at once or not at all.
   template <typename Wire>
   void answer(Message<Wire> message) const noexcept try {
     const auto kept = std::make_shared<Message<Wire>>(std::move(message));
-    send({kept, &kept->wire});
+    constexpr std::size_t kFirstBlock = 1024;  // of an arena, whose further ones grow by halves
+    send({kept, &kept->wire}, kFirstBlock + sizeof(Wire) + 2 * kept->arena->bytes(),
+         !asks_again(kept->wire));
   } catch (const std::bad_alloc&) {  // the node asks again
   }
 
@@ -50,7 +53,7 @@ class Question {
   std::string key() const;  ///< as text, after the caller's client and a space (catalog::client_of)
 
  private:
-  void send(std::shared_ptr<void> answer) const;
+  void send(std::shared_ptr<void> sample, std::size_t bytes, bool may_wait) const;
 
   std::shared_ptr<State> state_;  // shared by the copies; the last one frees the place
 };

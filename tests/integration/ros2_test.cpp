@@ -177,8 +177,12 @@ TEST_P(Ros2, WhoHasLeftFollowsNoMore) {
   EXPECT_EQ(run("fetch", {robot_, "follow=3600"}).substr(0, 12), "fetched 0 1 ");
   for (int seed = 4; seed < 16; ++seed)
     ASSERT_EQ(report({"seed=" + std::to_string(seed)}), "0");
-  if (run("fetch", {robot_}).starts_with("fetched 0 1 "))
-    run("fetch", {robot_, "follow=60", "more=1"});
+  std::string answered;  // a revision that comes with the answer may also be followed to it
+  if (run("fetch", {robot_}).starts_with("fetched 0 1 ")) {
+    const Words answer = words_of(run("fetch", {robot_, "follow=60", "more=1"}));
+    ASSERT_GT(answer.size(), 2U);
+    answered = answer[2];
+  }
   EXPECT_EQ(run("fetch", {robot_, "task=bin"}).substr(0, 10), "fetched 0 ");
   const Words all = words_of(run("listen", {"until=bin"}));
   std::multiset<std::string> newer;  // revisions; a busy machine may make several
@@ -187,7 +191,8 @@ TEST_P(Ros2, WhoHasLeftFollowsNoMore) {
       newer.insert(all[i + 1]);
   EXPECT_FALSE(newer.empty());
   for (const std::string& revision : newer)
-    EXPECT_EQ(newer.count(revision), 1U) << "for the node that is there: " << revision;
+    EXPECT_LE(newer.count(revision), revision == answered ? 2U : 1U)
+        << "for the node that is there: " << revision;
 }
 
 TEST_P(Ros2, ANodeThatFloodsHasItsOwnQuotaAndDelaysNoOther) {
@@ -216,6 +221,7 @@ TEST_P(Ros2, WhatANodeReportsBeyondTheRateOfItsReceiptsIsToldInTurn) {
       << said;
   EXPECT_EQ(told, 900U);
   EXPECT_GT(stored, 800U) << "told of once, however often they were sent: " << said;
+  EXPECT_LT(sent_again, 2700) << "dropped while it is answered, a second apart: " << said;
   EXPECT_GT(ms_after, 4000) << "a hundred a second: " << said;
 }
 
