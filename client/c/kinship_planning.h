@@ -101,7 +101,8 @@ KINSHIP_API kinship_code kinship_plan_describe(const kinship_plan* plan, kinship
  * \return KINSHIP_NOT_FOUND without a path. */
 KINSHIP_API kinship_code kinship_plan_copy(const kinship_plan* plan, double* waypoints);
 
-/** Reports the plan with its scene, as kinship_report() does.
+/** Reports the plan with its scene, as kinship_report() does. Each call measures the whole path in
+ * its surroundings, which takes some milliseconds.
  * \param task  its name. \param machine  NULL: "".
  * \return KINSHIP_INVALID_INPUT also if nothing was planned: the query does not fit the robot, or
  * was stopped. */

@@ -214,10 +214,12 @@ class Follower::Implementation {
     return placing_;
   }
 
-  /// \return why the placement is not known yet.
+  /// Asks until the robot has reported the task: its reports may still be on their way. What is
+  /// held keeps its placement.
+  /// \return why the server does not say it.
   std::optional<Error> find_placement() {
     const std::shared_ptr<Placing> placing = this->placing();
-    if (!placing)
+    if (!placing || newest())
       return std::nullopt;
     const auto reported = reported_placement(
         [&](const AdminRequest& request) {
@@ -229,8 +231,11 @@ class Follower::Implementation {
                    "no T_task_base is given, and where the robot last reported the task is not "
                    "told: " +
                        reported.error().message};
+    if (!reported->is_known)
+      return std::nullopt;
     const std::scoped_lock lock(mutex_, newest_mutex_);
     request_.T_task_base = reported->T_task_base;
+    request_.known_experience = request_.known_recall = 0;  // of another placement
     placing_.reset();
     return std::nullopt;
   }

@@ -31,8 +31,9 @@ struct FollowOptions {
   /// Longest pause after a reply without news; the first pause is a twentieth of this.
   std::chrono::milliseconds longest_pause{20'000};
   /// A request without placement is for where its robot stood when it last reported the task
-  /// (reported_placement.hpp), as the first server that is there says before the first fetch.
-  /// One that does not say it refuses the request.
+  /// (reported_placement.hpp), as the server says before each fetch until it has, or a
+  /// distribution is held; until then it is fetched for identity. A server that does not say it
+  /// refuses the request.
   bool asks_placement = false;
 };
 

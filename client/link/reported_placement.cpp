@@ -3,9 +3,11 @@
 #include "proto/json/attempt_json.hpp"
 
 namespace kinship::link {
+namespace {
 
-Result<ReportedPlacement> reported_placement(const AskAdmin& ask, const std::string& task,
-                                             const std::string& robot) {
+/// \return also NotFound for an attempt that was dropped between the two requests.
+Result<ReportedPlacement> newest_placement(const AskAdmin& ask, const std::string& task,
+                                           const std::string& robot) {
   std::optional<Result<AttemptSummary>> newest;
   const auto error = for_each_row(
       ask, {.verb = AdminVerb::FindAttempts, .robot = robot, .task = task},
@@ -28,6 +30,19 @@ Result<ReportedPlacement> reported_placement(const AskAdmin& ask, const std::str
   if (!named)
     return unreadable_row(named.error());
   return ReportedPlacement{true, named->attempt.T_task_base};
+}
+
+}  // namespace
+
+Result<ReportedPlacement> reported_placement(const AskAdmin& ask, const std::string& task,
+                                             const std::string& robot) {
+  const auto is_dropped = [](const Result<ReportedPlacement>& placement) {
+    return !placement && placement.error().code == ErrorCode::NotFound;
+  };
+  Result<ReportedPlacement> placement = newest_placement(ask, task, robot);
+  if (is_dropped(placement))
+    placement = newest_placement(ask, task, robot);
+  return is_dropped(placement) ? ReportedPlacement() : placement;
 }
 
 Result<ReportedPlacement> reported_placement(Client& client, const std::string& task,

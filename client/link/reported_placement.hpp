@@ -16,10 +16,10 @@ struct ReportedPlacement {
   std::optional<Eigen::Isometry3d> T_task_base;  ///< known and missing: reported without one
 };
 
-/// Asks the server, in two requests.
+/// Asks the server, in two requests, and again if the attempt is dropped between them.
 /// \param robot  its label.
-/// \return unknown also if the server does not know the task or robot; Unavailable, or InvalidInput
-///         if it does not tell this client of attempts.
+/// \return unknown also if the server does not know the task or robot, or drops the attempt once
+///         more; Unavailable, or InvalidInput if it does not tell this client of attempts.
 Result<ReportedPlacement> reported_placement(const AskAdmin& ask, const std::string& task,
                                              const std::string& robot);
 /// Each request up to the client's timeout.

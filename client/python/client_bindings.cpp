@@ -38,7 +38,8 @@ struct Wish {
 };
 
 /// A request without placement is for where the robot stood when it last reported the task.
-/// \throws Failure if the server does not say it.
+/// \throws Failure if the server does not say it, the exception Refused if this client may not
+/// know.
 void place(const ClientHandle& client, FetchRequest& request) {
   if (request.T_task_base)
     return;
@@ -46,11 +47,14 @@ void place(const ClientHandle& client, FetchRequest& request) {
       [task = request.task, robot = request.robot](link::Client& line) {
         return link::reported_placement(line, task, robot.hex());
       });
-  if (!known)
-    throw Failure(known.error().code,
-                  "T_task_base is not given, and where the robot last reported the task is not "
-                  "told: " +
-                      known.error().message);
+  if (!known) {
+    const std::string why =
+        "T_task_base is not given, and where the robot last reported the task is not told: " +
+        known.error().message;
+    if (known.error().code == ErrorCode::InvalidInput)
+      raise_error("Refused", why);
+    throw Failure(known.error().code, why);
+  }
   request.T_task_base = known->T_task_base;
 }
 
@@ -385,7 +389,8 @@ void bind_fetching(ClientClass& client) {
 robot        a Robot, its digest, or the label by which the server knows it
 deadline     so long it may be waited for, s; 0: what is there already
 T_task_base  where the robot stands in the task's frame: (4, 4) or (7,); by default where it stood when it
-             last reported the task, which Distribution.T_task_base and Guidance.T_task_base tell
+             last reported the task, for which credentials need role reader; Distribution.T_task_base
+             and Guidance.T_task_base tell it
 profile      parameters of transfer and fit
 sources      the robots whose experience counts; empty: all
 weighting    'sources' or 'paths'; empty: the profile's
@@ -408,7 +413,8 @@ Raises NotReady, NoExperience, UnknownRobot, FitFailed, Refused or NoServer.)")
           py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("T_task_base") = py::none(),
           py::arg("profile") = "default", py::arg("sources") = std::vector<RobotName>(),
           py::arg("weighting") = "", py::arg("since_ms") = 0,
-          "Holds the newest distribution from now on, for what fetch() would be asked for. May "
+          "Holds the newest distribution from now on, for what fetch() would be asked for; without "
+          "T_task_base, for where the robot last reported the task, which needs role reader. May "
           "outlive the client.");
 }
 
@@ -437,7 +443,8 @@ void bind_guidance(ClientClass& client) {
       py::arg("to_configuration") = false,
       R"(What kinship-plan would guide the robot with: distribution, stored ways, advice.
 
-Parameters that fetch() has mean the same here; plan() takes the result. Raises as fetch().
+Parameters that fetch() has mean the same here: without T_task_base, where the robot last reported the task,
+which needs role reader. plan() takes the result. Raises as fetch().
 
 robot          a Robot: its chain follows the stored ways
 guide          parts of the guidance that are used, e.g. 'retreat+ways'; empty: what the server found best

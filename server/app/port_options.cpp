@@ -32,8 +32,9 @@ void add_port_options(CLI::App& app, ServerOptions& options) {
                  "certificate it then shows; default: nowhere")
       ->check(is_port_address());
   app.add_flag("--console-admin", options.console_admin,
-               "The console may also cancel jobs, and retire, reset and evict, each after its name "
-               "was typed; without, it only reads");
+               "The console may also cancel jobs, retire and restore paths, rename and remove "
+               "tasks, and evict distributions, each after its name was typed; without, it only "
+               "reads");
   app.add_option("--console-host", options.console_hosts,
                  "A name by which the console may be asked for, besides addresses, localhost and "
                  "this machine's name; may be given again");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <optional>
@@ -17,7 +18,8 @@ namespace {
 constexpr std::size_t kMaxCompared = 100;  // attempts that may have had the same query
 constexpr std::size_t kMaxKept = 16;
 constexpr int kKeptPerTime = 100;
-constexpr std::size_t kMaxListed = 200'000;  // rows of a task's history
+constexpr std::uint32_t kPathsPerPage = 200;  // many figures need few
+constexpr std::size_t kMaxListed = 200'000;   // rows of a task's history
 
 plots::LookUp look_up_of(Questions& questions) {
   return {
@@ -26,7 +28,7 @@ plots::LookUp look_up_of(Questions& questions) {
             AdminRequest request{.verb = AdminVerb::ListPaths,
                                  .robot = robot ? robot->hex() : "",
                                  .task = task,
-                                 .limit = kMaxPageRows};
+                                 .limit = kPathsPerPage};
             do {
               service::AdminPage page = questions.answer(request);
               for (service::AdminRow& row : page.rows)

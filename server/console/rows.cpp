@@ -62,7 +62,7 @@ Result<AdminRequest> change_of(const VerbRule& rule, const http::Request& reques
                       .argument = given["argument"],
                       .robot = given["robot"],
                       .task = given["task"]};
-  // Where a robot or task is named, `argument` is its new name; other verbs refuse both.
+  // `argument` is the object, or the new name or nothing beside a robot or task.
   const std::string& object = !change.task.empty()    ? change.task
                               : !change.robot.empty() ? change.robot
                                                       : change.argument;

@@ -221,6 +221,27 @@ class Changes(unittest.TestCase):
         self.assertIn(("remove_task", "new"), done)
         self.assertEqual([verb for verb, _ in done].count("rename_task"), 1)
 
+    def test_what_could_not_be_restored_stays_said(self):
+        console = ServedConsole("--console-admin")
+        self.addCleanup(console.close)
+        console.kinship("robots", "register", str(MODELS / "panda"))
+        console.give([attempt("panda", seed, task="old") for seed in (1, 2)])
+        console.kinship("tasks", "reset", "old", "--yes")
+        console.server.stop()
+        with contextlib.closing(sqlite3.connect(console.server.folder / "store.db")) as database:
+            database.execute("CREATE TRIGGER full BEFORE INSERT ON attempt WHEN (SELECT count(*) FROM attempt) > 2"
+                             " BEGIN SELECT RAISE(ABORT, 'one is enough'); END")
+            database.commit()
+        console.serve("--console-admin")
+        with Browser() as browser:
+            self.let_in(browser, console)
+            browser.driver.get(f"http://{console.host}/tasks/old")
+            self.press(browser, "Restore its paths", "old")
+            browser.wait("document.querySelector('dialog .alarm').textContent !== ''")
+            self.assertRegex(browser.element("dialog .alarm").text, "^1 restored, 1 cannot be; the last: path .*one is enough")
+            browser.check_console(self)
+        self.assertEqual([row["retired_ms"] == 0 for row in console.rows("paths", "list")].count(True), 1)
+
     @staticmethod
     def button(text: str) -> str:
         return f"xpath://div[@class='page']/div[@class='tools']/button[.='{text} \u2026']"

@@ -66,6 +66,7 @@ const kinshipConsole = (() => {
           const reply = await fetch(`/api/rows/${verb}`, {method: "POST", headers: {"Content-Type": "application/json"},
                                                           body: JSON.stringify({...(asked && {argument: asked.value}), [by]: object, confirm: typed.value})});
           const row = (await answerOf(reply)).rows[0] || {};
+          if (row.lost > 0) throw new Error(`${row.paths} restored, ${row.lost} cannot be; the last: ${row.reason}`);
           if (row.paths === 0 && row.reason) throw new Error(row.reason);
           dialog.close();
           told(row);

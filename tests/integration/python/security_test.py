@@ -15,6 +15,8 @@ from panda_sweeps import attempt
 
 MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
 
+ORIGIN = [0, 0, 0, 0, 0, 0, 1]
+
 
 def secure(*arguments):
     program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinshipd"
@@ -51,7 +53,7 @@ class WhoHasCredentials(SecuredServer):
             client.report(attempt(self.panda, task, seed))
         state = client.flush(60)
         self.assertEqual((state.pending, state.refused), (0, 0), state.problem)
-        distribution = client.fetch(task, self.panda, deadline=120)
+        distribution = client.fetch(task, self.panda, T_task_base=ORIGIN, deadline=120)
         self.assertEqual(distribution.provenance["sources"][0]["paths"], 4)
 
     def test_registers_reports_and_fetches(self):
@@ -115,7 +117,10 @@ class WhoMayNot(SecuredServer):
         client = self.open_client(security=self.add("arm_6", "--task", "shelf_*"))
         client.register(self.panda)
         with self.assertRaisesRegex(kinship.Refused, "arm_6 .role robot. may not fetch for task 'bin'"):
-            client.fetch("bin", self.panda, deadline=20)
+            client.fetch("bin", self.panda, T_task_base=ORIGIN, deadline=20)
+        for ask in (client.fetch, client.guidance):
+            with self.assertRaisesRegex(kinship.Refused, "T_task_base is not given.*not for the role 'robot'"):
+                ask("shelf_1", self.panda, deadline=20)
         receipt, = client.deliver([attempt(self.panda, "bin", 1)])
         self.assertEqual(receipt.status, "refused")
         self.assertRegex(receipt.message, "arm_6 .role robot. may not report for task 'bin'")
@@ -128,7 +133,7 @@ class WhoMayNot(SecuredServer):
         with self.assertRaisesRegex(kinship.Refused, "client 'arm_7': revoked at"):
             while time.monotonic() < end:  # the server looks at records once a second
                 with contextlib.suppress(kinship.NoExperience):
-                    client.fetch("never_done", self.panda, deadline=1)
+                    client.fetch("never_done", self.panda, T_task_base=ORIGIN, deadline=1)
         with self.assertRaisesRegex(kinship.Refused, "client 'arm_7': revoked at"):
             client.register(self.panda)
 

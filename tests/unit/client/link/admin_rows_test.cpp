@@ -223,5 +223,24 @@ TEST(ReportedPlacements, ATaskThatTheServerDoesNotKnowIsNotReported) {
   EXPECT_EQ(refused.error().code, ErrorCode::InvalidInput);
 }
 
+TEST(ReportedPlacements, AnAttemptThatIsDroppedMeanwhileIsAskedForOnceMore) {
+  const test::ReservedDomain domain;
+  std::map<AdminVerb, int> asked;
+  const AdminServer server(domain.number(), [&](const AdminRequest& request) {
+    ++asked[request.verb];
+    AdminReply reply;
+    if (request.verb == AdminVerb::FindAttempts)
+      return page({json::to_json(AttemptSummary())}, "");
+    reply.status = AdminStatus::NotFound;
+    return reply;
+  });
+  Client asker = client(domain.number());
+  const auto placement = reported_placement(asker, "x", "panda");
+  ASSERT_TRUE(placement) << placement.error().message;
+  EXPECT_FALSE(placement->is_known);
+  EXPECT_EQ(asked[AdminVerb::FindAttempts], 2);
+  EXPECT_EQ(asked[AdminVerb::ShowPath], 2);
+}
+
 }  // namespace
 }  // namespace kinship::link::admin_rows_test

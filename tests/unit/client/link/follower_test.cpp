@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <optional>
 
 #include "client/link/client.hpp"
@@ -98,6 +99,32 @@ TEST_F(FollowerTest, AsksWhereTheRobotStandsBeforeItFetches) {
   ASSERT_TRUE(told);
   EXPECT_TRUE(told->isApprox(*attempt.T_task_base));
   EXPECT_TRUE(server.first_request().T_task_base.value().isApprox(*told));
+}
+
+TEST_F(FollowerTest, AsksAgainWhereARobotStandsThatHasNotReportedYet) {
+  Attempt attempt = values_.attempt(5);
+  attempt.T_task_base = values_.pose();
+  std::atomic<bool> has_reported = false;
+  FollowServer server(domain_.number(), status(FetchStatus::NoExperience),
+                      [&](const AdminRequest& wanted) {
+                        AdminReply reply;
+                        reply.status = AdminStatus::Ok;
+                        AttemptSummary summary;
+                        summary.report_uuid = attempt.report_uuid;
+                        summary.robot = distribution_.robot;
+                        if (wanted.verb == AdminVerb::ShowPath)
+                          reply.rows.push_back(json::to_json(attempt));
+                        else if (has_reported.exchange(true))
+                          reply.rows.push_back(json::to_json(summary));
+                        return reply;
+                      });
+  const auto follower =
+      client().follow(request(), {.longest_pause = 200ms, .asks_placement = true});
+  ASSERT_TRUE(server.wait_for_fetches(2, kEnough));
+  EXPECT_FALSE(server.first_request().T_task_base);
+  ASSERT_TRUE(server.last_request().T_task_base);
+  EXPECT_TRUE(server.last_request().T_task_base->isApprox(*attempt.T_task_base));
+  EXPECT_TRUE(follower->T_task_base().value().isApprox(*attempt.T_task_base));
 }
 
 TEST_F(FollowerTest, FetchesForNoPlacementThatItIsNotTold) {
