@@ -155,8 +155,7 @@ class Run {
         warnings_(robot.chain, robot.shapes),
         server_(server),
         streams_(streams),
-        reporter_{robot_, options.machine.empty() ? host_name() : options.machine,
-                  options.task},
+        reporter_{robot_, options.machine.empty() ? host_name() : options.machine, options.task},
         meshes_(options.problems.parent_path(),
                 models::packages_of(options.robot).value_or_throw()),
         scenes_(options, robot_.chain, streams.messages) {
