@@ -331,6 +331,32 @@ void Salvager::count_lost(const std::string& table, const std::string& index) {
     lose(table, pair, rows);
 }
 
+/// The sums of the attempts in a sampling mode.
+void sum_up(Database& target, const std::string& name, int code) {
+  const std::string measured(kIsMeasured);
+  const auto sum = [&](const std::string& column, const std::string& value) {
+    return ", total(iif(" + measured + ", " + value + ", 0)) AS " + column;
+  };
+  // A path that is lost counts with the mean length of the others.
+  target.execute(
+      "UPDATE experience SET " + name + "_attempts = n, " + name + "_solved = solved, " + name +
+      "_checks = checks, " + name + "_checks_squared = squared, " + name +
+      "_checks_of_solved = of_solved, " + name + "_measured = measured, " + name +
+      "_time_s = time_s, " + name + "_length = length_of_measured, " + name +
+      "_hand_length_m = hand_m, " + name +
+      "_clearance_m = clearance_m FROM (SELECT attempt.task_id AS t, attempt.robot_id AS r,"
+      " count(*) AS n, sum(outcome = 1) AS solved, total(collision_checks) AS checks,"
+      " total(1.0 * collision_checks * collision_checks) AS squared,"
+      " total(iif(outcome = 1, collision_checks, 0)) AS of_solved, sum(" +
+      measured + ") AS measured, sum(" + measured + ") * coalesce(avg(iif(" + measured +
+      ", length, NULL)), 0.0) AS length_of_measured" +
+      sum("time_s", "processor_time_s * machine_speed") + sum("hand_m", "hand_length_m") +
+      sum("clearance_m", "least_clearance_m") +
+      " FROM attempt LEFT JOIN path ON path.id = attempt.path_id WHERE sampling_mode = " +
+      std::to_string(code) +
+      " GROUP BY attempt.task_id, attempt.robot_id) WHERE t = task_id AND r = robot_id");
+}
+
 void Salvager::make_experience() const {
   target_->execute(
       "INSERT OR IGNORE INTO experience (task_id, robot_id) "
@@ -376,30 +402,8 @@ void Salvager::make_experience() const {
   target_->execute(
       "UPDATE task SET removed_attempts = min(removed_attempts, (SELECT coalesce(sum(attempts), 0)"
       " FROM experience WHERE experience.task_id = task.id)) WHERE removed_attempts IS NOT NULL");
-  for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)}) {
-    const std::string name(mode), measured(kIsMeasured);
-    const auto sum = [&](const std::string& column, const std::string& value) {
-      return ", total(iif(" + measured + ", " + value + ", 0)) AS " + column;
-    };
-    // A path that is lost counts with the mean length of the others.
-    target_->execute(
-        "UPDATE experience SET " + name + "_attempts = n, " + name + "_solved = solved, " + name +
-        "_checks = checks, " + name + "_checks_squared = squared, " + name +
-        "_checks_of_solved = of_solved, " + name + "_measured = measured, " + name +
-        "_time_s = time_s, " + name + "_length = length_of_measured, " + name +
-        "_hand_length_m = hand_m, " + name +
-        "_clearance_m = clearance_m FROM (SELECT attempt.task_id AS t, attempt.robot_id AS r,"
-        " count(*) AS n, sum(outcome = 1) AS solved, total(collision_checks) AS checks,"
-        " total(1.0 * collision_checks * collision_checks) AS squared,"
-        " total(iif(outcome = 1, collision_checks, 0)) AS of_solved, sum(" +
-        measured + ") AS measured, sum(" + measured + ") * coalesce(avg(iif(" + measured +
-        ", length, NULL)), 0.0) AS length_of_measured" +
-        sum("time_s", "processor_time_s * machine_speed") + sum("hand_m", "hand_length_m") +
-        sum("clearance_m", "least_clearance_m") +
-        " FROM attempt LEFT JOIN path ON path.id = attempt.path_id WHERE sampling_mode = " +
-        std::to_string(code) +
-        " GROUP BY attempt.task_id, attempt.robot_id) WHERE t = task_id AND r = robot_id");
-  }
+  sum_up(*target_, "guided", 1);
+  sum_up(*target_, "control", 2);
 }
 
 /// Empty if there is none or its row is damaged.
