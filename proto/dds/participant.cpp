@@ -93,7 +93,6 @@ class Participant::Domain {
 
   Domain(const ParticipantOptions& options, const std::string& configuration)
       : role_(options.role), security_(options.security), configuration_(configuration) {
-    joined_process = getpid();
     limit_log();
     if (std::getenv("CYCLONEDDS_URI") && role_ != Role::RosNode)
       return;  // the user's configuration, read by Cyclone DDS
@@ -110,9 +109,12 @@ class Participant::Domain {
   bool is_of_server() const { return role_ == Role::Server; }
 
  private:
-  /// Counts as long as the domain lives.
+  /// Counts as long as the domain lives. The process first: whoever reads a count reads it, too.
   struct Counted {
-    Counted() { ++joined_domains; }
+    Counted() {
+      joined_process = getpid();
+      ++joined_domains;
+    }
     ~Counted() { --joined_domains; }
     Counted(const Counted&) = delete;
     Counted& operator=(const Counted&) = delete;
